@@ -9,6 +9,7 @@ pub(super) const UNITS: f64 = 16_777_216.0;
 const ALBEDO_UNITS: f64 = 1_073_741_824.0;
 /// Step of the densities for which settling is tabulated, kg/m^3.
 const DENSITY_STEP: f64 = 4.0;
+/// Number of those densities.
 const DENSITIES: usize = 232;
 
 /// Snow over a square metre. A column without ice holds no snow, and all its values are 0.
@@ -149,7 +150,7 @@ impl Column {
         if self.depth > 0 { self.mass() as f64 / self.depth as f64 } else { 0.0 }
     }
 
-    /// Returns the liquid water over the most that the snow can hold, at most 1.
+    /// Returns the ratio of the liquid water to the most that the snow can hold, at most 1.
     pub fn wetness(&self) -> f64 {
         if self.ice > 0 { (self.water as f64 / (laws::HELD_SHARE * self.ice as f64)).min(1.0) } else { 0.0 }
     }
@@ -163,7 +164,7 @@ impl Column {
         self.albedo as f64 / ALBEDO_UNITS
     }
 
-    /// Steps the column. The share `open` of what falls arrives on it.
+    /// Steps the column. The share `open` of the precipitation arrives on it.
     pub fn step(&mut self, f: &ColumnForcing, settling: &Settling, open: f64) -> MassExchange {
         let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };

@@ -1,14 +1,14 @@
 //! Snow that the wind carries along the ground: it erodes where the wind is strong and lands where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is used as it is, with its direction, except for components
-//! against the mean wind. Otherwise the surface's shape changes the mean wind. Slopes that face the wind speed it up
-//! and lee slopes slow it down by 0.58 of their slope (Liston and Elder 2006); crests speed it up and hollows slow it
-//! down by 2 H / L (Jackson and Hunt 1975). Behind an obstacle the wind is calmed below a line that falls by 1 in
-//! [`LEE_RUN`] from its top: the idea of Winstral and Marks (2002), with the length of drifts behind solid fences
-//! (Tabler 2003). In front of an obstacle a line rises to its top with the same slope, and the wind below is calmed by
-//! the fourth power of the depth below it: by a tenth at five heights before a wall and by three fifths at one height.
-//! The drift there ends up half as high as the wall, as is found on the windward side of fences (Tabler 1980, J.
-//! Glaciol. 26, 405).
+//! **Wind at the surface.** A wind that varies in space is used as it is, with its direction; components against the
+//! mean wind count as 0. Otherwise the surface's shape changes the mean wind by the factor 1 + 0.58 s + 2 H / L. s is
+//! the slope along the wind, positive where it faces the wind (Liston and Elder 2006). H is the height of a crest and L
+//! its half-width at half the height; in a hollow H is negative (Jackson and Hunt 1975). Behind an obstacle the wind is
+//! calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of Winstral and Marks (2002), with the
+//! length of drifts behind solid fences (Tabler 2003). In front of an obstacle of height H a line rises to its top with
+//! the same slope. At the depth d below this line the wind is multiplied by 1 - [`CALMED`] (d / H)^4: it loses a tenth
+//! at five heights before a wall and three fifths at one height. The drift there ends up half as high as the wall, as
+//! is found on the windward side of fences (Tabler 1980, J. Glaciol. 26, 405).
 //!
 //! **Transport.** Along the wind the flux approaches what the wind can carry ([`saltation_kg_m_s`]): it grows over the
 //! length [`ERODING_M`] where there is loose snow, and falls over [`LANDING_M`]. One sweep down the wind does this for
@@ -34,16 +34,16 @@ use super::{
 
 use crate::numerics::smoothstep;
 
-/// Length over which the flux of saltating snow grows to within 1/e of what the wind can carry, m.
+/// Length over which the gap between the flux of saltating snow and what the wind can carry falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 /// Length over which an excess of saltating snow falls to 1/e, m.
 const LANDING_M: f64 = 3.0;
-/// Length over which the flux of suspended snow grows to within 1/e, m: the flux is fully developed after some 500 to
+/// Length over which the same gap for suspended snow falls to 1/e, m: the flux is fully developed after some 500 to
 /// 1000 m (Takeuchi 1980).
 const LIFTING_M: f64 = 250.0;
 /// Length over which an excess of suspended snow falls to 1/e, m: it sinks half a metre at 0.4 m/s in a wind of 12 m/s.
 const SINKING_M: f64 = 15.0;
-/// Run over fall of the line below which a lee is calmed.
+/// Horizontal run per unit of fall of the line below which the wind in a lee is calmed.
 const LEE_RUN: f64 = 12.0;
 /// Largest share of the wind that a calm takes away.
 const CALMED: f64 = 0.85;
@@ -90,7 +90,7 @@ struct Sweep<'a> {
     way: &'a Way,
     /// Passage through a cell along the mean wind.
     mean: Through,
-    /// Units of mass for a flux of 1 kg/(m s) over the side of a cell.
+    /// Units of mass that a flux of 1 kg/(m s) carries across the side of a cell in the step.
     per_flux: f64,
     cell_m: f64,
     landing_kg_m3: f64,
@@ -172,8 +172,9 @@ fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f6
     1.0 + 0.58 * (share * steep).clamp(-0.5, 0.5) + (share * crest).clamp(-0.4, 0.4)
 }
 
-/// Returns a calm's line over a cell, from the lines over its two neighbours on the side of the object that casts it:
-/// the height of the line, m, lowered over the path through the cell, and the height of the object, m.
+/// Returns the line over a cell below which an object calms the wind: the height of the line, m, and the height of the
+/// object, m. The line continues those over the two neighbouring cells on the object's side, and falls over the path
+/// through the cell.
 fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
     for (share, known) in way.shares.into_iter().zip(neighbours).filter_map(|(share, known)| Some((share, known?))) {
@@ -184,7 +185,7 @@ fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, caster / sum])
 }
 
-/// Returns the factor by which a lee calms the wind at a cell, and the lee's line over the cell.
+/// Returns the factor on the wind at a cell by the lee of an object to windward, and the lee's line over the cell.
 fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, windward.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
@@ -198,8 +199,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f
     }
 }
 
-/// Returns the factor by which the calm in front of obstacles to leeward slows the wind at a cell, and its line over
-/// the cell.
+/// Returns the factor on the wind at a cell by the calm in front of an object to leeward, and the calm's line over the
+/// cell.
 fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, leeward);
     if patch.is_hole(cell) {

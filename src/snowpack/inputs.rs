@@ -1,4 +1,4 @@
-//! Inputs of a step of a snow field: what falls, the wind, and the open country around the field.
+//! Inputs of a step of a snow field: precipitation, wind, and the open country around the field.
 
 use glam::DVec2;
 

@@ -16,8 +16,9 @@ pub const NEW_ALBEDO: f64 = 0.88;
 pub const OLD_ALBEDO: f64 = 0.6;
 /// Mass of new snow that restores most of the albedo, kg/m^2 (Douville, Royer and Mahfouf 1995; Essery 2015).
 pub const RENEWING_KG_M2: f64 = 10.0;
-/// Times in which the albedo falls to 1/e in frost and in thaw, s (same sources).
+/// Time in which the albedo falls to 1/e in frost, s (same sources).
 const FROST_S: f64 = 3.6e6;
+/// Time in which the albedo falls to 1/e in thaw, s.
 const THAW_S: f64 = 3.6e5;
 /// Share of the ice's mass that snow can hold as liquid water (Bergstroem 1976).
 pub const HELD_SHARE: f64 = 0.1;
@@ -29,7 +30,7 @@ pub const DRY_THRESHOLD_M_S: f64 = 7.7;
 pub const WET_THRESHOLD_M_S: f64 = 9.9;
 /// Steepest slope on which loose snow lies, degrees.
 pub const REPOSE_DEG: f64 = 38.0;
-/// Latent heat of melting over the specific heat of water, degrees C.
+/// Ratio of the latent heat of melting to the specific heat of water, degrees C.
 const MELTING_C: f64 = 3.34e5 / 4186.0;
 
 /// Returns the density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in
@@ -46,8 +47,8 @@ pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> 
     2.777e-6 * if wet { 2.0 } else { 1.0 } * libm::exp(-0.04 * cold - 0.046 * dense)
 }
 
-/// Returns the viscosity of snow, kg s/m^2 (Anderson 1976): a load in kg/m^2 over it is the rate at which the snow
-/// below settles, 1/s.
+/// Returns the viscosity of snow, kg s/m^2 (Anderson 1976): under a load W, kg/m^2, snow settles at the rate W /
+/// viscosity, 1/s.
 pub fn viscosity(temperature_c: f64, density_kg_m3: f64) -> f64 {
     9e5 * libm::exp(0.08 * (-temperature_c).max(0.0) + 0.023 * density_kg_m3)
 }
@@ -57,9 +58,10 @@ pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
 
-/// Returns the melting rate, mm/h: without the sun, and per W/m^2 of sunlight that the snow absorbs. Temperature and
-/// sun act above 1 C, with the factors of Pellicciotti et al. (2005). Rain adds its own heat, and with it the heat of
-/// moist wind in the open, 0.24 mm per day for each degree and m/s (US Army Corps of Engineers 1956).
+/// Returns `[m0, m1]` of the melting rate, mm/h: m0 + m1 G, where G is the sunlight that the snow absorbs, W/m^2. Above
+/// 1 C, m0 = 0.05 T and m1 = 0.0094 (Pellicciotti et al. 2005); below, both are 0. Rain adds its own heat to m0, and
+/// with it the heat of moist wind in the open: 0.24 mm per day for each degree and m/s (US Army Corps of Engineers
+/// 1956).
 pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     let t = c.air.temperature_c;
     let rain = if rain_mm_h > 0.0 && t > 0.0 {
@@ -70,14 +72,14 @@ pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     if t > 1.0 { (0.05 * t + rain, 0.0094) } else { (rain, 0.0) }
 }
 
-/// Returns the rate at which liquid water refreezes, mm/h (Bergstroem 1976: 0.05 of 3.5 mm per day for each degree of
-/// frost).
+/// Returns the rate at which liquid water refreezes, mm/h: 0.05 x 3.5 / 24 for each degree below 0 C (Bergstroem 1976).
 pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
     0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
 }
 
-/// Returns the loss of snow to dry air, mm/h, by the bulk formula over a roughness z0 of 1 mm: rho (k / ln(2 / z0))^2 U
-/// (qs - q), and 0 where the air is moister than the snow's surface.
+/// Returns the sublimation rate of snow, mm/h, by the bulk formula: `E = 3600 rho (k / ln(2 / z0))^2 U (qs - q)`. rho
+/// is the air's density, kg/m^3; k = 0.4 von Karman's constant; z0 = 0.001 m the roughness length; U the wind at 2 m,
+/// m/s; q the specific humidity of the air, and qs that of saturated air over ice. It is 0 where q exceeds qs.
 pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     let t = c.air.temperature_c.min(0.0);
     let pressure = c.air.station_pressure_hpa;
@@ -96,8 +98,9 @@ pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: 0.68 rho / (u* g) u*t (u*^2 - u*t^2) (Pomeroy and
-/// Gray 1990).
+/// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: `Q = 0.68 rho u*t (u*^2 - u*t^2) / (u* g)` (Pomeroy
+/// and Gray 1990). rho is the air's density, and u* and u*t are the friction velocities of the wind and of the
+/// threshold.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
@@ -106,9 +109,9 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
-/// Returns the flux of suspended snow, kg/(m s), for winds at 10 m, where it is fully developed: Tabler's flux of all
-/// snow up to 5 m (1990, U^3.8 / 233847), less saltation. The flux of all snow is multiplied by 1 - u*t^2 / u*^2, as in
-/// saltation, so it begins at the threshold.
+/// Returns the flux of fully developed suspended snow, kg/(m s), for winds at 10 m: `Q = (1 - u*t^2 / u*^2) U^3.8 /
+/// 233847 - Qs`. U^3.8 / 233847 is the flux of all snow up to 5 m (Tabler 1990), Qs that of [`saltation_kg_m_s`]. The
+/// factor in brackets is that of saltation, so that suspension begins at the same threshold.
 pub fn suspension_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;

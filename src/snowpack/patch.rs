@@ -1,4 +1,4 @@
-//! Patch of ground: a rectangle of cells, what stands on them, and the snow on it.
+//! Patch of ground: a rectangle of cells, the objects on them, and the snow on them.
 
 use std::sync::OnceLock;
 
@@ -24,7 +24,7 @@ pub(super) struct Patch {
     pub ground_cells: usize,
     /// Height of the object on each cell that stops the wind, m; 0 without one. Empty if there are no objects.
     pub obstacles_m: Vec<f64>,
-    /// Whether each cell is sheltered from what falls; empty if none is.
+    /// Whether each cell is sheltered from precipitation; empty if none is.
     pub sheltered: Vec<bool>,
     /// Snow of each cell; empty while no snow lies on the patch.
     pub columns: Vec<Column>,

@@ -37,7 +37,7 @@ pub struct SnowAt {
     pub mass_kg_m2: f64,
     /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Liquid water in the snow over the most that it can hold, 0 to 1.
+    /// Ratio of the liquid water in the snow to the most that it can hold, 0 to 1.
     pub wetness: f64,
     /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
@@ -66,7 +66,7 @@ pub struct SnowBooks {
     pub ran_off_kg: f64,
     /// Snow that sublimated into the air.
     pub sublimated_kg: f64,
-    /// Snow that the host took away, with what lay on removed terrain and where standing boxes were set.
+    /// Snow that the host took away. It includes the snow on removed terrain and where standing boxes were set.
     pub taken_kg: f64,
     /// Snow that lies on the terrain now.
     pub lying_kg: f64,

@@ -32,7 +32,7 @@ const ASKED_M: f64 = 2.0;
 const WAY_PARTS: f64 = 12.0;
 /// Limit of these steps in wind.
 const MOST_PARTS: u32 = 24;
-/// Diameter of the flakes whose path decides what boxes keep off, mm.
+/// Diameter of the flakes whose paths decide which cells boxes shelter, mm.
 const FLAKE_MM: f64 = 4.0;
 
 /// Source of the ground.

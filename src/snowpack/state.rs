@@ -12,7 +12,7 @@ pub const COARSE_STEP_S: f64 = 600.0;
 /// Density of snow that is reported only by depth, kg/m^3: that of a seasonal pack (Sturm et al. 1995, "prairie").
 const REPORTED_KG_M3: f64 = 250.0;
 
-/// Simulated snow, and what its next step needs.
+/// Simulated snow, and the values that its next step needs.
 #[derive(Clone, Debug)]
 pub(super) struct SnowState {
     pub time_s: f64,

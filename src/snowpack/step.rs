@@ -9,7 +9,7 @@ use super::{
 };
 use crate::weather::snow_cover;
 
-/// Side of the square blocks of cells that share one evaluation of what falls on them.
+/// Side of the square blocks of cells that share one evaluation of the precipitation on them.
 const BLOCK: usize = 16;
 /// Integer units of a share of 1: sums of integers do not depend on their order.
 const SHARE_UNITS: f64 = 4_294_967_296.0;
