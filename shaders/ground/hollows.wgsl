@@ -2,15 +2,21 @@
 // place in the host's world that repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
 //!include "ground/binding.wgsl"
 
-// Grid of the rings: side of a cell, m; cells in a period; length of a time slot, s; number of layers.
+// Side of a cell of the rings' grid, m.
 const RING_CELL: f32 = 0.2;
+// Number of cells in a period of the pattern.
 const RING_CELLS: u32 = 50000u;
+// Length of a time slot, s.
 const RING_SLOT: f32 = 0.6;
+// Number of layers of rings.
 const RING_LAYERS: u32 = 4u;
-// Rings: lifetime as a share of a slot; speed, m/s; wavelength, m; largest slope.
+// Lifetime of a ring, as a share of a slot.
 const RING_LIFE: f32 = 0.6;
+// Speed of a ring, m/s.
 const RING_SPEED: f32 = 0.22;
+// Wavelength of a ring, m.
 const RING_WAVE: f32 = 0.02;
+// Largest slope of a ring.
 const RING_SLOPE: f32 = 0.35;
 
 // Returns the sines of angles in turns, within 2e-4, by an odd polynomial over a quarter turn.
@@ -87,8 +93,9 @@ fn level_of(covered: f32) -> f32 {
     return select(-y, -sign(covered - 0.5) * FARTHEST_LEVEL, share != covered);
 }
 
-// Widths of the edges of a puddle and of a film, in units of the hollows' depth.
+// Width of the edge of a puddle, in units of the hollows' depth.
 const PUDDLE_EDGE: f32 = 0.06;
+// Width of the edge of a film, in the same units.
 const FILM_EDGE: f32 = 0.5;
 
 // Returns the share of a pixel in which the hollows are deeper than `level` and thus filled. `hollow` is a result of

@@ -2,9 +2,9 @@
 
 // Refractive index of water relative to air, for visible light at 20 C (Hale & Querry 1973, rounded).
 const WATER_INDEX: f32 = 1.333;
-// Shares of diffuse light that a level water surface reflects, from above and from below (Fresnel's law integrated over
-// the hemisphere).
+// Share of diffuse light from above that a level water surface reflects (Fresnel's law integrated over the hemisphere).
 const WATER_OUTSIDE: f32 = 0.0664;
+// Share of diffuse light from below that the surface reflects.
 const WATER_INSIDE: f32 = 0.4746;
 
 // Returns the share of unpolarised light that water reflects at an angle of incidence with this cosine (Fresnel 1823,
@@ -32,8 +32,8 @@ fn seen_slope(slope: f32, tangent: f32) -> f32 {
     return slope * slope * tangent / sqrt(1.0 + t * t);
 }
 
-// Returns the projected area of a unit of rough surface in a direction with this zenith cosine: the cosine and, at
-// grazing views, the 0.4 slope of the tilted facets.
+// Returns the projected area of a unit of rough surface in a direction with this zenith cosine: sqrt(c^2 + (0.4
+// slope)^2 (1 - c^2)). The second term is that of tilted facets at grazing views.
 fn seen_area(slope: f32, cosine: f32) -> f32 {
     let c = max(cosine, 0.0);
     return sqrt(c * c + 0.16 * slope * slope * (1.0 - c * c));

@@ -72,9 +72,9 @@ fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     );
 }
 
-// Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Time in a box
-// times fall speed is linear in the fall speed where a roof's underside and its edge bound the path. So four tests,
-// interpolated, tell which twelfths of the water pass the boxes.
+// Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Where a roof's
+// underside and edge bound a drop's path, the time in the box times the fall speed is linear in the fall speed. Four
+// tests, with interpolation between them, therefore show which twelfths of the water pass the boxes.
 fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
@@ -130,7 +130,7 @@ struct Spot {
     range: f32,
     terrain: TerrainPoint,
     ground: Wetted,
-    // Cosine of the slope; 1 where the depth does not tell.
+    // Cosine of the slope; 1 where the depth gives no slope.
     level: f32,
     // Width of the pixel across the ray, m.
     side: f32,
@@ -154,7 +154,7 @@ fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: H
     }
     let lies = wetted(host, albedo_known, at, up, surface, here);
     let normal = lies.facing.normal;
-    // Where the depth does not tell, the surface counts as level.
+    // Where the depth gives no slope, the surface counts as level.
     let level = mix(1.0, dot(normal, up), lies.facing.sure);
 
     // Sides of the pixel on the ground.

@@ -244,7 +244,7 @@ impl Basins {
     }
 
     /// Returns the water level, mm, and the number of cells under water when a hollow holds `held`, which must be at
-    /// least what its parts hold.
+    /// least the water that its parts hold.
     pub fn level(&self, basin: usize, held: f64) -> (f64, f64) {
         let b = &self.list[basin];
         if b.own.is_empty() {

@@ -72,7 +72,7 @@ impl Hollows {
     /// Creates the hollows of a world with this seed.
     pub fn new(seed: u64) -> Self {
         let mut stream = Chance::seeded(seed);
-        // Of each two numbers the second is used: for seed 0, the first ones gave the wavelengths in TURNS.
+        // Every second random number is skipped: for seed 0, the skipped ones gave the wavelengths in TURNS.
         let phases = [(); WAVES].map(|()| {
             stream.unit();
             stream.unit()

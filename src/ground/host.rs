@@ -1,5 +1,5 @@
-//! Water on the host's grid: what falls on each cell, and how the water is stepped together with that of level, open
-//! ground.
+//! Water on the host's grid: the precipitation on each cell, and how the water is stepped together with that of level,
+//! open ground.
 
 use glam::{DMat3, DVec2};
 
@@ -110,8 +110,8 @@ impl HostGround {
         (self.begun, self.shown) = (false, None);
     }
 
-    /// Updates what follows from weather, areas and shelter without a state: the ice, and the water where it has no
-    /// state. Returns whether anything may have changed.
+    /// Updates the values that follow from weather, areas and shelter without a state: the ice, and the water of a grid
+    /// without a state. Returns whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Updated as often as a state is stepped: weather and areas may change at any time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());

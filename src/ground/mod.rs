@@ -6,7 +6,8 @@
 //! fixed to the host's world; its surface is level, and smooth but for the rings of drops.
 //!
 //! **Surface normals** come from the host's image of normals, else from its terrain, else from the depths around a
-//! pixel, whose error limits the mirroring: level ground mirrors fully, walls less, undersides not at all.
+//! pixel. The error of such a normal limits how strongly a surface mirrors: level ground fully, walls less, undersides
+//! not at all.
 //!
 //! **Surface classes** ([`SurfaceClass`]: what the ground is made of) come from an image, else from the terrain's
 //! cells, else from the context. A closed film and puddles belong to paved ground. The cost is one sky lookup a pixel,

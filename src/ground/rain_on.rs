@@ -1,5 +1,5 @@
-//! Precipitation on the cells of a grid: less what boxes that stand still keep off, and with rain areas; and the share
-//! of each cell under ice.
+//! Precipitation on the cells of a grid, with rain areas, less the part that boxes at rest keep off; and the share of
+//! each cell under ice.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -101,8 +101,8 @@ impl GridRain {
         self.glaze.shadow.made_for = None;
     }
 
-    /// Finds what the boxes that stand still keep off. Returns whether it may have changed. `falls_m_s` are the fall
-    /// speeds of the drops in the middle of each third of the water; `wind` is the wind, east and north, m/s.
+    /// Finds the rain that boxes at rest keep off each cell. Returns whether it may have changed. `falls_m_s` are the
+    /// fall speeds of the drops in the middle of each third of the water; `wind` is the wind, east and north, m/s.
     fn shade(
         &self,
         grid: &CellGrid<'_>,
@@ -132,7 +132,7 @@ impl GridRain {
         true
     }
 
-    /// Finds what the boxes that stand still keep off in the rain of the weather `c`.
+    /// Finds the rain that boxes at rest keep off each cell in the weather `c`.
     fn shade_rain(&mut self, grid: &CellGrid<'_>, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let mut shadow = std::mem::take(&mut self.shadow);
         let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);

@@ -33,7 +33,7 @@ pub fn wet_share(albedo: f64, entering: f64) -> f64 {
     entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * albedo)
 }
 
-/// Returns the albedo of a wet ground under light at normal incidence, including what its surface reflects.
+/// Returns the albedo of a wet ground under light at normal incidence, including the reflection at its surface.
 pub fn wet_albedo(albedo: f64) -> f64 {
     let mirrored = fresnel_water(1.0);
     mirrored + albedo * wet_share(albedo, 1.0 - mirrored)

@@ -1,4 +1,4 @@
-//! State of the water on level, open ground: its source, and what is stepped through time.
+//! State of the water on level, open ground: where it comes from, and the values that are stepped through time.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub enum GroundModel {
     Simulated,
 }
 
-/// Simulated water, and what its next step needs.
+/// Simulated water, and the values that its next step needs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroundState {

@@ -87,7 +87,8 @@ impl TerrainTextures {
         self.filled.as_ref()
     }
 
-    /// Uploads what has changed: surface and water if the grid is another one, else only the one that changed.
+    /// Uploads the parts that have changed: surface and water if the grid was replaced, else only the changed one of
+    /// the two.
     pub fn upload(
         &mut self,
         device: &Device,

@@ -2,7 +2,7 @@
 //! names for its own shaders. [`super::texture`] does the same for a grid.
 //!
 //! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
-//! m the window reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only what has changed is
+//! m the window reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only changed parts are
 //! filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
 //! which the ground changed.
 
@@ -22,8 +22,9 @@ use crate::{
     terrain::{CellRect, Terrain},
 };
 
-/// Cells along a side of a window, and the step by which it moves.
+/// Cells along a side of a window.
 const WINDOW: i32 = 512;
+/// Step by which a window moves, cells.
 const STEP: i32 = 64;
 /// Height stored for a hole, m, where no surface can lie.
 const NOWHERE_M: f32 = 1e6;
