@@ -18,7 +18,8 @@ struct Step {
     arms: array<vec4i, 6>,
     // Volumes of drops, from common to rare.
     drops: array<vec4u, 64>,
-    // Beads by class of volume: (radius + 1024 x evaporation, motion x, y, 256 x driving force over retention).
+    // Beads by class of volume: (radius + 1024 x evaporation, motion x, y, 256 times the ratio of driving force to
+    // retention).
     beads: array<vec4i, 96>,
     // Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt per
     // step (in 1/4096), and the largest amount in a cell.
@@ -45,8 +46,11 @@ const MOST_HITS: u32 = 4095u;
 const FULL_FILM: u32 = 65535u;
 // Film above which a bead glides as if it ran.
 const WET_FILM: u32 = 2048u;
+// Flag of a move: a blade has wiped the bead.
 const WIPED: u32 = 16u;
+// Flag of a move: the bead has run.
 const RAN: u32 = 32u;
+// Number of steps in which a cell collects the water of its declared state.
 const LIFE_STEPS: u32 = 2048u;
 
 // 32-bit PCG hash (Jarzynski & Olano 2020).

@@ -14,7 +14,7 @@ struct Lens {
     // 1 if row 0 of the target is the picture's top, -1 if it is the bottom.
     y_sign: f32,
     ray_dy: vec3f,
-    // Contact radius, cells, over the cube root of the volume.
+    // Ratio of a bead's contact radius, cells, to the cube root of its volume.
     radius: f32,
     eye: vec3f,
     // Size of a pixel on the glass, cells.
@@ -315,8 +315,8 @@ fn snow_over(c: vec2f) -> f32 {
     return lens.snow_depth * sum / max(weights, 1e-3) * (0.5 + grain);
 }
 
-// Light through snow: the light of the whole picture, less what is reflected (two-stream approximation, asymmetry 0.89
-// for ice spheres).
+// Light through snow: the light of the whole picture, less the part that the snow reflects (two-stream approximation,
+// asymmetry 0.89 for ice spheres).
 fn through_snow(depth: f32) -> vec3f {
     let around = 0.25 * (scene(vec2f(0.25, 0.3), 5.0) + scene(vec2f(0.75, 0.3), 5.0) + 2.0 * scene(vec2f(0.5, 0.5), 5.0));
     return around / (1.0 + 0.75 * 0.11 * depth);

@@ -20,7 +20,7 @@ fn settle(in: FullscreenVarying) -> @location(0) u32 {
     return settled(vec2i(in.position.xy));
 }
 
-// Declared state: the snow that falls in about half a minute, less what melts meanwhile.
+// Declared state: the snow that falls in about half a minute, less the snow that melts meanwhile.
 @fragment
 fn declare_snow(in: FullscreenVarying) -> @location(0) u32 {
     let cell = vec2i(in.position.xy);

@@ -16,22 +16,25 @@ const VISCOSITY: f64 = 1.0e-3;
 pub const GRAVITY: f64 = 9.81;
 /// Contact angle for the shape and volume of beads, degrees; it lies between the two below.
 pub const CONTACT_DEG: f64 = 50.0;
-/// Advancing and receding contact angle of water on glass in use, degrees. Clean glass has less than 20, waxed glass
-/// more than 80; road film lies between.
+/// Advancing contact angle of water on glass in use, degrees. Clean glass has less than 20, waxed glass more than 80;
+/// road film lies between.
 const ADVANCING_DEG: f64 = 62.0;
+/// Receding contact angle, degrees.
 const RECEDING_DEG: f64 = 32.0;
 /// Share of the retention that remains under a running bead or on wet glass.
 const MOVING_RETENTION: f64 = 0.5;
-/// Slope of the capillary number over the excess Bond number: beads run some centimetres a second on upright glass.
+/// Slope of the capillary number against the excess of the Bond number: beads run some centimetres a second on upright
+/// glass.
 const MOBILITY: f64 = 0.003;
 /// Drag coefficient of a sessile drop for the air's speed at its height. With it a drop of 10 uL on level glass starts
-/// to move near 13 m/s, the order of what Milne & Amirfazli (2009) measured.
+/// to move near 13 m/s, about as Milne & Amirfazli (2009) measured.
 const DRAG: f64 = 0.35;
-/// Number of diameter classes between the smallest and largest raindrop, and their width, mm.
+/// Number of diameter classes between the smallest and largest raindrop.
 const CLASSES: usize = 295;
+/// Width of a class, mm.
 const STEP_MM: f64 = (LARGEST_MM - SMALLEST_MM) / CLASSES as f64;
 
-/// Returns the volume of a spherical cap over the cube of its contact radius.
+/// Returns the ratio of the volume of a spherical cap to the cube of its contact radius.
 pub fn volume_factor() -> f64 {
     let (s, c) = libm::sincos(CONTACT_DEG.to_radians());
     PI * (2.0 - 3.0 * c + c * c * c) / (3.0 * s * s * s)
@@ -58,8 +61,8 @@ pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
 }
 
 /// Returns the speed of a bead that runs or lies on wet glass, m/s. The capillary number rises linearly with the Bond
-/// number above the one at which the bead stops (Le Grand, Daerr & Limat 2005). Bond numbers are forces over gamma
-/// V^(1/3).
+/// number above the one at which the bead stops (Le Grand, Daerr & Limat 2005). A Bond number here is a force divided
+/// by gamma V^(1/3), with the surface tension gamma and the volume V.
 pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     let excess = drive_n - MOVING_RETENTION * retention_n(radius_m(volume_m3));
     if excess <= 0.0 {
@@ -68,8 +71,10 @@ pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     SURFACE_TENSION / VISCOSITY * MOBILITY * excess / (SURFACE_TENSION * libm::cbrt(volume_m3))
 }
 
-/// Returns the volume that evaporates from a bead, m^3/s: diffusion from a sessile cap, pi r D c (1 - H) (0.27
-/// theta^2 + 1.30) (Hu & Larson 2002, eq. 19), with the Ranz-Marshall (1952) factor for moving air.
+/// Returns the volume that evaporates from a bead, m^3/s, by diffusion from a sessile cap: `V' = pi r D c (1 - H) (0.27
+/// theta^2 + 1.30) / rho` (Hu & Larson 2002, eq. 19), times the factor of Ranz and Marshall (1952) for moving air. D is
+/// the diffusivity of vapour in air, m^2/s; c the density of saturated vapour and rho that of water, kg/m^3; H the
+/// relative humidity; theta the contact angle, rad.
 pub fn evaporation_m3_s(radius_m: f64, relative_humidity: f64, temperature_c: f64, airflow_m_s: f64) -> f64 {
     const DIFFUSIVITY: f64 = 2.5e-5;
     const AIR_VISCOSITY: f64 = 1.5e-5;

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{error::Result, gpu::Layer, scene::Camera};
 
-/// Optical depth of snow over its depth of water, 1/m: 3 / (2 r) over the density of ice, for grains of r = 0.1 mm
-/// (Wiscombe & Warren 1980, new snow).
+/// Optical depth of snow per metre of its water: 3 / (2 r rho), with grains of the radius r = 0.1 mm (Wiscombe & Warren
+/// 1980, new snow) and rho = 0.917, the density of ice relative to water.
 const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
 
 /// Target and source images of the frame.

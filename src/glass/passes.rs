@@ -21,9 +21,9 @@ use crate::{
 };
 
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Factors by which the picture's copies are smaller, along an edge: the first against the picture, the second against
-/// the first.
+/// Factor by which the first copy of the picture is smaller along an edge.
 const SMALLER: u32 = 8;
+/// Factor by which the second copy is smaller than the first.
 const SMALLEST: u32 = 4;
 
 /// Key of a lens pipeline.

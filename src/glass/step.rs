@@ -23,12 +23,13 @@ pub const VOLUME_UNIT_M3: f64 = 1e-13;
 const DROP_CLASSES: usize = 256;
 /// Number of bead classes: four in each octave of volume.
 const BEAD_CLASSES: usize = 96;
-/// Largest contact radius of a bead over the cell's edge. A bead then stays within the neighbouring cells.
+/// Largest ratio of a bead's contact radius to the cell's edge. With it a bead stays within the neighbouring cells.
 const LARGEST: f64 = 0.95;
 /// Longest distance that a bead moves in a step, 1/65536 cell.
 const FARTHEST: f64 = 58_000.0;
-/// Units of an arm's positions and directions: 1/16 cell and 1/4096.
+/// Units per cell of an arm's positions.
 const ARM_UNIT: f64 = 16.0;
+/// Units per 1 of an arm's directions.
 const DIRECTION_UNIT: f64 = 4096.0;
 
 /// `Step` of `shaders/glass/cells.wgsl`.
@@ -52,7 +53,7 @@ pub struct StepUniform {
     /// Volumes of drops, from common to rare, units.
     pub drops: [[u32; 4]; DROP_CLASSES / 4],
     /// Beads by class of volume: (radius in 1/256 cell + 1024 x evaporation in 1/4096 unit per step), motion x, y in
-    /// 1/65536 cell per step, 256 x driving force over retention.
+    /// 1/65536 cell per step, 256 times the ratio of driving force to retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
     /// Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt
     /// per step (in 1/4096), and the largest amount in a cell.
@@ -252,9 +253,9 @@ fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     ([radius + 1024 * loss, motion.x.round() as i32, motion.y.round() as i32, ratio as i32], ratio < 140.0)
 }
 
-/// Fills in the mean volumes of the drop classes. Class 16 k + j has the drops whose rarity (the share of larger drops)
-/// lies between (16 + 15 - j) / 16 and (16 + 16 - j) / 16 of 2^-(k + 1). Large drops, which are rare and heavy,
-/// therefore have classes of their own.
+/// Fills in the mean volumes of the drop classes. The rarity R of a drop is the share of larger drops. Class 16 k + j
+/// has the drops with (31 - j) / 16 <= 2^(k + 1) R < (32 - j) / 16. Large drops, which are rare and heavy, therefore
+/// have classes of their own.
 fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
     if arrivals.number_m2_s <= 0.0 {
         return;

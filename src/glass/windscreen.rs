@@ -1,4 +1,4 @@
-//! The windscreen as a host describes it: pane, wipers, and what affects the glass.
+//! The windscreen as a host describes it: pane, wipers, air speeds, mist and heating.
 
 use glam::DVec3;
 
@@ -41,7 +41,8 @@ impl Default for WiperArm {
     }
 }
 
-/// The window that a view looks through, and what affects it. A host that drives sets it before each frame.
+/// The window that a view looks through, with its wipers, air speeds, mist and heating. A host that drives sets it
+/// before each frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windscreen {
     /// Shape and position of the glass.
