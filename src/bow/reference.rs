@@ -23,7 +23,7 @@ pub struct Rays {
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pair {
     /// Amplitudes in both polarisations of the ray nearer to the drop's edge and of the other. Their squares are the
-    /// scattered light over the light on a square whose side is the drop's radius, 1/sr.
+    /// ratio of the scattered light to the light on a square whose side is the drop's radius, 1/sr.
     pub amplitudes: [[f64; 2]; 2],
     /// Optical path of the first ray less that of the second, in radii.
     pub ahead: f64,
@@ -119,8 +119,9 @@ impl Rays {
         Some(Pair { amplitudes: [high.0, low.0], ahead: high.1 - low.1 })
     }
 
-    /// Returns the light that a drop of `size` (circumference over wavelength) scatters to an angle from the antisolar
-    /// point, over the light on a square whose side is its radius, 1/sr. `pair` is [`Rays::pair`] of that angle.
+    /// Returns the light that a drop of `size` (its circumference divided by the wavelength) scatters to an angle from
+    /// the antisolar point, relative to the light on a square whose side is its radius, 1/sr. `pair` is [`Rays::pair`]
+    /// of that angle.
     ///
     /// The bright side uses the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
     /// Nussenzveig 1974). Near the bow and on its dark side Airy's (1838) is used.

@@ -285,9 +285,9 @@ pub(crate) struct Shaft {
 /// Largest lean of a column, which is 72 degrees. Without this limit a gale would carry drizzle from a stationary cloud
 /// farther than its area is wide.
 const MOST_LEAN: f64 = 3.0;
-/// Depth below the cloud over which the rain sets in: its share of the column's height, and its smallest and largest
-/// value, m.
+/// Depth below the cloud over which the rain sets in, as a share of the column's height.
 const SOFT_SHARE: f64 = 0.25;
+/// Smallest and largest value of that depth, m.
 const SOFT_M: [f64; 2] = [50.0, 400.0];
 
 impl Shaft {

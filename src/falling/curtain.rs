@@ -22,9 +22,9 @@ pub(crate) const OWN_LENGTHS_M: [f64; 2] = [50.0, 600.0];
 /// Fall speed of the curtains of the weather's own rain, m/s, at any rate. If it followed the rate, a change of weather
 /// late in a run would shift the pattern abruptly. At 3 mm/h half of the water falls faster.
 const FALL_M_S: f64 = 6.0;
-/// Standard deviation of the rain rate over its mean at scales of 100 m to 1 km, for drizzle, steady rain and
-/// convective rain. Clustering in space dominates convective rain and is weak in stratiform rain (Jameson, Larsen and
-/// Kostinski 2015, a network of 21 disdrometers). The values are chosen so that each kind looks right.
+/// Ratio of the standard deviation of the rain rate to its mean, at scales of 100 m to 1 km, for drizzle, steady rain
+/// and convective rain. Clustering in space dominates convective rain and is weak in stratiform rain (Jameson, Larsen
+/// and Kostinski 2015, a network of 21 disdrometers). The values are chosen so that each kind looks right.
 const VARIATION: [f64; 3] = [0.08, 0.16, 0.49];
 /// Range of rates over which steady rain turns convective, mm/h. Its middle is 40 dBZ, 11.5 mm/h by Marshall and
 /// Palmer's relation, above which Steiner, Houze and Yuter (1995) count all rain as convective.
@@ -52,7 +52,7 @@ pub(crate) fn fallen_m(time_s: f64) -> f64 {
     (FALL_M_S * time_s).rem_euclid(PERIOD_M)
 }
 
-/// Standard deviation of rain and drizzle in space, over their mean; 0 if none falls.
+/// Ratio of the standard deviation of rain and drizzle in space to their mean; 0 if none falls.
 pub(crate) fn variation(falling: &Falling) -> f64 {
     let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
     if liquid <= 0.0 {

@@ -3,7 +3,8 @@
 //!
 //! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t), where s = air - g / k is the settled
 //! velocity. The rate k is that of quadratic drag at the start of the step, so that short steps converge to quadratic
-//! drag. If the step is long compared with 1 / k at rest, k is the rate at rest, which gives the right terminal speed.
+//! drag. In a step longer than 0.5 / k0, where k0 = g / (terminal speed) is the rate of a settled particle, k is k0,
+//! which gives the right terminal speed.
 
 use glam::DVec3;
 

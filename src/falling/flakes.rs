@@ -22,8 +22,8 @@
 //! older snow systems make flakes spiral. The sideways speed grows with Re by Landau's law, (1 - 116.5 / Re)^(1/2),
 //! towards [`GLIDE`] times the fall speed. This limit is a slope of 10 degrees, half of the 20 degrees that thin discs
 //! in air reach (Tinklenberg, Guala and Coletti 2023). No one has measured how fast flakes turn. A rate of
-//! [`TURN_STROUHAL`] times the fall speed over the diameter is chosen: a turn takes a few tenths of a second and is
-//! some centimetres wide.
+//! [`TURN_STROUHAL`] v / D is chosen, with the fall speed v and the diameter D: a turn takes a few tenths of a second
+//! and is some centimetres wide.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 

@@ -1,4 +1,4 @@
-//! Falling ice, hail and pellets: number of stones by size, fall speed, extinction, and what lands on surfaces.
+//! Falling ice, hail and pellets: number of stones by size, fall speed, extinction, and flux onto surfaces.
 //!
 //! Pellets are frozen raindrops. Their sizes are Marshall and Palmer's (1948) for the same water, enlarged by freezing,
 //! from 0.5 to 5 mm. They fall like spheres (Heymsfield and Westbrook 2010). Small hail counts as pellets. Hail has an

@@ -1,5 +1,5 @@
-//! Drop size distribution of rain and drizzle, and what follows from it: water in the air, extinction, flux onto
-//! surfaces, and random diameters for drops that are drawn.
+//! Drop size distribution of rain and drizzle, and the quantities that follow from it: water in the air, extinction,
+//! flux onto surfaces, and random diameters for drops that are drawn.
 //!
 //! Each kind of rain has an exponential distribution, N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the
 //! published one. N0 is set so that the drops make the given rate at Gunn and Kinzer's fall speeds: with a published N0
@@ -41,7 +41,7 @@ struct SizeMode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
     parts: [SizeMode; PARTS],
-    /// Fall speeds over those at sea level.
+    /// Ratio of fall speeds to those at sea level.
     factor: f64,
 }
 
