@@ -5,11 +5,13 @@ use super::model::Weather;
 
 /// Rayleigh scattering of air at 550 nm, 15 C and 1013.25 hPa, 1/m (Bodhaine et al. 1999).
 pub const RAYLEIGH_550_PER_M: f64 = 11.49e-6;
-/// Temperature and lapse rate of the standard atmosphere at sea level, K and K/m (ISO 2533).
+/// Temperature of the standard atmosphere at sea level, K (ISO 2533).
 const STANDARD_TEMPERATURE_K: f64 = 288.15;
+/// Lapse rate of the standard atmosphere, K/m.
 const STANDARD_LAPSE_K_PER_M: f64 = 0.0065;
+/// Pressure of the standard atmosphere at sea level, hPa.
 const STANDARD_PRESSURE_HPA: f64 = 1013.25;
-/// Gas constant of dry air over gravity, m/K: scale height of an isothermal atmosphere per kelvin.
+/// Gas constant of dry air divided by gravity, m/K: scale height of an isothermal atmosphere per kelvin.
 const SCALE_HEIGHT_M_PER_K: f64 = 287.053 / 9.80665;
 
 /// Returns the pressure at the station from QNH, hPa: p = QNH (1 - 0.0065 h / 288.15)^5.25588, the definition of QNH

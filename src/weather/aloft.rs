@@ -2,13 +2,13 @@
 //!
 //! # Model
 //! * Up to 100 m: the logarithmic law ([`WindProfile::speed_at_height_m_s`]).
-//! * High above the ground: the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) gives it from
-//!   the friction velocity u* and the roughness length z0: along the wind at the ground u*/k (ln(u* / (f z0)) - A),
-//!   across it u*/k B, to its right on the northern hemisphere; k = 0.4, A = 1.8 and B = 4.5 (Troen and Petersen 1989,
-//!   European Wind Atlas, section 8.1).
-//! * In between: the difference to the geostrophic wind turns and decays as in Ekman's (1905) spiral for a constant
-//!   eddy viscosity, by exp(-(1 + i) (z - 100 m) sqrt(f / (2 K))), where K = k u* 100 m is the eddy viscosity at the
-//!   top of the surface layer.
+//! * High above the ground: the geostrophic wind. The geostrophic drag law (Rossby and Montgomery 1935) gives its
+//!   component along the wind at the ground, `(u* / k) (ln(u* / (f z0)) - A)`, and the one across it, `(u* / k) B`, to
+//!   the right on the northern hemisphere. u* is the friction velocity and z0 the roughness length; k = 0.4, A = 1.8
+//!   and B = 4.5 (Troen and Petersen 1989, European Wind Atlas, section 8.1).
+//! * In between: the difference to the geostrophic wind turns and decays with the height z as in Ekman's (1905) spiral
+//!   for a constant eddy viscosity K: by `exp(-(1 + i) (z - 100 m) sqrt(f / (2 K)))`. K = k u* 100 m is the eddy
+//!   viscosity at the top of the surface layer.
 //!
 //! f is that of 43 degrees north, because conditions have no place. Above the friction layer the wind is the same at
 //! all heights.
@@ -19,6 +19,7 @@ use super::conditions::WindProfile;
 const SURFACE_LAYER_M: f64 = 100.0;
 /// Coriolis parameter, 1/s.
 const CORIOLIS_PER_S: f64 = 1e-4;
+/// Von Karman's constant.
 const KARMAN: f64 = 0.4;
 /// Constants A and B of the geostrophic drag law.
 const DRAG: [f64; 2] = [1.8, 4.5];

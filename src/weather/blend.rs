@@ -23,8 +23,8 @@ fn share(qa: f64, qb: f64, t: f64) -> f64 {
     if a + b > 0.0 { b / (a + b) } else { t }
 }
 
-/// Lower limit of an extinction in [`geometric_weight`], 1/m: clearer than air at any height that has weather. No
-/// factor leads from exactly 0 to another value.
+/// Lower limit of an extinction in [`geometric_weight`], 1/m: clearer than air at any height that has weather. A
+/// geometric mean needs values above 0.
 const CLEAREST_PER_M: f64 = 1e-9;
 
 /// Returns the weight for which mix(a, b, w) = a^(1-t) b^t, both positive. Visibility then changes by equal factors in
@@ -77,8 +77,9 @@ impl Conditions {
     }
 }
 
-/// Returns the share of clear sky between two weathers, where independently placed layers would leave `independent`
-/// clear. It is less than that by the interpolated difference at the ends, and lies between the values at the ends.
+/// Returns the share of clear sky at `t` between two weathers. It is `independent`, the share that independently placed
+/// layers leave clear, less the interpolated difference of the two at the ends; and it is clamped to the values at the
+/// ends.
 fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];

@@ -14,8 +14,8 @@
 use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};
 
-/// Share of the optical depth by which a layer hides what is behind it from the eye. Light that is scattered straight
-/// on does not hide it.
+/// Share of the optical depth that hides objects behind a layer from the eye. The rest is light scattered straight on,
+/// which hides nothing.
 const HIDING: f64 = 0.25;
 /// Share of the sky with which the default counts in a mean over layers: [`over_layers`].
 const LEAST_COVER: f64 = 1e-6;
@@ -171,7 +171,7 @@ impl Conditions {
         let height_m = altitude_m - self.air.station_altitude_m;
         let above = FromAbove::new(self.layers_above(altitude_m), mu);
         let below = FromBelow::new(self.cloud_slabs().map(|s| s.below(height_m)), ground_albedo, mu);
-        // Light is reflected back and forth between what is above and what is below.
+        // Light is reflected back and forth between the clouds above and the clouds and ground below.
         let bounce = 1.0 / (1.0 - above.back * below.even).max(1e-6);
         let diffuse = (above.diffuse + above.back * below.beam * (above.slanted + above.beam_through)) * bounce;
         let sky = above.sky * bounce;

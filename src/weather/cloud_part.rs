@@ -4,7 +4,7 @@
 //! The share of its cover and of its optical depth that a layer has above a height depends on its shape. The laws are
 //! fitted to means over the drawn clouds (`clouds::field`), for all kinds between sheets, cells, cumulus, towers and
 //! fibres. A slant beam meets more of broken clouds than a vertical one, because it also meets their sides
-//! ([`SlabPart::meet`]); part of what it meets is thin.
+//! ([`SlabPart::meet`]); part of the cloud that it meets is thin.
 //!
 //! # Error
 //! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error against the drawn clouds, for each
@@ -115,8 +115,8 @@ impl SlabPart<'_> {
     /// Returns the share of a beam that meets its clouds; `mu` is the sine of the beam's elevation.
     ///
     /// For gaps between randomly placed clouds, (1 - cover) is raised to a power that grows with the tangent of the
-    /// zenith angle times the ratio of the clouds' height to their spacing (Kauth and Penquite 1967). Vertically, less
-    /// is covered than the sky appears to be, because sides are part of what is seen.
+    /// zenith angle times the ratio of the clouds' height to their spacing (Kauth and Penquite 1967). The vertically
+    /// covered share is less than the cover that an observer sees, because the observer also sees the sides of clouds.
     fn hit(&self, mu: f64) -> f64 {
         let s = self.slab;
         if self.cover >= 1.0 {

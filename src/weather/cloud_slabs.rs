@@ -54,8 +54,9 @@ fn substance(kind: CloudKind) -> Substance {
 /// Factor from its kind's thickness up to which a layer's thickness still changes the width of its clouds.
 const WIDER: f64 = 3.0;
 
-/// Lowest bases of middle and of high clouds, m (WMO levels of temperate latitudes).
+/// Lowest base of middle clouds, m (WMO levels of temperate latitudes).
 const MIDDLE_FROM_M: f64 = 2000.0;
+/// Lowest base of high clouds, m.
 const HIGH_FROM_M: f64 = 6000.0;
 
 /// Chooses the kind of a layer of unknown kind: by level, by cover (more than half is a sheet), and by its

@@ -32,8 +32,8 @@ pub struct Conditions {
     /// the layers in the order of the slots, even while a change moves one layer past another. See
     /// [`Conditions::cloud_slabs`].
     pub clouds: [CloudSlab; MAX_CLOUD_LAYERS],
-    /// Upper limit of the share of the sky that no layer hides. While one overcast replaces another, it is below what
-    /// independently placed layers would leave clear. 1 where the layers alone decide.
+    /// Upper limit of the share of the sky that no layer hides. While one overcast replaces another, it is below the
+    /// share that independently placed layers would leave clear. 1 where the layers alone decide.
     #[serde(default = "whole")]
     pub clear_sky: f64,
     /// The host's own cloud light, in place of that of the slabs.
@@ -61,8 +61,8 @@ pub struct Air {
     pub station_pressure_hpa: f64,
     /// Height of the station above mean sea level, m.
     pub station_altitude_m: f64,
-    /// Number density of air at sea level over that at 15 C and 1013.25 hPa. It multiplies a planet's sea-level
-    /// Rayleigh coefficient.
+    /// Ratio of the number density of air at sea level to that at 15 C and 1013.25 hPa. It multiplies a planet's
+    /// sea-level Rayleigh coefficient.
     pub rayleigh_density_ratio: f64,
     /// Scale height of the air, m.
     pub rayleigh_scale_height_m: f64,
@@ -371,8 +371,8 @@ impl Conditions {
         self.clear_sky.min(clear_between(&self.clouds))
     }
 
-    /// Returns the share of the sky that layers hide over the share that they would hide if placed independently; at
-    /// least 1.
+    /// Returns the ratio of the share of the sky that layers hide to the share that they would hide if placed
+    /// independently; at least 1.
     pub(super) fn gathered(&self) -> f64 {
         let hidden = 1.0 - clear_between(&self.clouds);
         if hidden > 0.0 { (self.cloud_cover() / hidden).max(1.0) } else { 1.0 }

@@ -68,10 +68,10 @@ pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
 
 /// Returns the extinction of snow, 1/m, at a melted rate.
 ///
-/// Sizes by Gunn and Marshall (1958), N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter. Flakes have a
-/// density of 0.17 g/cm^3 over their diameter in mm (Holroyd 1971), so D^2 = Dm^3 / 0.17, and Q = 2 on 0.6 of the disc
-/// (area ratio of aggregates). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. At 1 mm/h it gives a visibility
-/// of 1.0 km, the bound of the classes by visibility (light above 1 km).
+/// Sizes by Gunn and Marshall (1958), N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter. Flakes of the
+/// diameter D, mm, have the density 0.17 / D g/cm^3 (Holroyd 1971), so D^2 = Dm^3 / 0.17 with the melted diameter Dm,
+/// and Q = 2 on 0.6 of the disc (area ratio of aggregates). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. At 1
+/// mm/h it gives a visibility of 1.0 km, the bound of the classes by visibility (light above 1 km).
 pub fn snow_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 { 0.0 } else { SNOW_AT_1_MM_H * libm::pow(rate_mm_h, SNOW_EXPONENT) }
 }

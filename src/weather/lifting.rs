@@ -42,9 +42,9 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
 
 /// Radius of blown snow particles, m: 60 to 100 um (Pomeroy and Male 1992).
 const BLOWN_RADIUS_M: f64 = 7e-5;
-/// Depths of low drifting snow and of high blowing snow, m, and by how much the wind rises above the threshold between
-/// the two, m/s.
+/// Depths of low drifting snow and of high blowing snow, m.
 const BLOWN_TOP_M: [f64; 2] = [1.5, 50.0];
+/// Excess of the wind over the threshold at which the layer has risen from the first depth to the second, m/s.
 const BLOWN_RISE_M_S: f64 = 5.0;
 
 /// Returns the friction velocity over drifting snow, m/s, for a wind at 10 m (Pomeroy and Gray 1990).

@@ -44,9 +44,9 @@ fn properties(kind: AerosolKind) -> Properties {
     }
 }
 
-/// Humidity for which the table of properties holds, and humidity above which particles do not grow further (they
-/// become mist).
+/// Humidity for which the table of properties holds.
 const TABLE_HUMIDITY: f64 = 0.8;
+/// Humidity above which particles do not grow further: they become mist.
 const MAX_HUMIDITY: f64 = 0.97;
 
 /// Returns the extinction at a humidity relative to that at 0.8: ((1 - RH) / 0.2)^-gamma (Kasten 1969, Haenel 1976),
@@ -155,8 +155,9 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
 /// depth.
 const SKY_DEPTH: f64 = 1.0;
 
-/// Returns the depth that the sky gets of particles `depth` deep: all up to [`SKY_DEPTH`], then less and less, as 1 /
-/// depth. The air that the sky draws below thick dust would otherwise be lit as if there were none above it.
+/// Returns the optical depth of particles in the sky's tables if their total is `depth`: all of it up to [`SKY_DEPTH`];
+/// beyond, less and less, as 1 / depth. With more, the sky's tables would light the air below thick dust as if there
+/// were no dust above it.
 fn sky_depth(depth: f64) -> f64 {
     if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
 }

@@ -10,6 +10,7 @@ const GRASS_ROUGHNESS_M: f64 = 0.03;
 /// Number of standard deviations by which the highest 3-second gust in 10 minutes exceeds the mean (Harper, Kepert and
 /// Ginger 2010).
 const GUST_PEAK_FACTOR: f64 = 2.3;
+/// Acceleration of gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
 
 /// Roughness length of the sea, m, under a wind at 10 m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow

@@ -1,4 +1,4 @@
-//! Values assumed for what a report does not give.
+//! Values assumed for fields that a report leaves out.
 
 use super::parse::Parsed;
 use super::phenomena::{Descriptor, Intensity, Phenomenon, WeatherGroup};

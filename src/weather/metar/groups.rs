@@ -7,9 +7,11 @@ use super::super::kinds::CloudKind;
 use super::amounts::Amount;
 use super::report::RunwayVisualRange;
 
-/// Metres in a foot and in a statute mile; metres a second in a knot.
+/// Metres in a foot.
 const FOOT_M: f64 = 0.3048;
+/// Metres in a statute mile.
 const MILE_M: f64 = 1609.344;
+/// Metres a second in a knot.
 const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// Hectopascals in an inch of mercury (ICAO, at 0 C).
 const INCH_HG_HPA: f64 = 33.8639;
