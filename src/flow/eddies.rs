@@ -1,10 +1,15 @@
 //! Mixing by eddies smaller than a cell.
 //!
-//! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8): with a_ij = du_j/dx_i and b_ij = sum over m of h_m^2 a_mi
-//! a_mj, the eddy viscosity is nu = c sqrt(B / (a_ij a_ij)). B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2,
-//! and c = 2.5 C_S^2 = 0.07 with C_S = 0.17 of isotropic turbulence. The viscosity is zero in parallel shear and at
-//! walls, and needs neither averages nor the distance from a wall. [`GroundMixing`] maintains the shear over the
-//! ground.
+//! Vreman's model (2004, Phys. Fluids 16, 3670, eqs. 5 to 8) has the eddy viscosity
+//!
+//! ```text
+//! nu = c sqrt(B / (a_ij a_ij)),  a_ij = du_j / dx_i,
+//! B = b11 b22 - b12^2 + b11 b33 - b13^2 + b22 b33 - b23^2,  b_ij = sum over m of h_m^2 a_mi a_mj,
+//! ```
+//!
+//! where h_m is the size of a cell along the axis m, and c = 2.5 C_S^2 = 0.07 with C_S = 0.17 of isotropic turbulence.
+//! The viscosity is zero in parallel shear and at walls, and needs neither averages nor the distance from a wall.
+//! [`GroundMixing`] maintains the shear over the ground.
 
 use super::lattice::{Faces, Lattice};
 

@@ -119,8 +119,8 @@ impl FlowField {
         self.walls.find(&self.lattice, &self.openings, self.settings.roughness_m, floor);
     }
 
-    /// Returns the largest divergence of a cell with air, times the shortest cell size over the largest speed; 0 in
-    /// still air.
+    /// Returns the largest divergence of a cell with air, times the shortest cell size, divided by the largest speed; 0
+    /// in still air.
     pub fn largest_divergence(&mut self) -> f64 {
         let v = std::mem::take(&mut self.velocity);
         self.find_divergence(&v);
@@ -131,7 +131,7 @@ impl FlowField {
         if speed > 0.0 { f64::from(most * self.lattice.shortest_m()) / speed } else { 0.0 }
     }
 
-    /// Returns the kinetic energy of all air over its density, m5/s2 (m4/s2 per metre along a flat axis).
+    /// Returns the kinetic energy of all air divided by its density, m5/s2 (m4/s2 per metre along a flat axis).
     pub fn kinetic_energy(&self) -> f64 {
         let mut sum = 0.0;
         for c in self.lattice.axes() {

@@ -168,7 +168,7 @@ impl FlowField {
         }
     }
 
-    /// Returns the largest change of a velocity in the last step over its length, m/s2.
+    /// Returns the largest change of a velocity in the last step, divided by the step's length, m/s2.
     pub fn last_change_m_s2(&self) -> f64 {
         if self.last_dt > 0.0 { f64::from(self.last_change_m_s) / self.last_dt } else { 0.0 }
     }

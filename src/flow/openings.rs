@@ -1,5 +1,5 @@
-//! Open shares of faces, and what follows from them: the coefficients of the pressure equation, separate bodies of air,
-//! and the faces inside obstacles that need a velocity because paths of air lead there.
+//! Open shares of faces, and the data that follow from them: the coefficients of the pressure equation, separate bodies
+//! of air, and the faces inside obstacles that need a velocity because paths of air lead there.
 
 use super::{
     lattice::{Faces, Lattice},

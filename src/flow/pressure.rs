@@ -30,8 +30,7 @@ pub enum PressureMethod {
 }
 
 impl PressureMethod {
-    /// Method with 5 iterations whose relaxation factor falls from 1.7 to 1.1, as in the snow simulator among the
-    /// sources.
+    /// Method with 5 iterations whose relaxation factor falls from 1.7 to 1.1, as in an older snow simulator.
     pub const FIVE_SWEEPS: Self = Self::Sor { relaxation: [1.7, 1.1], max_iterations: 5 };
 
     /// Returns the relaxation factor that converges fastest on a grid of `n` cells along its longest axis: 2 / (1 +

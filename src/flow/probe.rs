@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{FlowField, FlowObstacles, FlowSettings, Scheme, Side};
 use crate::error::{Error, Result, Status, check_range};
 
-/// Limit of change at which the cavity's flow counts as steady: largest change of a velocity while the lid moves by the
+/// Limit below which the cavity's flow counts as steady: the largest change of a velocity while the lid moves by the
 /// cavity's width, as a share of the lid's speed.
 const REST: f64 = 2e-4;
 /// Largest number of such times before giving up.

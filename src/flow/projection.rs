@@ -60,7 +60,7 @@ impl FlowField {
         }
     }
 
-    /// Finds the air that leaves each cell through its open faces, over the cell's volume.
+    /// Finds the divergence of each cell: the air that leaves through its open faces, divided by the cell's volume.
     pub(super) fn find_divergence(&mut self, v: &Faces) {
         let (lattice, open) = (&self.lattice, &self.openings.open);
         let out = &mut self.divergence;
@@ -81,8 +81,8 @@ impl FlowField {
         }
     }
 
-    /// Returns the force of the air's pressure on the obstacles between two places, over the air's density, m4/s2, as
-    /// the mean over the last step.
+    /// Returns the force of the air's pressure on the obstacles between two places, divided by the air's density,
+    /// m4/s2; the mean over the last step.
     ///
     /// The pressure of a step is the sum of the potentials of its projections. In the reflection scheme it is twice the
     /// first plus the second.

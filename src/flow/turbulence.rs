@@ -19,8 +19,8 @@ const WAVES: usize = 32;
 const FEWEST_CELLS: f64 = 4.0;
 /// Integral of x^4 / (1 + x^2)^(17/6) from 0 to infinity: half the beta function of 5/2 and 1/3.
 const WHOLE: f64 = 1.0325;
-/// Standard deviations of the wind near the ground along the mean wind, across it and upward, over the friction
-/// velocity, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+/// Ratios to the friction velocity of the standard deviations of the wind near the ground, along the mean wind, across
+/// it and upward, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
 /// Integral length along the wind, m, at 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
 const INTEGRAL_M: f64 = 70.0;

@@ -26,7 +26,8 @@ impl Wind {
     }
 
     /// Returns the wind at 10 m at time `t`, s, which must not be before the time from which `timeline` is known.
-    /// `kept` is the drift at the end of what the timeline has forgotten ([`Drift::ZERO`] as long as that is nothing).
+    /// `kept` is the drift at the end of the last change that the timeline has forgotten ([`Drift::ZERO`] as long as it
+    /// has forgotten none).
     pub fn blowing(&self, timeline: &Timeline, kept: Drift, t: f64) -> Blowing {
         Walk::new(&self.gusts, timeline, kept, t).blowing(t)
     }
@@ -85,7 +86,7 @@ fn stir_of(wind: &WindProfile) -> Stir {
 }
 
 impl<'a> Walk<'a> {
-    /// Starts at `kept`, the drift at the end of what the timeline has forgotten, to go towards `t`.
+    /// Starts at `kept`, the drift at the end of the last change that the timeline has forgotten, to go towards `t`.
     pub fn new(gusts: &'a Gusts, timeline: &'a Timeline, kept: Drift, t: f64) -> Self {
         let (Conditions { wind, .. }, changes) = timeline.parts();
         let mut walk = Self { gusts, base: *wind, changes, at: kept, stir: stir_of(wind) };

@@ -142,7 +142,7 @@ impl Gusts {
         Self { along, across, wander }
     }
 
-    /// Returns what the turbulence adds over the first `y_m` of a stretch.
+    /// Returns the velocities and displacements that the turbulence adds over the first `y_m` of a stretch.
     pub fn over(&self, stretch: &GustStretch, y_m: f64) -> Stirred {
         let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
         // In standard deviations: the value now, its integral, and the integral of it times the path.

@@ -16,8 +16,8 @@ use crate::{
 /// Drift of one layer since time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LayerDrift {
-    /// Integral of the wind (east, north) over the distance from cloud to cloud, since time 0, in the pattern before it
-    /// is stretched ([`stretch`]).
+    /// Integral since time 0 of the wind (east, north) divided by the distance from cloud to cloud, in the pattern
+    /// before it is stretched ([`stretch`]).
     pub way: DVec2,
     /// Number of lives of its clouds since time 0.
     pub lives: f64,
@@ -97,8 +97,8 @@ impl LayerDrifts {
         Self { time_s: to_s, slots: std::array::from_fn(one) }
     }
 
-    /// Returns the drifts at `t`, at which the timeline must be known. `self` holds the drifts at the end of what the
-    /// timeline has forgotten.
+    /// Returns the drifts at `t`, at which the timeline must be known. `self` holds the drifts at the end of the last
+    /// change that the timeline has forgotten.
     pub fn until(self, timeline: &Timeline, t: f64) -> Self {
         let (mut base, mut changes) = timeline.parts();
         let mut at = self;
