@@ -17,7 +17,7 @@ impl Chance {
         Self(seed)
     }
 
-    /// Creates the stream of a seed for one use: each `what` gives another stream of the same seed.
+    /// Creates one stream of a seed: each number `what`, which names the use, gives another stream.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
         let first = one.bits();

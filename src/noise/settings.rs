@@ -8,6 +8,7 @@ pub(super) const MOST_TEXELS: u64 = 1 << 27;
 const LONGEST: [u32; 2] = [8192, 1024];
 /// Shortest edge, texels.
 const SHORTEST: u32 = 8;
+/// Largest number of octaves.
 const MOST_OCTAVES: u32 = 16;
 
 /// Kind of noise in a texture.
