@@ -90,8 +90,8 @@ struct FrameUniform {
     flakes: vec2f,
     // Factor, a power of two, that scales light so that white is about 1 (frame/even.wgsl).
     even_scale: f32,
-    // Two tables over the angle of what bows add to the phase function of drops, 1/sr for each channel
-    // (between/bow.wgsl).
+    // Two tables of the difference that bows make to the phase function of drops, 1/sr for each channel, by the angle
+    // from the antisolar point (between/bow.wgsl).
     bows: array<vec4f, 320>,
 }
 

@@ -12,7 +12,7 @@
 override TONE: bool = true;
 override PARTICLES: bool = false;
 
-// Whether clouds cast shadows on what the host drew.
+// Whether clouds cast shadows on the host's surfaces.
 override CLOUD_SHADOWS: bool = false;
 
 // Factor for the light on what the host drew, in the shadows of clouds: the light at the position, divided by the mean

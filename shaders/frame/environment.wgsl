@@ -26,7 +26,8 @@ struct EnvironmentTexel {
 
 @fragment
 fn environment(in: FullscreenVarying) -> EnvironmentTexel {
-    // Draws everything, even what the plan leaves out of the picture. Drops near the eye are part of the fog here.
+    // Draws every part, even those that the plan leaves out of the picture. Drops near the eye are part of the fog
+    // here.
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let at = in.uv * 2.0 - 1.0;
     let direction = normalize(face.forward + at.x * face.right + at.y * face.down);

@@ -19,8 +19,9 @@ struct FilterFace {
 }
 
 const PI: f32 = 3.14159265;
-// Edge of a face of level 0 in texels, and the coarsest level of the source.
+// Edge of a face of level 0, texels.
 const FACE: f32 = 64.0;
+// Coarsest level of the source.
 const COARSEST: f32 = 4.0;
 
 @group(0) @binding(0) var<uniform> face: FilterFace;

@@ -9,6 +9,7 @@
 // Limits of the error: MOST_ERROR (light + LEAST_LIGHT) for light, where LEAST_LIGHT is 1/200 of white; MOST_ERROR for
 // transmittance.
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
+// Limit of the error, as a share of the light plus LEAST_LIGHT; and of the transmittance.
 const MOST_ERROR: f32 = 1e-3;
 
 // Findings about four texels in a row.

@@ -1,4 +1,4 @@
-// Wind over what the host drew, for developers (docs/diagnostics.md): its speed in false colours, and arrows along it.
+// Wind over the host's surfaces, for developers (docs/diagnostics.md): its speed in false colours, and arrows along it.
 //!include "frame/false_colors.wgsl"
 //!include "surroundings/wind.wgsl"
 

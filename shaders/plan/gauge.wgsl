@@ -1,4 +1,4 @@
-// Measures what each part of the weather contributes to this picture. For each pixel of a coarse grid it composes the
+// Measures how much each part of the weather changes this picture. For each pixel of a coarse grid it composes the
 // picture with everything, and again without one part after another. Output, as packed halves, in this order:
 // - relative changes of luminance without air, without fog, without clear sky, and with a veil in place of drops;
 // - kind of the pixel: 1 where the host drew something, -1 where it drew nothing, 0 under the mask;
@@ -24,14 +24,15 @@ fn halves(a: f32, b: f32) -> u32 {
     return ((bitcast<u32>(a) + 0x8000u) >> 16u) | ((bitcast<u32>(b) + 0x8000u) & 0xffff0000u);
 }
 
-// Compositions in addition to those of frame.compositions: with a deck in place of clouds, in a cloud (its mean light),
-// and in a gap between clouds.
+// Compositions in addition to those of frame.compositions. With a deck in place of clouds:
 const WITH_DECK: u32 = 5u;
+// In a cloud, with its mean light:
 const IN_CLOUD: u32 = 6u;
+// In a gap between clouds:
 const IN_GAP: u32 = 7u;
 
 // Sky objects in a composition. Clouds are at most a deck, so that the contributions of other parts do not depend on
-// what is drawn now.
+// the rung at which clouds are drawn now.
 fn hung_for(k: u32, ray: ViewRay, seen: Hung) -> Hung {
     var hung = hung_bare();
     hung.behind = seen.behind;
