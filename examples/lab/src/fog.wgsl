@@ -1,5 +1,5 @@
-// Fog put into a picture: at every pixel, or by way of cells over (picture, distance).
-// The fog comes first, as its own binding has it.
+// Draws fog into a picture: at every pixel, or by a look-up in cells over (picture, distance). In the uniform block the
+// fog comes before the depth, as in Welkin's own binding.
 struct Both { fog: FogUniform, depth: DepthUniform }
 @group(0) @binding(0) var<uniform> u: Both;
 @group(0) @binding(1) var colour: texture_2d<f32>;

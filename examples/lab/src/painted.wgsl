@@ -1,20 +1,21 @@
-// Clouds painted on a plane, a shell or a dome: noise, a cutoff, and an opacity that grows exponentially with what is
-// over it.
+// Clouds painted on a plane, a shell or a dome. Noise above a cutoff is cloud; its opacity grows exponentially with the
+// excess of the noise over the cutoff.
 struct Painted {
-    // The camera's right, up and ahead (east, north, up); of the first two how far the picture reaches at distance 1.
+    // Unit vectors to the camera's right, up and ahead (east, north, up). w of `right` and `up`: half width and half
+    // height of the picture at distance 1.
     right: vec4f,
     up: vec4f,
     ahead: vec4f,
-    // Towards the sun; the layer's height over the eye, m.
+    // Unit vector towards the sun; w: height of the layer above the eye, m.
     to_sun: vec4f,
-    // On what faces the sun, lux; side of the texture, m.
+    // Illuminance by the sun on a surface facing it, lux; w: side of the texture, m.
     sun: vec4f,
-    // On level ground from the sky, lux; radius of the planet at the eye, m.
+    // Illuminance by the sky on level ground, lux; w: radius of the planet at the eye, m.
     sky: vec4f,
-    // Cutoff, optical depth of noise over it by 1 as it is drawn, the same as the layer has it, share of the second
-    // texture.
+    // x: cutoff. y: optical depth per excess of the noise, as painted. z: the same as in Welkin's own layer. w: share
+    // of the second texture.
     cloud: vec4f,
-    // Where the textures are at this moment.
+    // Offsets of the two textures at this moment, in sides of a texture.
     offset: vec4f,
 }
 
@@ -41,25 +42,28 @@ override CROSS_FADES: bool = false;
 override CURLS: bool = false;
 
 const PI: f32 = 3.1415927;
-// Of a white cloud.
+// Albedo of a white cloud.
 const WHITE: f32 = 0.8;
-// Steps of the way to the sun, and its length, in sides of the texture.
+// Number of steps of the path to the sun (`TRACED_STEPS`), and its length, in sides of the texture (`TRACED_WAY`).
 const TRACED_STEPS: u32 = 8u;
 const TRACED_WAY: f32 = 0.06;
-// How much of the noise on that way darkens.
+// Share of the noise on that path that darkens.
 const TRACED_SHARE: f32 = 0.3;
-// How far the slope of noise turns a normal, and over which distance it is told, in sides of the texture.
+// Strength with which the slope of the noise tilts the normal (`BUMPS`), and distance over which the slope is measured,
+// in sides of the texture (`BUMP_STEP`).
 const BUMPS: f32 = 0.1;
 const BUMP_STEP: f32 = 0.004;
 // Multiplier of the light in the average of two textures.
 const LIGHT_MULTIPLIER: f32 = 2.0;
-// How far swirls carry, in sides of the texture, and over which distance they are told.
+// Displacement by swirls (`CURLED`), and distance over which the slope of their noise is measured (`CURL_STEP`), both
+// in sides of the texture.
 const CURLED: f32 = 0.02;
 const CURL_STEP: f32 = 0.01;
 // 1 - g of a slab, g = 0.85.
 const TURNING: f32 = 0.15;
 
-// What an edge at the horizon is faded by: opaque from 14 degrees on, in the steps of the source's dome.
+// Returns the factor with which clouds fade towards the horizon: 1 from 14 degrees on, below in the steps of the
+// source's dome.
 fn horizon_fade(sine: f32) -> f32 {
     let degrees = asin(clamp(abs(sine), 0.0, 1.0)) * 180.0 / PI;
     if degrees < 4.0 {
@@ -71,7 +75,7 @@ fn horizon_fade(sine: f32) -> f32 {
     return min(0.7 + 0.06 * (degrees - 9.0), 1.0);
 }
 
-// Distance at which a ray meets the layer, m, or below 0.
+// Returns the distance at which a ray meets the layer, m; below 0 if it does not.
 fn met(d: vec3f) -> f32 {
     let height = u.to_sun.w;
     if FORM == PLANE {
@@ -84,7 +88,7 @@ fn met(d: vec3f) -> f32 {
     if root < 0.0 {
         return -1.0;
     }
-    // From below the far crossing, from above the near one.
+    // From below, the far crossing counts; from above, the near one.
     return select(-c / max(sqrt(root) - b, 1.0), c / max(sqrt(root) + b, 1.0), height > 0.0);
 }
 
@@ -94,7 +98,7 @@ fn noise_at(place: vec3f, dx: vec3f, dy: vec3f) -> f32 {
     }
     var at = place.xy;
     if CURLS {
-        // Along the level lines of another noise: nothing is pressed together.
+        // Moves along the contour lines of another noise, which does not compress the pattern.
         let h = vec2f(CURL_STEP, 0.0);
         let gx = textureSampleLevel(second_noise, repeating, at + h.xy, 3.0).r - textureSampleLevel(second_noise, repeating, at - h.xy, 3.0).r;
         let gy = textureSampleLevel(second_noise, repeating, at + h.yx, 3.0).r - textureSampleLevel(second_noise, repeating, at - h.yx, 3.0).r;
@@ -111,8 +115,8 @@ fn thickness(noise: f32) -> f32 {
     return max(noise - u.cloud.x, 0.0);
 }
 
-// Luminous exitance over pi per channel of an even slab of this optical depth: what it lets through, or reflects to an
-// eye above it.
+// Returns the luminous exitance divided by pi, per channel, of an even slab of this optical depth: the light that it
+// lets through to an eye below, or reflects to an eye above.
 fn of_slab(depth: f32) -> vec3f {
     let mu = max(u.to_sun.z, 0.05);
     let turned = TURNING * depth;
@@ -133,12 +137,13 @@ fn painted(in: FullscreenVarying) -> @location(0) vec4f {
     let side = u.sun.w;
     var place = d * t / side;
     if FORM == DOME {
-        // A sphere about the eye: a cloud is as large at the horizon as overhead.
+        // A sphere around the eye: a cloud appears as large at the horizon as overhead.
         place = d * abs(u.to_sun.w) / side;
     }
     let dx = dpdx(place);
     let dy = dpdy(place);
-    // What is beyond the horizon is not met, though the line goes on to the other side of the planet.
+    // Beyond the horizon the ray counts as a miss, although its line meets the layer again on the other side of the
+    // planet.
     if t <= 0.0 || d.z * u.to_sun.w <= 0.0 {
         return vec4f(0.0);
     }
@@ -173,9 +178,9 @@ fn painted(in: FullscreenVarying) -> @location(0) vec4f {
         light = (level + u.sky.rgb) / PI * clamp(0.5 * (1.0 + LIGHT_MULTIPLIER) * shaded - opacity * fade, 0.0, 1.0);
     }
     if SHADING == SLAB {
-        // No deeper than tells: numbers that are nearly 0 are slow.
+        // Limited, because deeper clouds look the same, and exponentials that are nearly 0 are slow.
         let depth = min(u.cloud.z * over, 60.0);
-        // Of the way through the layer, longer at a slant, not longer than the layer is bent.
+        // The path through the layer is longer at a slant, but limited by the layer's curvature.
         let slant = max(abs(normalize(d * t + vec3f(0.0, 0.0, u.sky.w)).z * d.z), 0.05);
         opacity = 1.0 - exp(-min(depth / slant, 60.0));
         light = of_slab(depth);

@@ -1,4 +1,5 @@
-// Rules for the two integrals of the sky, with the same nodes' cost: transmittance to space, and light scattered once.
+// Quadrature rules for the two integrals of the sky, transmittance to space and light scattered once, with nodes of
+// equal cost.
 struct Quad {
     rows: u32,
     columns: u32,
@@ -11,10 +12,11 @@ struct Quad {
 @group(0) @binding(3) var nothing: texture_2d<f32>;
 @group(0) @binding(4) var smp: sampler;
 
-// 0: offset of 0.3; 1: midpoint; 2: trapezoid; 3: Gauss panels of 4; 4: Welkin's; 5: midpoint on Welkin's stretch.
+// 0: samples at 0.3 of a step; 1: midpoint; 2: trapezoid; 3: Gauss panels of 4; 4: Welkin's; 5: midpoint on Welkin's
+// stretch.
 override RULE: u32 = 4u;
 
-// Place and weight of node i of n on (0, 1).
+// Returns position and weight of node i of n on (0, 1).
 fn rule_node(i: u32, n: u32) -> vec2f {
     let step = 1.0 / f32(n);
     if (RULE == 0u) {
@@ -99,7 +101,8 @@ fn scattering(@builtin(position) p: vec4f) -> @location(0) vec4f {
         let density = air_density(air, altitude);
         let sun_light = sun_transmittance(air, altitude, mu_s_here) * weight;
         let here = air.rayleigh_scattering * density.x * rayleigh_phase(nu) + air.mie_scattering * density.y * mie_phase(nu, air.asymmetry_g);
-        // As the march does for every node, so that costs compare.
+        // Welkin's march does this look-up for every node. It is done here too, with the weight 0, so that the costs
+        // compare.
         let more = more_scattered(air, dims, nothing, sources_of(air), smp, altitude, mu_s_here, clamp((t_ray + distance) / r, -1.0, 1.0), nu);
         once += sun_light * here + weight * 0.0 * more;
     }

@@ -1,5 +1,5 @@
-// Elek 2008: equations 3.3 (optical depth), 3.4 (light scattered once), 3.2 (phase function of gas), 3.5 (of haze),
-// 3.9.
+// Sky by Elek 2008: equations 3.3 (optical depth), 3.4 (light scattered once), 3.2 and 3.5 (phase functions of gas and
+// haze), and 3.9.
 struct Uniform {
     beta: vec3f,
     bottom_m: f32,
@@ -17,7 +17,8 @@ struct Uniform {
 }
 const PI: f32 = 3.14159265;
 
-// The build has it in group 0; pictures have what they draw in 0 and the tables in 1.
+// The passes that build the tables have their uniforms in group 0. Pictures have their camera or rays in group 0, and
+// the uniforms and tables in group 1.
 @group(0) @binding(0) var<uniform> made: Uniform;
 @group(1) @binding(0) var<uniform> shown: Uniform;
 @group(1) @binding(1) var table: texture_3d<f32>;
@@ -42,8 +43,8 @@ fn vertex(@builtin(vertex_index) i: u32) -> Varying {
     return Varying(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), vec2f(corner.x, 1.0 - corner.y));
 }
 
-// Length of a ray to the ground, or to the top of the air; x: length, y: 1 if it meets the ground. Altitudes in place
-// of differences of squared radii, which f32 could not hold.
+// Length of a ray to the ground or to the top of the air (x), and 1 if it meets the ground (y). Computed from
+// altitudes, because differences of squared radii have too few digits in f32.
 fn reach(u: Uniform, h: f32, mu: f32) -> vec2f {
     let b = (u.bottom_m + h) * mu;
     let down = h * (2.0 * u.bottom_m + h);
@@ -132,7 +133,8 @@ fn depth_at(angle: f32, h: f32) -> vec3f {
     return shown.beta * c.x + shown.haze * c.y;
 }
 
-// A ray from the observer, `ground` metres to the ground or below 0 for none.
+// Light and transmittance of the air along a ray from the observer. `ground` is the distance to the ground, m; below 0
+// if the ray misses it.
 fn veil(dir: vec3f, ground: f32) -> Veil {
     let u = shown;
     var h = max(u.altitude_m, 0.0);
@@ -142,7 +144,7 @@ fn veil(dir: vec3f, ground: f32) -> Veil {
     let nu = dot(dir, u.to_sun);
     var start = 0.0;
     if (h > u.top_m) {
-        // From outside the ray begins where it enters the air.
+        // From space the ray begins where it enters the air.
         let b = r * mu;
         let c = (h - u.top_m) * (2.0 * u.bottom_m + h + u.top_m);
         if (b >= 0.0 || b * b <= c) {
@@ -165,7 +167,8 @@ fn veil(dir: vec3f, ground: f32) -> Veil {
     let light = u.irradiance * (gas * s.rgb + haze * s.a);
     var through = exp(-depth_at(angles.x * PI, h));
     if (ground >= 0.0) {
-        // From the ground up to the observer: both along the upward direction.
+        // The transmittance is the ratio of two paths to space: upwards from the ground point, and upwards from the
+        // observer.
         let mu_ground = clamp((r * mu + ground - start) / u.bottom_m, -1.0, 1.0);
         let up = acos(clamp(-mu_ground, -1.0, 1.0));
         let here = acos(clamp(-mu, -1.0, 1.0));
@@ -180,7 +183,7 @@ fn probe(@builtin(position) p: vec4f) -> Veil {
     return veil(ray.xyz, ray.w);
 }
 
-// The picture that is timed: the library's `sky/picture.wgsl` by this method.
+// The timed picture: the library's `sky/picture.wgsl` with this method.
 @fragment
 fn picture(in: Varying) -> @location(0) vec4f {
     let right = normalize(cross(camera.forward, vec3f(0.0, 0.0, 1.0)));
