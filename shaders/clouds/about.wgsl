@@ -43,8 +43,8 @@ const CLOUD_RARE: f32 = 2.5;
 // Horizontal distance after which a ray meets other clouds, cells.
 const CLOUD_CELL: f32 = 0.3;
 
-// Share of a normal distribution about `mean` that lies above 0, and the mean of that share. Both use the logistic
-// distribution closest to the normal one.
+// Share of a normal distribution about `mean` that lies above 0 (x), and the mean of the values in that share (y). Both
+// use the logistic distribution closest to the normal one.
 fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
@@ -85,8 +85,8 @@ fn cloud_inside(here: CloudHere) -> f32 {
     return here.inside;
 }
 
-// Distance along a ray from a place outside clouds within which there is no cloud, m. Strength changes no faster than
-// map, noise and dome do, and the noise adds no more than its largest value.
+// Distance along a ray from a place outside clouds within which there is no cloud, m. The strength changes no faster
+// than map, noise and dome do, and the noise adds no more than its largest value.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
     let level = length(direction.xy) + leaning;
@@ -96,7 +96,7 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     if !CLOUD_PLACED {
         return skip;
     }
-    // The threshold stays the same within a distance and may change beyond.
+    // The threshold stays the same within `steady` and may change beyond.
     let near = max(min(skip, here.steady / max(level, 1e-3)), here.clear / max(level, 1e-3));
     return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
 }
@@ -132,8 +132,8 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 
-// Length of cloud at full extinction along an interval of a ray in columns of this excess, m. The ray rises by `rise`
-// thicknesses per metre.
+// Length of cloud at full extinction along an interval of a ray, m, in columns of this excess. The ray rises by `rise`
+// thicknesses of the layer per metre.
 fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length: f32) -> f32 {
     let to = height + rise * length;
     let low = clamp(min(height, to), 0.0, 1.0);
@@ -145,8 +145,8 @@ fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length:
     return length * filled / (top - bottom);
 }
 
-// Length of cloud at full extinction along a direction up to a distance, m. Fraying is looked up on the nearer part of
-// the path; columns of even strength stand for the cloud beyond.
+// Length of cloud at full extinction along a direction up to a distance, m. On the nearer part of the path the fraying
+// is looked up. Beyond, each interval is filled as columns with the excess of its middle, without fraying.
 fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
     let rise = select(min(toward.z, -1e-3), max(toward.z, 1e-3), toward.z >= 0.0) * layer.size.y;
     let way = min(select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise), most);
@@ -190,7 +190,7 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
 }
 
 // Share of sunlight that other clouds let through to a place where clouds are blurred. Elsewhere the path to the sun
-// meets them itself.
+// already contains these clouds.
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     if !CLOUD_COARSE {
         return 1.0;

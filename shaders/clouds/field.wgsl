@@ -14,7 +14,7 @@ const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
 const SOLID_MEAN: f32 = 0.47;
 // Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f32 = 2.2;
-// Largest amount that it adds to the excess, in units of the fraying's amplitude.
+// Largest amount that the solid noise adds to the excess, in units of the fraying's amplitude.
 const MOST_FRAYED: f32 = 0.8;
 // Slope of the map per cell.
 const MAP_SLOPE: f32 = 4.0;
@@ -141,7 +141,7 @@ fn cloud_extinction(layer: CloudLayer, excess: f32) -> f32 {
     return layer.size.w * clamp(excess * layer.shape.w, 0.0, 1.0);
 }
 
-// Height of cloud at full extinction below a height, in a column of this excess; the layer's thickness is 1.
+// Height of cloud at full extinction below a height, in a column of this excess, in layer thicknesses.
 fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let d = max(cloud_dome_over(layer, excess), 1e-3);
     let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));

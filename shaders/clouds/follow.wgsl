@@ -22,8 +22,8 @@ const SMOOTH: f32 = 0.03;
 // Deviation from which on a picture counts as structured.
 const SHAPED: f32 = 0.1;
 
-// Share by which luminance (x) and transmittance (y) have no structure finer than these squares. Where it is 1, a
-// picture interpolated between squares shows all there is.
+// Degree, 0 to 1, to which luminance (x) and transmittance (y) have no structure finer than these squares. Where it is
+// 1, a picture interpolated between squares is complete.
 fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     let mean = 0.2 * (center + near[0] + near[1] + near[2] + near[3]);
     let range = max(max(near[0], near[1]), max(near[2], near[3])) - min(min(near[0], near[1]), min(near[2], near[3]));
@@ -62,7 +62,7 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
         return out;
     }
     let size = vec2i(textureDimensions(marched)) - 1;
-    // At an edge of the picture the square next to it is the center.
+    // At an edge of the picture, a missing neighbour is replaced by the centre square.
     let about = clamp(vec2i(square), min(vec2i(1), size), max(size - 1, vec2i(0)));
     let center = textureLoad(marched, about, 0);
     var least = min(own, center);

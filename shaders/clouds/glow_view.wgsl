@@ -6,7 +6,7 @@
 //!include "clouds/lamps.wgsl"
 //!include "common/frame.wgsl"
 
-// Light of the clouds over their cover, and log2 of their distance, m; 0 without clouds.
+// Light of the clouds divided by their cover, and log2 of their distance, m; 0 without clouds.
 @fragment
 fn glow(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = frame.drawn;

@@ -5,7 +5,7 @@ struct CloudLamp {
     light: HostLight,
     // Radius of the source, m.
     radius: f32,
-    // Mean intensity over all directions, over that in the middle of the beam.
+    // Ratio of the mean intensity over all directions to that in the middle of the beam.
     even: f32,
     // Above 0 for a source inside a cloud, whatever lies on the path.
     buried: f32,

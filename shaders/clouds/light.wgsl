@@ -24,7 +24,7 @@ struct CloudDepths {
     right: f32,
 }
 
-// Interval of a ray that one place stands for.
+// Interval of a ray, and the place whose light counts for all of it.
 struct CloudStretch {
     direction: vec3f,
     // Distance at which it begins (`begun`), its length, and the distance of the place (`at`), m.
@@ -35,11 +35,12 @@ struct CloudStretch {
     to_eye: f32,
 }
 
-// Scattered light per unit of the sun's irradiance on a surface that faces it, and of the sky's and the ground's
-// radiance.
+// Scattered light per unit of the sun's irradiance on a surface that faces it (`sun`), and per unit of the radiance of
+// sky and ground.
 struct CloudScattered {
     sun: f32,
-    // Share of the sunlight that is scattered for the first time; the phase function is a factor to it.
+    // Share of the sunlight that is scattered for the first time. Multiplied by the phase function, it gives the light
+    // that is scattered once.
     once: f32,
     sky: f32,
     ground: f32,
@@ -115,8 +116,8 @@ fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     return (min(phase, medium.rest.y) + max(phase - medium.rest.y, 0.0) * share_forward) / (1.0 - medium.rest.x);
 }
 
-// Sums the terms of a table and the flux along two more axes. `one` and `other` have the profile, its slope, and the
-// component of the direction along the axis.
+// Sum of a table's terms and of the flux along two more axes. `one` and `other` each have the profile, its slope, and
+// the component of the direction along the axis.
 fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
     let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
     return cloud_legendre(terms, axis) * one.x * other.x - spread * terms.x * leaves;

@@ -74,7 +74,7 @@ fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: Cloud
     return medium.rest.w * 3.0 / (4.0 * CLOUD_PI) * mean * max(turning - (1.0 - turning) * growing, 0.0);
 }
 
-// Light of a lamp outside the cloud, with all orders of scattering, in the same units.
+// Light of a lamp outside the cloud, with all orders of scattering, in the units of `cloud_wandered`.
 fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let to = shine.toward;
@@ -161,7 +161,7 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
         let once = cloud_once(medium, lamp, from_origin, stretch, scaled * shine.between / shine.distance);
         var light = inside * once.x;
         if inside > 0.0 {
-            // A beam spreads from a point ahead of its lamp, where its light has lost its direction.
+            // In cloud the light of a beam spreads as from a point ahead of its lamp, where it has lost its direction.
             let ahead = lamp.light.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
             let to = from_origin + ahead - place;
             let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);

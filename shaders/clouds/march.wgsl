@@ -118,7 +118,8 @@ fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
 }
 
 // Returns the step after the place at `next` was looked up, once cloud was found there or before. `clear` has the
-// distance of the last place without cloud since the last cloud, and the excess missing there or 0.
+// distance of the last place without cloud since the last cloud (x), and the excess that cloud needed there beyond what
+// the place had, or 0 (y).
 fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: CloudHere, clear: vec2f, jitter: f32) -> CloudStep {
     var step = before;
     if before.looks_for == CLOUD_WITHIN {
@@ -158,7 +159,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     let halo = cloud_halo(layer.medium.x, direction);
     var gone = first;
     var tried = 0u;
-    // Distance of the last place without cloud since the last cloud, and the excess missing there or 0.
+    // Distance of the last place without cloud since the last cloud (x), and the excess that was missing for cloud
+    // there, or 0 (y).
     var clear = vec2f(first, 0.0);
     // Transmittance of the ray before gaps and before cloud, where clouds are blurred, and the share of cloud at the
     // last place.
@@ -171,7 +173,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
         while step.looks_for != CLOUD_FOUND && (step.looks_for != CLOUD_SEEKS || (tried < most && gone < last)) {
             if step.looks_for == CLOUD_SEEKS {
                 step.begun = gone;
-                // The less of a step is visible, the longer it may be. The power is from a chart (docs/lab/clouds.csv).
+                // A step is longer, the less of it is visible: by the transmittance to the power -1/4, from a chart
+                // (docs/lab/clouds.csv).
                 let grown = select(inverseSqrt(sqrt(out.transmittance)), 1.0, clear.y > 0.0);
                 step.length = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse) * grown, last - gone);
                 step.at = gone + jitter * step.length;

@@ -56,7 +56,8 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
     let now = textureSampleLevel(marched, linear, among, 0.0);
-    // Clouds of the last picture that this frame's rays do not meet count as far away, behind all that the host drew.
+    // A pixel may have clouds in the last picture but none on this frame's rays. They count as far away, behind all
+    // that the host drew.
     let cover = 1.0 - now.a;
     let stands = textureSampleLevel(marched_reach, linear, among, 0.0).rg / max(cover, 1e-4);
     let reach = vec4f(select(vec2f(NOWHERE), stands, cover > 1e-4), shadow_on(pixel, frame_ndc(in.uv)));
@@ -76,8 +77,8 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
-    // Reprojection does not change a cloud's brightness with the direction. Where the picture is smooth, the marched
-    // pixels have all there is to see, so they are used instead.
+    // Reprojection keeps a cloud's brightness, although it depends on the direction. Where the picture is smooth, the
+    // marched pixels alone are complete, so they are used instead.
     let likely = mix(held, now, followed.z);
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(likely, now, lost || is_marched), reach);

@@ -11,10 +11,11 @@ struct CloudShadows {
     period: f32,
     // Height of the camera above the plane, m.
     eye: f32,
-    // Mean share of the direct light over all places; weight of the map against it; height above the plane from which
-    // on the mean holds, m.
+    // Mean share of the direct light over all places.
     mean: f32,
+    // Weight of the map against that mean, 0 to 1.
     told: f32,
+    // Height above the plane from which on the mean holds, m.
     top: f32,
     // Extinction of the air at the camera's height, 1/m, and its scale height, m.
     haze: f32,

@@ -1,4 +1,5 @@
-// Shafts of light between the shadows of clouds: difference of the light in the air before a place from the mean.
+// Shafts of light between the shadows of clouds: the direct light in the air along a ray, less its mean over all
+// places.
 //
 // Model: the air thins exponentially with height. Sample places along a ray divide it into intervals whose air scatters
 // equal light to the eye. The shadow map gives the share of direct light at each place, and the ray has the mean of
@@ -15,7 +16,7 @@ fn shaft_depth(extinction: f32, thins: f32, along: f32) -> f32 {
     return extinction * select((1.0 - exp(-clamp(t, -60.0, 60.0))) / thins, along, abs(t) < 1e-3);
 }
 
-// Distance to an optical depth.
+// Distance at which the air has this optical depth; the inverse of `shaft_depth`.
 fn shaft_way(extinction: f32, thins: f32, depth: f32) -> f32 {
     let t = thins * depth / extinction;
     return select(-log(max(1.0 - t, 1e-6)) / thins, depth / extinction, abs(t) < 1e-3);
@@ -26,8 +27,8 @@ fn shaft_between(pixel: vec2f) -> f32 {
     return fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
 }
 
-// Difference of the share of direct light in the air before a place from the mean over places. `origin` and `direction`
-// are those of the ray to it. `between`, 0 to 1, is the position of each sample in its interval.
+// Share of direct light in the air before a place, less the mean of that share over all places. `origin` and
+// `direction` are those of the ray to the place. `between`, 0 to 1, is the position of each sample in its interval.
 fn cloud_shafts(
     shadows: CloudShadows,
     map: texture_2d<f32>,

@@ -15,7 +15,7 @@ pub enum CloudModel {
 }
 
 impl CloudModel {
-    /// Returns its name in saved states.
+    /// Returns the model's name in saved states.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Deck => "deck",

@@ -127,8 +127,8 @@ impl CloudsView {
     }
 }
 
-/// Returns the direct light without clouds over the mean of all light on level ground, for each channel. w is the mean
-/// share of the direct light that clouds let through.
+/// Returns the ratio of the direct light without clouds to the mean of all light on level ground, for each channel. w
+/// is the mean share of the direct light that clouds let through.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
     let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));

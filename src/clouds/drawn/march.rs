@@ -67,8 +67,10 @@ pub(crate) struct CloudsSeen {
 /// A layer with the light that falls on it.
 struct MarchedLayer<'a> {
     field: Field<'a>,
+    /// Share of the layer that is drawn as a volume.
     share: f64,
     light: LayerLight,
+    /// Index of the medium: 0 for droplets, [`ICE`] for ice.
     medium: usize,
     /// Ratio of scaled extinction to extinction.
     scale: f64,
@@ -78,12 +80,12 @@ struct MarchedLayer<'a> {
 pub(crate) struct CloudRays<'a> {
     layers: Vec<MarchedLayer<'a>>,
     light: LightWithin<'a>,
-    /// Position of the place, east and north of the world's origin, m, and above the sea.
+    /// Position of the place: m east and north of the world's origin, and m above the sea.
     place_m: DVec3,
     radius_m: f64,
     /// Whether a share of the layers above the place is a deck.
     pub has_deck: bool,
-    /// Factors of the step lengths by depth, and by the distance from the eye.
+    /// Factors on the two limits of a step's length, [`STEP_DEPTH`] and [`STEP_ANGLE`].
     longer: [f64; 2],
 }
 
@@ -124,7 +126,9 @@ struct AtPlace<'a> {
     /// The layer's field with the local cover of this place.
     field: Field<'a>,
     position_m: DVec3,
+    /// Height in the layer, 0 at its base to 1 at its top.
     height: f64,
+    /// Excess over the threshold, with fraying.
     excess: f64,
 }
 
@@ -151,7 +155,7 @@ impl<'a> CloudRays<'a> {
     }
 
     /// Creates the clouds of one layer in given light over level ground, seen from a place, without a halo. `longer`
-    /// has the factors of the step lengths in depth and in angle.
+    /// has the factors on a step's limits ([`STEP_DEPTH`] and [`STEP_ANGLE`]).
     pub(crate) fn given(
         field: Field<'a>,
         sources: &Arc<Sources>,
@@ -301,7 +305,8 @@ impl<'a> CloudRays<'a> {
 }
 
 /// Returns the distance along a ray from a place outside clouds within which there is no cloud, m: `cloud_skip` of the
-/// shader.
+/// shader. The threshold stays the same within `steady_m` and changes by at most `slope_per_m` beyond. `over` is the
+/// excess at the place before dome and fraying, `frays` the amount that the solid noise adds to it.
 pub(crate) fn skip(
     (s, [steady_m, slope_per_m]): (&Shape, [f64; 2]),
     [over, frays]: [f64; 2],

@@ -9,13 +9,15 @@ pub(crate) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(crate) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Format of the depth that marks the pixels on which the host drew.
 pub(crate) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Layers of the whole picture: radiance and transmittance of the clouds, their reach, and the stars and glow behind
-/// the sky's own light. The panorama has its place below the picture.
+/// Layers of the whole picture: radiance and transmittance of the clouds; their reach, which is the range of distances
+/// of the visible cloud; and the stars and glow behind the sky's own light. The panorama has its place below the
+/// picture.
 pub(crate) const LAYERS: u32 = 3;
 /// Index of the layer of stars and glow, which stand behind the sky's own light.
 pub(crate) const BEHIND: u32 = 2;
 
-/// Side of the panorama, texels. A texel is 1.5 degrees, as fine as a mirror of still water shows broken clouds.
+/// Side of the panorama, texels. A texel is 1.5 degrees, which is fine enough for broken clouds in a mirror of still
+/// water.
 pub(crate) const PANORAMA_SIDE: u32 = 96;
 
 /// Whether shadows get their own draw. A software driver evaluates both sides of a branch, so in a single draw it would
@@ -45,7 +47,7 @@ fn with_round((width, height): (u32, u32)) -> (u32, u32) {
     (width.max(PANORAMA_SIDE), height + PANORAMA_SIDE)
 }
 
-/// Whole picture as one frame left it.
+/// Whole picture after a frame.
 pub(crate) struct Whole {
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
@@ -69,7 +71,7 @@ pub(crate) struct Picture {
     pub of: ((u32, u32), u32),
     /// Radiance and transmittance of the marched pixels, and their reach.
     pub marched: [wgpu::TextureView; 2],
-    /// Smallest and largest value around each square, and its way back to the last frame with its smoothness.
+    /// Smallest and largest value around each square, and its movement since the last frame with its smoothness.
     pub followed: [wgpu::TextureView; 3],
     pub whole: [Whole; 2],
     /// Depth that marks the pixels on which the host drew, if shadows have their own draw.

@@ -47,7 +47,7 @@ pub(crate) struct Resolve {
 pub(crate) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// The last two, since a view that climbs and sinks again alternates between two keys.
+    /// The two pipelines that were used last, because a view that climbs and sinks again alternates between two keys.
     march: LruCache<March, wgpu::RenderPipeline, 2>,
     /// Pipeline of the light of lamps and flashes, created at first use.
     glow: LruCache<March, wgpu::RenderPipeline, 1>,

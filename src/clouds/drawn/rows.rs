@@ -7,7 +7,8 @@ pub(crate) struct MapRows {
     next: u32,
     /// Rows refreshed since the map's inputs last changed. Once it is all rows, there is nothing left to do.
     made: u32,
-    /// Number of old rows, by how much the inputs changed. Below a frame's number of rows, the map waits for more.
+    /// Number of rows that have become old, estimated from the changes of the inputs. The map waits until it reaches
+    /// the number of rows that a frame refreshes.
     owed: f64,
     /// Whether the last frame refreshed some rows.
     made_some: bool,
@@ -20,9 +21,9 @@ pub(crate) struct Turn {
     pub rests: bool,
     /// Whether the map's content is close enough to the current inputs to be kept.
     pub holds: bool,
-    /// Share of the map that the change since the last frame has made old.
+    /// Share of the map that has become old by the change since the last frame.
     pub aged: f64,
-    /// Whether the map lets another one be refreshed in this frame, if it can wait.
+    /// Whether another map is refreshed in this frame, so that this one waits if it can.
     pub waits: bool,
     /// Whether the map is still coarse; its rows do not wait then.
     pub is_coarse: bool,

@@ -98,8 +98,9 @@ impl AreaCell {
 pub(crate) struct AreaClouds {
     pub cells: [AreaCell; MAX_AREAS],
     pub count: usize,
-    /// Height above the station of the lowest top of an area's rain, m; half the width of the narrowest area, m.
+    /// Height above the station of the lowest top of an area's rain, m.
     lowest_m: f64,
+    /// Half the width of the narrowest area, m.
     half_m: f64,
     /// Kind of cloud that the strongest rain falls from.
     brings: &'static CloudSlab,

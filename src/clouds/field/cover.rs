@@ -1,4 +1,4 @@
-//! Cover of a layer: the share of the sky that it is seen to hide, from which thresholds are found.
+//! Cover of a layer: the share of the sky that it hides as seen from the ground, from which thresholds are found.
 //!
 //! Cover is the share of the solid angle within 75 degrees of the zenith in which the layer's slant optical depth
 //! exceeds 0.1, or 0.03 for ice crystals, seen from far below. The sides of clouds hide more of the sky than their
@@ -49,7 +49,7 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
 
 /// Returns the mean cover seen from `places` places that are many clouds apart.
 pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
-    // Fibres are many clouds long.
+    // Fibres are many clouds long, so the places lie farther apart.
     let drawn_out = field.shape.stretch.determinant().recip();
     let far = 37.0 * field.shape.scale_m * drawn_out;
     let place = |i: usize| DVec2::new(far * i as f64, 0.618_034 * far * ((i * i) % 101) as f64);

@@ -29,7 +29,7 @@ const SOLID_CELLS: f64 = 1.5;
 const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
 /// Distance from cloud to cloud up to which the heads (bulges of a cloud) are proportional to it, m.
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
-/// Excess over the threshold above which a cumulonimbus has an anvil over it.
+/// Excess over the threshold above which a place of a cumulonimbus has an anvil above it.
 const ANVIL_BEYOND: f64 = -0.2;
 /// Distance that the top of fibres lies downwind of their base, in thicknesses: crystals fall for some kilometres into
 /// slower air (Heymsfield 1975).

@@ -84,7 +84,7 @@ impl Map {
         Self(texels)
     }
 
-    /// Returns its mip levels, the map itself first. Each texel is the mean of 2 x 2 of the level before.
+    /// Returns the map's mip levels, the map itself first. Each texel is the mean of 2 x 2 of the level before.
     pub(crate) fn levels(&self) -> Vec<Vec<[f32; 4]>> {
         let mut levels = vec![self.0.clone()];
         let mut side = MAP_SIZE / 2;

@@ -1,4 +1,5 @@
-//! Threshold of the map for a cover that is asked for, by kind of cloud. [`super::cover`] finds the table's numbers.
+//! Thresholds of the map that give a layer its cover, by kind of cloud. [`super::cover`] finds the numbers of the
+//! table.
 
 use crate::{
     chance::normal_quantile,

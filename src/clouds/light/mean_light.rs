@@ -1,6 +1,6 @@
-//! Test of the light that a host is given, which closed formulas of the weather give ([`Conditions::cloud_light_at`]).
-//! It is compared with the drawn clouds: the mean of the light that they let through to many places, for all heights of
-//! the sun, from below their base to above their top.
+//! Test of the weather's closed formulas for light under clouds, which hosts are given
+//! ([`Conditions::cloud_light_at`]). They are compared with the mean of the light that the drawn clouds let through to
+//! many places, for all heights of the sun, from below the clouds' base to above their top.
 
 use glam::{DVec2, DVec3};
 

@@ -207,8 +207,8 @@ impl ScatterSlab {
     }
 }
 
-/// Light that a layer of depth 1 would scatter from each direction into each, down and up, over all that it scatters.
-/// Only single scattering counts, without attenuation.
+/// Matrices of single scattering in a layer of scaled depth 1, without attenuation: the shares of the light scattered
+/// from each direction that go into each direction, down and up.
 struct ScatterMatrices {
     down: DMat4,
     up: DMat4,

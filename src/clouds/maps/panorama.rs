@@ -94,7 +94,7 @@ impl CloudPanorama {
         1
     }
 
-    /// Copies it below a picture of this height.
+    /// Copies the panorama below a picture of this height.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Texture, height: u32) {
         let origin = wgpu::Origin3d { x: 0, y: height, z: 0 };
         let target = wgpu::TexelCopyTextureInfo { origin, ..target.as_image_copy() };
