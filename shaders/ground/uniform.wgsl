@@ -55,7 +55,7 @@ struct GroundUniform {
     water_slope: f32,
     // Chance that a drop falls into a cell of the rings' grid in a time slot.
     ring_chance: f32,
-    // Limit of the light that is added, cd/m^2: what a half float holds.
+    // Limit of the light that is added, cd/m^2: the largest that a half float holds.
     most: f32,
     // Steps in normalised device coordinates to the next pixel to the right and below.
     pixel: vec2f,

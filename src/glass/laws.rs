@@ -52,7 +52,8 @@ pub fn retention_n(radius_m: f64) -> f64 {
     SURFACE_TENSION * 2.0 * radius_m * difference
 }
 
-/// Returns the force of the air on a bead, N: 1/2 rho C A u |u| with the cap's frontal area A.
+/// Returns the force of the air on a bead, N: 1/2 rho C A u |u|, with the air's density rho and speed u, the drag
+/// coefficient C (`DRAG`) and the cap's frontal area A.
 pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     let theta = CONTACT_DEG.to_radians();
     let (s, c) = libm::sincos(theta);

@@ -49,13 +49,13 @@ pub(super) struct AtGlass<'a> {
 pub struct GlassReport {
     /// Drops that hit the pane per second.
     pub drops_per_s: f64,
-    /// Water that hits it, mm/h over its area.
+    /// Water that hits the pane, mm/h over its area.
     pub water_mm_h: f64,
     /// Share of the pane under water.
     pub covered: f64,
-    /// Water on it, m^3.
+    /// Water on the pane, m^3.
     pub water_m3: f64,
-    /// Water in the snow on it, m^3.
+    /// Water in the snow on the pane, m^3.
     pub snow_m3: f64,
     /// Simulation time of the state, s; NaN before the first frame.
     pub state_time_s: f64,

@@ -4,14 +4,15 @@
 
 use super::basins::{Basins, OUT};
 
-/// Volume of a hollow whose parts are not all full.
+/// Mark in place of the volume of a hollow whose parts hold separate waters.
 const APART: f64 = -1.0;
 
 /// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate waters.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pools {
     pub held: Vec<f64>,
-    /// Scratch space of [`Pools::sink`]: the loss that each part takes over from its whole.
+    /// Scratch space of [`Pools::sink`]: water that each part must lose, because its hollow lost more than it held
+    /// above its parts.
     passed: Vec<f64>,
 }
 
@@ -78,7 +79,8 @@ impl Pools {
     /// Lowers every water by `depth_mm`. Returns the amount lost.
     pub fn sink(&mut self, basins: &Basins, depth_mm: f64) -> f64 {
         let mut gone = 0.0;
-        // In reverse order a whole comes before its parts: the loss beyond its own depth is taken from its parts.
+        // A hollow comes after its parts in the list, and is processed before them: what it loses beyond its own water
+        // is taken from them.
         for basin in (0..self.held.len()).rev() {
             let passed = std::mem::take(&mut self.passed[basin]);
             if self.held[basin] <= 0.0 || self.is_part(basins, basin) {
@@ -103,8 +105,7 @@ impl Pools {
         gone
     }
 
-    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the amount that they do not
-    /// have.
+    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the water that no part can give.
     fn pass(&mut self, basins: &Basins, basin: usize, water: f64) -> f64 {
         // Parts without a capacity of their own have no water.
         let holding = || basins.parts(basin).filter(|part| basins.list[*part].capacity > 0.0);

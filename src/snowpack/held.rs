@@ -61,7 +61,7 @@ pub(crate) struct HeldSnow {
     published: u64,
     /// Meltwater from the snow since it was last published: beginning and length of each step, s, and its water.
     melts: Vec<(f64, f64, Meltwater)>,
-    /// Whether the meltwater published before belongs to another past.
+    /// Whether the meltwater published before is that of a state that a loaded one has replaced.
     forgets: bool,
 }
 

@@ -33,27 +33,29 @@ pub const REPOSE_DEG: f64 = 38.0;
 /// Ratio of the latent heat of melting to the specific heat of water, degrees C.
 const MELTING_C: f64 = 3.34e5 / 4186.0;
 
-/// Returns the density of new snow, kg/m^3, at an air temperature in C and a wind at 10 m in m/s (Pahaut 1976 in
-/// Vionnet et al. 2012, eq. 1).
+/// Returns the density of new snow, kg/m^3: 109 + 6 T + 26 sqrt(U), limited to 50 to 400, at an air temperature T in C
+/// and a wind U at 10 m in m/s (Pahaut 1976 in Vionnet et al. 2012, eq. 1).
 pub fn new_density_kg_m3(temperature_c: f64, wind_m_s: f64) -> f64 {
     (109.0 + 6.0 * temperature_c + 26.0 * wind_m_s.max(0.0).sqrt()).clamp(50.0, 400.0)
 }
 
-/// Returns the rate at which snow settles as its grains change, 1/s (Anderson 1976 in Jordan 1991, eq. 29): lower above
-/// 100 kg/m^3, twice as high in wet snow.
+/// Returns the rate at which snow settles as its grains change, 1/s: 2.777e-6 exp(-0.04 F - 0.046 (rho - 100)), twice
+/// as high in wet snow (Anderson 1976 in Jordan 1991, eq. 29). F is the frost, degrees below 0 C; rho is the density,
+/// kg/m^3, and at least 100.
 pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> f64 {
     let cold = (-temperature_c).max(0.0);
     let dense = (density_kg_m3 - 100.0).max(0.0);
     2.777e-6 * if wet { 2.0 } else { 1.0 } * libm::exp(-0.04 * cold - 0.046 * dense)
 }
 
-/// Returns the viscosity of snow, kg s/m^2 (Anderson 1976): under a load W, kg/m^2, snow settles at the rate W /
-/// viscosity, 1/s.
+/// Returns the viscosity of snow, kg s/m^2: 9e5 exp(0.08 F + 0.023 rho), with F and rho as in [`metamorphism_per_s`],
+/// but without the limit (Anderson 1976). Under a load W, kg/m^2, snow settles at the rate W / viscosity, 1/s.
 pub fn viscosity(temperature_c: f64, density_kg_m3: f64) -> f64 {
     9e5 * libm::exp(0.08 * (-temperature_c).max(0.0) + 0.023 * density_kg_m3)
 }
 
-/// Returns the share of the albedo's excess over that of old snow that is left after `seconds`.
+/// Returns the factor by which the difference of the albedo from that of old snow falls in `seconds`: exp(-seconds /
+/// t), with t for frost or thaw.
 pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
