@@ -1,4 +1,5 @@
-//! Obstacles: terrain and solid objects in the air, as open shares of faces.
+//! Obstacles: terrain and solid objects in the air, as the open share of each face, which is the part of its area that
+//! they leave free.
 //!
 //! Along the vertical of a face, heights are exact; along its horizontal sides, [`SAMPLES`] places are evaluated. So
 //! terrain slopes through cells instead of forming stairs, and a box may end anywhere within a cell. A box thinner than

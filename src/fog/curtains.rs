@@ -46,7 +46,7 @@ impl Curtains {
     }
 
     /// Returns the optical depth with curtains where even rain has `depth`. The variance v raises it, so that the mean
-    /// transmittance over all places is that of even rain, and signs are seen equally far. For a normally distributed
+    /// transmittance over all places, and with it the visibility, is that of even rain. For a normally distributed
     /// depth x with the mean m, mean(exp(-x)) = exp(v / 2 - m).
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance

@@ -92,16 +92,21 @@ struct RayCourse {
     /// Altitude of the end, m, and cosine with the vertical there.
     end_altitude: f64,
     end_mu: f64,
-    /// Distance at which the ray is level, m; whether this is within its length; and whether the ray only descends.
+    /// Distance at which the ray is level, m.
     level: f64,
+    /// Whether that distance is within the ray's length.
     passes: bool,
+    /// Whether the ray only descends.
     falls: bool,
-    /// Lowest altitude, m, and the cosine with which both parts rise from there.
+    /// Lowest altitude, m.
     low: f64,
+    /// Cosine with which both parts of the ray rise from the lowest point.
     low_mu: f64,
-    /// Lengths of the parts before and after the lowest point, m, and the altitude at the other end of the first part.
+    /// Length of the part before the lowest point, m.
     before: f64,
+    /// Length of the part after it, m.
     after: f64,
+    /// Altitude at the upper end of the first part, m.
     high: f64,
     /// Curvature of the altitude along the ray, 1/m.
     bend: f64,

@@ -20,9 +20,9 @@ pub fn share_unscattered(forward: f64, slant: f64) -> f64 {
 /// In a thin layer this is the phase function itself (the correction of Nakajima and Tanaka 1988 for truncated peaks).
 /// In a thick layer light is scattered forward several times. The scaled beam counts f s forward scatterings, of which
 /// 1 - e^(-f s) are first ones; the others make the peak wider. The peak is the part of the phase function above the
-/// smooth one (Henyey-Greenstein of `smooth`). It is multiplied by E = (1 - e^(-f s)) / (f s) and widened: its order is
-/// 1 / sqrt(E). This exponent is fitted to adding and doubling (`tests/fog/light.rs`), without bias from 4 to 40
-/// degrees off the sun.
+/// smooth one (Henyey-Greenstein of `smooth`). It is multiplied by E = (1 - e^(-f s)) / (f s) and widened: the phase
+/// function is that of light scattered 1 / sqrt(E) times in a row ([`lobes_phase`]). The exponent 1/2 is fitted to
+/// adding and doubling (`tests/fog/light.rs`), without bias from 4 to 40 degrees off the sun.
 pub fn fog_phase_after(lobes: &PhaseLobes, forward: f64, smooth: f64, slant: f64, versine: f64) -> [f64; 2] {
     let share = share_unscattered(forward, slant);
     let d = (1.0 - smooth) * (1.0 - smooth) + 2.0 * smooth * versine;

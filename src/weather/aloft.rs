@@ -10,8 +10,8 @@
 //!   for a constant eddy viscosity K: by `exp(-(1 + i) (z - 100 m) sqrt(f / (2 K)))`. K = k u* 100 m is the eddy
 //!   viscosity at the top of the surface layer.
 //!
-//! f is that of 43 degrees north, because conditions have no place. Above the friction layer the wind is the same at
-//! all heights.
+//! f is the Coriolis parameter at 43 degrees north, because conditions have no place. Above the friction layer the wind
+//! is the same at all heights.
 
 use super::conditions::WindProfile;
 

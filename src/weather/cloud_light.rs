@@ -17,12 +17,12 @@ use super::conditions::{CloudSlab, Conditions};
 /// Share of the optical depth that hides objects behind a layer from the eye. The rest is light scattered straight on,
 /// which hides nothing.
 const HIDING: f64 = 0.25;
-/// Share of the sky with which the default counts in a mean over layers: [`over_layers`].
+/// Weight of the value for a clear sky in [`over_layers`], as a share of the sky.
 const LEAST_COVER: f64 = 1e-6;
 /// Greatest height above a cloud's base at which its precipitation begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
-/// Depth over which precipitation sets in, m: half of it above the height where it begins, half below. As a medium it
-/// sets in around the cloud's base.
+/// Depth over which precipitation sets in, m: half of it above the height where it begins, half below. Its extinction
+/// sets in around the cloud's base instead ([`Conditions::below_cloud`]).
 pub(crate) const ONSET_M: f64 = 100.0;
 
 /// Returns the share of precipitation at an altitude if it begins at another: all below the depth over which it sets
@@ -86,8 +86,8 @@ impl Conditions {
         self.clouds.iter().rev().filter(|s| s.cover > 0.0).map(move |s| s.above(height_m))
     }
 
-    /// Returns the altitude at which the light arrives that clouds over a place scatter: the mean top of the layers
-    /// that light meets first.
+    /// Returns the altitude at which light from above first meets the clouds over a place: the mean top of the layers
+    /// that it meets first.
     pub(crate) fn lit_top_m(&self, altitude_m: f64) -> f64 {
         let station_m = self.air.station_altitude_m;
         let layers = self.layers_above(altitude_m).map(|part| (part.cover, part.slab));
@@ -175,7 +175,7 @@ impl Conditions {
         let bounce = 1.0 / (1.0 - above.back * below.even).max(1e-6);
         let diffuse = (above.diffuse + above.back * below.beam * (above.slanted + above.beam_through)) * bounce;
         let sky = above.sky * bounce;
-        // Where layers lie side by side, more of the sky is under cloud, and less of it lies between clouds.
+        // Layers may hide more of the sky than independent ones: then more of it is under cloud, and less is clear.
         let gathered = self.gathered();
         let left_clear = self.clear_sky() + above.open * gathered;
         let slanted = if above.clear > 1e-9 { left_clear * (above.slanted / above.clear) } else { left_clear };
@@ -194,8 +194,9 @@ struct Fluxes {
     /// Share of the sun's beam that no cloud scattered; `beam` also contains light scattered nearly straight on.
     direct: f64,
     beam: f64,
-    /// Remainder of the beam that comes down, and the share of the sky's light that does.
+    /// Share of the sun's beam that comes down scattered.
     diffuse: f64,
+    /// Share of the sky's light that comes down.
     sky: f64,
 }
 
@@ -205,14 +206,16 @@ struct FromAbove {
     /// on.
     through: f64,
     beam_through: f64,
-    /// Shares of the sky's light and of the beam that met no cloud.
+    /// Share of the sky's light that met no cloud.
     clear: f64,
+    /// Share of the beam that met no cloud.
     slanted: f64,
     /// Light that met no cloud, but would have met one if the place were below all layers. It is a sum of each layer's
     /// contribution: the difference of two nearly equal products would be rounding error, light where there is none.
     open: f64,
-    /// Scattered light of the beam, and all light of the sky.
+    /// Share of the beam that comes down scattered.
     diffuse: f64,
+    /// Share of the sky's light that comes down.
     sky: f64,
     /// Share of light from below that is reflected down again.
     back: f64,

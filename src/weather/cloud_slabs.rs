@@ -51,7 +51,8 @@ fn substance(kind: CloudKind) -> Substance {
     }
 }
 
-/// Factor from its kind's thickness up to which a layer's thickness still changes the width of its clouds.
+/// Largest ratio of a layer's thickness to its kind's, or of the kind's to the layer's, up to which the distance
+/// between its clouds follows its thickness.
 const WIDER: f64 = 3.0;
 
 /// Lowest base of middle clouds, m (WMO levels of temperate latitudes).

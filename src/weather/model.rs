@@ -62,8 +62,8 @@ pub struct Aerosol {
     /// Asymmetry of the phase function (mean cosine). Range [-0.99, 0.99]; default by kind and humidity.
     pub asymmetry: Option<f64>,
     /// Height over which the density of the particles falls by a factor e, m. Range [10, 20 000]; default by kind.
-    /// Raised to at least the station's altitude over 4.6 (435 m at 2000 m): the sky's tables count densities from sea
-    /// level, and hold there at most a hundred times the density at the station.
+    /// Raised to at least the station's altitude divided by 4.6 (435 m at 2000 m): the sky's tables count densities
+    /// from sea level, and hold there at most a hundred times the density at the station.
     pub scale_height_m: Option<f64>,
 }
 

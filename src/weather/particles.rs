@@ -81,7 +81,7 @@ fn effective_kind(w: &Weather) -> AerosolKind {
 /// plateau.
 const DEEPEST_SCALES: f64 = 4.6;
 
-/// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude over
+/// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude divided by
 /// [`DEEPEST_SCALES`].
 fn scale_height_m(w: &Weather) -> f64 {
     let own = w.aerosol.scale_height_m.unwrap_or(properties(effective_kind(w)).scale_height_m);
@@ -151,8 +151,8 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
 }
 
 /// Largest vertical optical depth of particles for the sky's tables. The tables sum orders of scattering as a series,
-/// which is off by 11 % at p95 here. Thicker particles go to the ground layer, whose two-stream solution holds at any
-/// depth.
+/// whose error is 11 % at this depth (95th percentile). Thicker particles go to the ground layer, whose two-stream
+/// solution holds at any depth.
 const SKY_DEPTH: f64 = 1.0;
 
 /// Returns the optical depth of particles in the sky's tables if their total is `depth`: all of it up to [`SKY_DEPTH`];

@@ -41,8 +41,8 @@ pub fn wave_height_of_state_m(state: u8) -> f64 {
     }
 }
 
-/// Returns the share of level ground that snow of this depth, m, covers: sparse at first, then all (a hyperbolic
-/// tangent as in Niu and Yang 2007, over 2.5 times a roughness of 1 cm).
+/// Returns the share of level ground that snow of this depth, m, covers: sparse at first, then all. It is the
+/// hyperbolic tangent of the depth divided by 2.5 times a roughness of 1 cm, as in Niu and Yang 2007.
 pub fn snow_cover(depth_m: f64) -> f64 {
     if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
 }

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::chance::Chance;
 
-/// Number of waves in each direction.
+/// Number of waves along the wind, and of waves across it.
 const TONES: usize = 24;
 /// Longest and shortest wave, m. Longer ones are changes of weather; shorter ones do not move all of a scene alike.
 const WAVES_M: (f64, f64) = (3000.0, 8.0);
