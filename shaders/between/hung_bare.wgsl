@@ -11,8 +11,9 @@ struct Hung {
     reach: vec3f,
     // Difference of the share of direct light in the air in front from the mean over places.
     shafts: f32,
-    // Light of lamps and flashes in the clouds over their cover, times exposure; whether it is known.
+    // Light of lamps and flashes in the clouds divided by their cover, times exposure.
     glow: vec3f,
+    // Whether that light is known.
     has_glow: bool,
     // Light behind the sky's own, cd/m^2.
     behind: vec3f,

@@ -19,8 +19,8 @@ struct DepthUniform {
     origin_dy: vec3f,
     // 0 perspective, 1 parallel rays, 2 logarithmic.
     kind: u32,
-    // Unnormalised ray direction at the picture's centre and its change per unit of ndc; clip w is the distance in
-    // units of it.
+    // Unnormalised ray direction at the picture's centre and its change per unit of ndc. Clip w is the distance along
+    // the ray, in units of this vector's length.
     direction: vec3f,
     // Plane distance per unit of clip w.
     plane_scale: f32,

@@ -54,6 +54,7 @@ fn occluder_map(in: FullscreenVarying) -> @location(0) vec2u {
     let joined = select(vec4f(0.0), steps, abs(steps) <= vec4f(STEEPEST * side));
     let low = min(min(joined.x, joined.y), min(min(joined.z, joined.w), 0.0));
     let high = max(max(joined.x, joined.y), max(max(joined.z, joined.w), 0.0));
-    // The range reaches half-way to the neighbours, and half a texel further, because the map is too coarse to tell.
+    // The range reaches half-way to the neighbours, and half a texel further, because the map does not show where
+    // between two texels the surface bends.
     return bitcast<vec2u>(d + 0.5 * vec2f(low - side, high + side));
 }

@@ -62,8 +62,8 @@ const STEP_S: f64 = 1800.0;
 
 /// Interpolated [`Geocentric`] as a function of time; keeps the knots of the last call.
 ///
-/// The result depends only on the time: knots lie at multiples of half an hour since 1970, whatever was asked before.
-/// Any thread.
+/// The result depends only on the time, not on earlier calls: knots lie at multiples of half an hour since 1970. Any
+/// thread.
 #[derive(Debug, Default)]
 pub struct Ephemeris {
     /// Number of the first knot, and the four knots from there on.

@@ -133,7 +133,7 @@ impl Channel {
         was_cut
     }
 
-    /// Returns its lower end, or its far end in the cloud.
+    /// Returns the channel's lower end, or its far end in the cloud.
     pub fn end_m(&self) -> DVec3 {
         self.points_m[self.points_m.len() - 1]
     }

@@ -15,7 +15,7 @@ pub enum FlashKind {
 }
 
 impl FlashKind {
-    /// Returns its name in the probe's answers.
+    /// Returns the kind's name in the probe's answers.
     pub const fn name(self) -> &'static str {
         match self {
             Self::InCloud => "cloud",
@@ -49,7 +49,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// Returns its strokes in order. For a flash in the cloud they are the steps of its light.
+    /// Returns the flash's strokes in order. For a flash in the cloud they are the steps of its light.
     pub fn strokes(&self) -> &[Stroke] {
         &self.strokes[..self.count]
     }

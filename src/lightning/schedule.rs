@@ -51,7 +51,7 @@ impl Storm {
         check_range("lightning.radius_m", self.radius_m, 0.0, 1e5, "m")
     }
 
-    /// Returns its flashes from `from_s` until `until_s`, in order of time.
+    /// Returns the storm's flashes from `from_s` until `until_s`, in order of time.
     pub fn flashes(&self, from_s: f64, until_s: f64) -> Vec<Flash> {
         let mut out = Vec::new();
         self.visit(from_s, until_s, |_| self.per_minute, |flash| out.push(*flash));

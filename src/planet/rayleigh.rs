@@ -4,8 +4,8 @@
 pub const DOBSON_UNIT_PER_M2: f64 = 2.687e20;
 /// Number density of air at 15 C and 1013.25 hPa, 1/m^3 (Bodhaine et al. 1999, section 3).
 pub const AIR_DENSITY_15C_PER_M3: f64 = 2.546_899e25;
-/// Scale height with which the density at 15 C gives Bodhaine's vertical optical depth: Bodhaine's column of 2.1520e29
-/// molecules/m^2 over [`AIR_DENSITY_15C_PER_M3`].
+/// Scale height with which the density at 15 C gives Bodhaine's vertical optical depth, m: Bodhaine's column of
+/// 2.1520e29 molecules/m^2 divided by [`AIR_DENSITY_15C_PER_M3`].
 pub const EARTH_RAYLEIGH_SCALE_HEIGHT_M: f64 = 2.1520e29 / AIR_DENSITY_15C_PER_M3;
 
 /// Returns the fraction in Bodhaine et al. 1999, equations 29 and 30; wavelength in um.

@@ -35,7 +35,9 @@ pub(super) struct DiscDepth {
     altitude_m: f64,
     sine: f64,
     radius: f64,
+    /// Sine of elevation at which the interval begins.
     from: f64,
+    /// Reciprocal of the interval's length.
     scale: f64,
     /// Coefficients of the logarithm of the depth, by degree and wavelength.
     terms: [[f64; 3]; 4],

@@ -44,8 +44,8 @@ pub fn equator_to_galactic() -> DMat3 {
 /// Light of all stars along a galactic direction (unit), S10: tenth-magnitude stars a square degree.
 ///
 /// Integrates `j(R, z) exp(-depth)` along the line of sight. The light `j` and the dust are each exp(-R/length)
-/// sech^2(z / 2 height). The model is symmetric in longitude and latitude. It has no bulge, and no star clouds or dark
-/// clouds, which change the light by half. Those come from the measured light ([`super::starlight`]).
+/// sech^2(z / (2 height)). The model is symmetric in longitude and latitude. It has no bulge, and no star clouds or
+/// dark clouds, which change the light by half. Those come from the measured light ([`super::starlight`]).
 pub fn disc_s10(galactic: DVec3) -> f64 {
     let at_sun = COLUMN_LV_PC2 / (4.0 * STARS_HEIGHT_KPC * 1e3);
     let squared_sech = |x: f64| x.cosh().powi(-2);

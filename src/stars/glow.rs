@@ -13,8 +13,8 @@ use super::{
 
 /// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = 3_282.806_35;
-/// Luminance of 1 S10 (one star of magnitude 10 a square degree), cd/m^2: the star's illuminance over a square degree,
-/// 8.3e-7.
+/// Luminance of 1 S10 (one star of magnitude 10 a square degree), cd/m^2: the star's illuminance divided by a square
+/// degree in sr, 8.3e-7.
 pub const S10_CD_M2: f64 = MAGNITUDE_0_LUX * 1e-4 * SQUARE_DEGREES_PER_SR;
 /// Airglow at the zenith at night near the minimum of solar activity, S10. Benn and Ellison (1998, La Palma Technical
 /// Note 115) give 2.5 times the zodiacal light at the ecliptic's pole.

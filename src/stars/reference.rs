@@ -31,8 +31,8 @@ pub fn weight(offset: DVec2) -> f64 {
 pub struct Point {
     /// Position from the target's first corner, pixels.
     pub pixel: DVec2,
-    /// Radiance of a pixel that receives all of the star's light, in the target's units, a channel: illuminance over
-    /// the pixel's solid angle.
+    /// Radiance of a pixel that receives all of the star's light, in the target's units, a channel: illuminance divided
+    /// by the pixel's solid angle.
     pub light: [f64; 3],
     /// Solid angle of a pixel at the star, sr.
     pub pixel_sr: f64,

@@ -56,8 +56,9 @@ impl Altitudes {
 pub struct SunAngles {
     center: f64,
     width: f64,
-    /// Share of the dense part, and the values of its arc tangent at 0 and pi.
+    /// Share of the nodes that follow the arc tangent, which is dense at the terminator.
     crowd: f64,
+    /// Values of that arc tangent at the angles 0 and pi.
     ends: (f64, f64),
     /// Nodes from 0 to pi, radians.
     pub nodes: Vec<f64>,
