@@ -12,7 +12,7 @@ use crate::weather::{Conditions, Falling, Weather, Wind, derive};
 
 const STEP_S: f64 = 60.0;
 
-/// Ground, cut into patches when snow comes onto it.
+/// Heights, obstacles and roofs of a lattice, from which snow fields are created.
 struct Land {
     nodes: [usize; 2],
     cell_m: f64,
@@ -26,12 +26,13 @@ impl Land {
         self.nodes[0] * self.nodes[1]
     }
 
-    /// In one patch.
+    /// Creates a snow field of one patch, with `column` in each cell.
     fn field(&self, column: Column) -> SnowField {
         self.cut(self.nodes, column)
     }
 
-    /// In patches of this size, which counts from patch (-1, -1).
+    /// Creates a snow field in patches of `size` cells, with `column` in each cell; the first of several patches has
+    /// the key (-1, -1).
     fn cut(&self, size: [usize; 2], column: Column) -> SnowField {
         let mut field = SnowField::new(size, self.cell_m);
         let off = if size == self.nodes { 0 } else { 1 };
@@ -50,7 +51,7 @@ impl Land {
     }
 }
 
-/// The columns of all cells, by the rows of the lattice.
+/// Returns the columns of all cells, row by row through the whole lattice.
 fn columns(field: &SnowField) -> Vec<Column> {
     let (low, size) = (field.patches[0].key, field.size);
     let top = field.patches.last().unwrap().key;
@@ -77,7 +78,7 @@ fn snow(rate_mm_h: f64) -> Falling {
     Falling { snow_mm_h: rate_mm_h, ..Falling::NONE }
 }
 
-/// A forcing and how snow settles under it.
+/// Forcing of the columns and settling of their snow in the same weather.
 struct Acts(ColumnForcing, Settling);
 
 fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
@@ -86,7 +87,7 @@ fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
     Acts(ColumnForcing::new(c, falling, sunlight_w_m2, STEP_S), settling)
 }
 
-/// Leads a field by steps with the same weather, amid bare country.
+/// Steps a field in constant weather, with bare country around it.
 fn lead(field: &mut SnowField, acts: &Acts, wind: DVec2, steps: usize) {
     lead_amid(&Column::default(), field, acts, (wind, None), steps);
 }
@@ -119,7 +120,7 @@ fn what_falls_lies_to_the_last_bit() {
     let c = weather(-8.0, 0.0, 1.0);
     let forcing = acts(&c, &snow(1.5), 0.0);
     lead(&mut field, &forcing, DVec2::ZERO, 600);
-    // 10 hours of 1.5 mm/h.
+    // 10 hours of 1.5 mm/h make 15 kg/m^2.
     let lies = columns(&field)[5].mass_kg_m2();
     assert!((lies / 15.0 - 1.0).abs() < 1e-5, "{lies}");
     assert_eq!(field.lying(), field.books.balance());
@@ -172,7 +173,7 @@ fn no_slope_is_above_repose_after_sliding_and_no_mass_is_lost() {
     for cell in (0..land.len()).filter(|c| lies[*c].depth > 0) {
         let (x, y) = (cell % 40, cell / 40);
         for (to, way) in [(cell + 1, x < 39), (cell + 40, y < 39)].iter().filter(|t| t.1).map(|t| (t.0, 0.5)) {
-            // Of two the higher one must be able to slide.
+            // Only pairs with snow in the higher cell count: bare ground does not slide.
             let high = if surface(cell) > surface(to) { cell } else { to };
             if lies[high].depth > 0 {
                 steepest = steepest.max((surface(cell) - surface(to)).abs() / way);
@@ -185,7 +186,7 @@ fn no_slope_is_above_repose_after_sliding_and_no_mass_is_lost() {
     assert_eq!(lies[20 * 40 + 20].depth, 0, "too steep a rock keeps nothing");
 }
 
-/// Snow that lies along a line of cells down a west wind after hours of drift, kg/m^2.
+/// Returns the snow of the middle row of cells after `hours` of drift in a west wind, kg/m^2.
 fn along(land: &Land, wind_m_s: f64, temperature_c: f64, hours: usize) -> Vec<f64> {
     columns_along(land, wind_m_s, temperature_c, hours).iter().map(Column::mass_kg_m2).collect()
 }
@@ -221,7 +222,7 @@ fn a_fence_casts_its_lee_drift() {
     let mut land = flat([80, 5], 1.0);
     land.obstacles_m = (0..land.len()).map(|c| if c % 80 == 30 { 2.0 } else { 0.0 }).collect();
     let lies = along(&land, 14.0, -6.0, 12);
-    // Most of the drift of a solid fence lies within some seven heights behind it.
+    // Most of the drift behind a solid fence lies within about seven heights of the fence.
     let lee: f64 = lies[31..46].iter().sum::<f64>() / 15.0;
     let far = lies[70];
     println!("fence of 2 m, 12 h of 14 m/s: lee {lee:.1} kg/m^2, before {:.1}, far {far:.1}", lies[2]);
@@ -249,13 +250,13 @@ fn a_fence_gets_a_lower_drift_to_windward_that_fills_up() {
         "before a fence of 2 m, more than in the open: {first:.0} kg/m after 12 h, {near:.0} after 120 h and {grows:.0} in ten hours more, \
          {far:.0} farther than 30 m; highest {highest:.2} m"
     );
-    // Tabler (1980): no higher than half the fence, most of it within some twelve heights, and once full it takes no
-    // more.
+    // Tabler (1980): the windward drift is at most half as high as the fence, lies mostly within about twelve heights
+    // of it, and stops growing once it is full.
     assert!(first > 100.0 && far < 0.25 * near && grows < 0.05 * near);
     assert!((0.5..1.05).contains(&highest), "{highest}");
     let steepest = depths.windows(2).map(|d| (d[1] - d[0]).abs()).fold(0.0, f64::max);
     assert!(steepest < 0.2, "no step in it: {depths:.2?}");
-    // Nothing changes where the wind blows along the fence and not against it.
+    // A wind along the fence makes no drift beside it.
     let mut field = land.field(Column::of(0.3, 120.0));
     let forcing = acts(&weather(-6.0, 14.0, 1.0), &Falling::NONE, 0.0);
     lead(&mut field, &forcing, DVec2::new(0.0, 14.0), 60);
@@ -312,7 +313,7 @@ fn snow_settles_and_ages_towards_old_snow() {
     assert!((column.albedo() - wanted).abs() < 1e-3, "{}", column.albedo());
 }
 
-/// A hill, a steep step and a wall over the borders of patches of 32 x 32 cells.
+/// Creates ground with a hill, a steep step and a wall, which cross borders of patches of 32 x 32 cells.
 fn rough() -> Land {
     let mut land = flat([96, 64], 1.0);
     for cell in 0..land.len() {
@@ -347,7 +348,7 @@ fn snow_lies_over_the_borders_of_tiles_as_on_one_grid_to_the_bit() {
         assert_eq!((six.cover, six.runoff_mm_h), (one.cover, one.runoff_mm_h));
         assert!(columns(&six) == columns(&one), "after {} steps", 50 * (round + 1));
     }
-    // A wind that varies in space is asked at the same places.
+    // Both fields evaluate a wind that varies in space at the same places.
     let local = |place: [i32; 2], _: f64| DVec2::new(10.0 + 4.0 * libm::sin(0.2 * f64::from(place[0] & 31)), 2.0);
     let (acts, wind) = &weathers[1];
     [&mut one, &mut six].into_iter().for_each(|f| lead_amid(&country, f, acts, (*wind, Some(&local)), 50));
@@ -366,7 +367,7 @@ fn a_tiles_snow_blows_and_slides_onto_bare_tiles_and_over_holes() {
     holes[10 * 32..12 * 32].fill(true);
     let heights = field.patches[2].heights_m.clone();
     field.patches[2].set_ground(heights, holes);
-    // A pile on the edge of the middle tile, which slides to the west.
+    // A pile of snow on the west edge of the middle tile, which slides onto the tile to the west.
     field.patches[1].put(16 * 32, Column::of(4.0, 150.0));
     field.books.began = field.lying();
     let calm = acts(&weather(-6.0, 0.0, 1.0), &Falling::NONE, 0.0);
@@ -390,7 +391,7 @@ fn quiet_tiles_hold_and_cost_nothing() {
     let still = acts(&weather(-6.0, 15.0, 1.0), &Falling::NONE, 0.0);
     lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
     assert!(field.patches.iter().all(|p| p.is_bare() && p.columns.capacity() == 0 && p.revision == 0));
-    // The least of some batches: whatever else the machine does is not theirs.
+    // Fastest of ten batches: other work on the machine only slows batches down.
     let batch = |_| {
         let begun = std::time::Instant::now();
         lead(&mut field, &still, DVec2::new(15.0, 3.0), 100);
@@ -399,7 +400,7 @@ fn quiet_tiles_hold_and_cost_nothing() {
     let microseconds = (0..10).map(batch).fold(f64::INFINITY, f64::min);
     println!("a step over 64 bare tiles: {microseconds:.2} us");
     assert!(microseconds < 50.0, "{microseconds} us");
-    // One snowy tile leaves those beside and behind it alone.
+    // Snow on one tile allocates no columns on the tiles beside and behind it.
     field.patches[27].put(0, Column::of(0.2, 600.0));
     field.books.began = field.lying();
     lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
@@ -409,7 +410,7 @@ fn quiet_tiles_hold_and_cost_nothing() {
 #[test]
 fn suspended_snow_moves_most_of_the_mass_where_the_wind_blows_a_long_way() {
     let wind = 16.0;
-    // What leaves level country so long, kg/(m s).
+    // Returns the flux of snow that leaves level ground with this number of 5 m cells along the wind, kg/(m s).
     let flux = |cells: usize| {
         let land = flat([cells, 3], 5.0);
         let mut field = land.field(Column::of(1.0, 200.0));

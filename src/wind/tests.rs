@@ -1,5 +1,5 @@
-//! The wind against its own definition: displacement is the integral of velocity, whatever the timeline does; gusts are
-//! as strong, as long and as varied as they should be.
+//! Tests of the wind against its definition: displacement is the integral of velocity through every change of the
+//! timeline, and gusts have the stated strength, length and spectrum.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,8 @@ fn varying(speed: f64, from_deg: f64, range: (f64, f64)) -> Conditions {
     derive(&Weather { wind, ..Weather::default() }).unwrap()
 }
 
-/// Changes one after another, laid over each other, cuts among them, calms, turns and wandering winds.
+/// Creates a timeline with the first `count` of ten changes: overlapping transitions, cuts, calms, turns and variable
+/// directions.
 fn told(count: usize) -> Timeline {
     let mut t = Timeline::new(of(4.0, 270.0));
     let changes = [
@@ -50,7 +51,7 @@ fn displacement(wind: &Wind, timeline: &Timeline, t: f64) -> DVec2 {
 fn displacement_is_the_integral_of_velocity_through_every_change() {
     let (wind, timeline) = (Wind::new(5), told(99));
     assert_eq!(displacement(&wind, &Timeline::new(of(4.0, 270.0)), 0.0), DVec2::ZERO);
-    // Midpoints between the cuts, so that no step straddles one.
+    // Intervals of the midpoint rule that end at the cuts, so that no step contains one.
     for (from, to) in [(-60.0, 0.0), (0.0, 100.0), (100.0, 140.0), (140.0, 320.0), (320.0, 600.0)] {
         let n = 6000;
         let h = (to - from) / f64::from(n);
@@ -58,7 +59,7 @@ fn displacement_is_the_integral_of_velocity_through_every_change() {
         let way = displacement(&wind, &timeline, to) - displacement(&wind, &timeline, from);
         assert!((way - sum).length() < 1e-4 * (to - from), "{from} to {to}: {way} against {sum}");
     }
-    // The mean is the conditions' own.
+    // The mean wind equals the wind of the conditions.
     for i in 0..800 {
         let t = f64::from(i) - 100.0;
         let b = wind.blowing(&timeline, Drift::ZERO, t);
@@ -82,7 +83,7 @@ fn nothing_is_thrown_by_a_gust_or_a_storm_at_any_time() {
             let fastest = (0..=8)
                 .map(|k| velocity(&wind, &timeline, a + (b - a) * f64::from(k) / 8.0).length())
                 .fold(0.0, f64::max);
-            // 1e10 m in 64 bits has steps of 2 um.
+            // The second term allows for rounding: 64-bit numbers near 1e10 m are 2 um apart.
             assert!(moved.length() <= fastest * (b - a) * 1.001 + 1e-14 * late * 30.0, "{a}: {moved} at {fastest} m/s");
         }
     }
@@ -117,7 +118,7 @@ fn steps_saves_and_forgetting_change_no_bit() {
         }
         assert!(kept.time_s > 370.0 && kept.path_m > 1000.0);
     }
-    // A change that is told later moves nothing that was before it.
+    // A later change leaves the displacement before it unchanged.
     let (few, more) = (told(4), told(5));
     assert_eq!(displacement(&wind, &few, 139.0), displacement(&wind, &more, 139.0));
 }
@@ -135,7 +136,7 @@ fn a_change_of_visibility_alone_leaves_the_wind_as_it_was() {
     }
 }
 
-/// Gusts along and across a west wind of `speed` at `n` times, `step` s apart.
+/// Returns the gusts along (x) and across (y) a west wind of `speed` m/s, at `n` times `step` s apart, m/s.
 fn samples(seed: u64, speed: f64, n: usize, step: f64) -> Vec<DVec2> {
     let (wind, timeline) = (Wind::new(seed), Timeline::new(of(speed, 270.0)));
     (0..n).map(|i| wind.blowing(&timeline, Drift::ZERO, i as f64 * step).gust_m_s).collect()
@@ -159,7 +160,7 @@ fn turbulence_is_as_strong_as_stated() {
 fn gusts_have_the_published_spectrum() {
     let (speed, step, n) = (10.0, 0.25, 1 << 13);
     let intensity = of(speed, 270.0).wind.turbulence_intensity;
-    // Variance in octaves of frequency, by the discrete Fourier sum, mean of seeds.
+    // Variance in each octave of frequency by the discrete Fourier transform, as a mean over the seeds.
     let bands: Vec<(f64, f64)> = (0..6).map(|i| (0.01 * f64::from(1 << i), 0.02 * f64::from(1 << i))).collect();
     let mut found = vec![[0.0; 2]; bands.len()];
     let seeds = 6;
@@ -179,7 +180,8 @@ fn gusts_have_the_published_spectrum() {
             }
         }
     }
-    // Kaimal's share between two frequencies, over what waves of 8 m to 3 km have of the whole.
+    // Expected variance: that of Kaimal's spectrum in each octave, normalised to wavelengths of 8 m to 3 km. `below` is
+    // the integral of the spectrum over frequency, but for a constant.
     for (axis, (length, deviation)) in [(56.7, 1.0), (18.9, 0.8)].into_iter().enumerate() {
         let below = |f: f64| -(1.0 + 6.0 * f * length / speed).powf(-2.0 / 3.0);
         let whole = below(speed / 8.0) - below(speed / 3000.0);
@@ -225,7 +227,7 @@ fn a_varying_wind_turns_within_its_range_and_goes_less_far() {
         let widest = directions.iter().fold(0.0f64, |w, d| w.max(d.abs()));
         assert!(widest <= half + 1e-6 && widest > 0.99 * half, "{half}: {widest}");
         let gone = displacement(&wind, &timeline, 1e6).length() / 5e6;
-        // The mean of the unit vector over the wave.
+        // Mean of the wind's unit vector while its direction swings sinusoidally by `half` to each side: `J0(half)`.
         let expected = libm::j0(half.to_radians()).abs();
         assert!((gone - expected).abs() < 1e-3, "{half}: {gone} against {expected}");
     }
@@ -248,7 +250,7 @@ fn the_wind_rises_with_height_and_rests_on_the_ground() {
     assert!((at(10.0).velocity_m_s.truncate() - velocity(&wind, &timeline, 12.0)).length() < 1e-12);
     let expected = 8.0 * (2.0f64 / 0.03).ln() / (10.0f64 / 0.03).ln();
     assert!((at(2.0).mean_m_s.x - expected).abs() < 1e-12 && (at(2.0).mean_m_s.y).abs() < 1e-9);
-    // Gusts are as strong up there as down here, but on the ground nothing moves.
+    // The standard deviation of gusts is the same at all heights, but on the ground the wind is 0.
     assert_eq!(at(80.0).gust_deviation_m_s, at(10.0).gust_deviation_m_s);
     assert!((at(10.0).gust_deviation_m_s / 8.0 - profile.turbulence_intensity).abs() < 1e-12);
     for h in [-5.0, 0.0, 0.03] {

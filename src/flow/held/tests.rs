@@ -1,4 +1,5 @@
-//! A context's field: dated, led, moved, saved, and what the world reads of it.
+//! Tests of the wind field that a context holds: its dates, steps, moves and saved states, and the wind that the world
+//! reads from it.
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +17,7 @@ use crate::{
     world::{Couplings, WorldDesc},
 };
 
-/// A world with a field, led as a context leads it.
+/// A world with a wind field, stepped as in a context.
 struct Bench {
     world: World,
     flow: HeldFlow,
@@ -45,7 +46,7 @@ impl Bench {
             tone: ToneCurve::default(),
             utc_at_zero: Utc(1_782_036_000.0),
         };
-        // No light is asked for here.
+        // These tests compute no light.
         let couplings = Couplings {
             dim: |_| Ok(()),
             cloud_over_areas: |_, _, _, _| Ok(None),
@@ -102,12 +103,12 @@ fn the_wind_of_a_field_is_the_weathers_at_its_sides_and_slow_behind_a_house() {
         println!("{mode:?}: lee {lee:.2} beside {beside:.2} weather's {:.2}", at(3.0));
         assert!(lee.x < 0.5 * at(3.0).x && beside.x > at(3.0).x, "{mode:?}: {lee} {beside}");
         assert_eq!(far, at(200.0));
-        // Nothing jumps at the sides.
+        // The wind is continuous across the sides of the field.
         for side in [dvec3(-48.0, 3.0, 5.0), dvec3(48.0, 3.0, 5.0), dvec3(5.0, 32.0, 5.0), dvec3(5.0, -3.0, 32.0)] {
             let [within, beyond] = [0.999, 1.001].map(|s| bench.wind(side * s));
             assert!((within - beyond).length() < 0.05, "{mode:?} {side}: {within} {beyond}");
         }
-        // The solved field is of its time: at another the weather's wind alone is known.
+        // The solved field holds for its own time: for an earlier time the world returns the weather's wind.
         let past = bench.world.wind_at(dvec3(2.0, 0.0, 3.0), -100.0).expect("a wind").velocity_m_s;
         assert!(past.x > 2.0, "{past}");
     }
@@ -191,7 +192,7 @@ fn a_steady_field_rests_and_wakes_with_the_wind_or_a_house() {
     println!("rests after {slept_s} s");
     let before = bench.world.solved_wind.as_ref().expect("a volume").revision();
     bench.to(slept_s + 30.0);
-    // Nothing was stepped or shown anew.
+    // A resting field is neither stepped nor published again.
     assert_eq!(bench.world.solved_wind.as_ref().expect("a volume").revision(), before);
     bench.world.set.shelters[0].center_m.x += 4.0;
     bench.to(slept_s + 34.0);
@@ -227,7 +228,7 @@ fn a_field_comes_goes_and_follows_its_place_at_its_dates() {
     let before = bench.wind(lee);
     assert_eq!(bench.report().corner, dvec3(-48.0, -32.0, 0.0));
     bench.to(2.5);
-    // The air stays where it was: only the box has moved.
+    // The air keeps its place in the world: only the box of the field has moved.
     let after = bench.wind(lee);
     println!("before the move {before:.2}, after it {after:.2}");
     assert_eq!(bench.report().corner, dvec3(-36.0, -32.0, 0.0));
@@ -309,7 +310,7 @@ fn over_rough_ground_the_wind_keeps_its_profile_and_smooth_walls_do_not_slow_it(
     assert!(rough < smooth && (rough / comes - 1.0).abs() < 0.2, "{rough} {smooth} {comes}");
 }
 
-/// Root of the mean square of the upward wind inside of a field over open ground, from second 31 to 60, m/s.
+/// Returns the root mean square of the vertical wind 24 m up in a field over open ground, from 31 s to 60 s, m/s.
 fn upward_m_s(mode: WindFieldMode) -> f64 {
     let mut bench = Bench::new(mode);
     bench.world.set.shelters.clear();
@@ -333,12 +334,12 @@ fn upward_m_s(mode: WindFieldMode) -> f64 {
 fn whirls_come_in_with_gusts_and_none_with_the_mean_wind() {
     let [running, steady] = [WindFieldMode::Running, WindFieldMode::Steady].map(upward_m_s);
     println!("upward {running:.3} m/s with gusts, {steady:.4} without");
-    // Whirls of all lengths have 1.25 u* = 0.69 m/s; the field shows those of 16 to 64 m, which have a part of their
-    // energy.
+    // Eddies of all lengths together have a vertical standard deviation of 1.25 u* = 0.69 m/s. The field resolves those
+    // of 16 to 64 m, which have a part of that energy.
     assert!((0.2..0.5).contains(&running) && steady < 0.02, "{running} {steady}");
 }
 
-/// The wind goes round tiles as round a grid of the same heights, and finds what is dug in them.
+/// Checks that tiles give the same wind as a grid of the same heights, and that a pit dug in a tile changes it.
 #[test]
 fn tiles_stand_in_the_wind_as_a_grid_of_their_heights_does() {
     use crate::{

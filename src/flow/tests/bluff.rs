@@ -1,11 +1,11 @@
-//! Air round blocks with sharp edges, by the default scheme with whirls below a cell: against what wind tunnels
-//! measured.
+//! Tests of the air round blocks with sharp edges, by the default scheme with eddies below a cell, against measurements
+//! in wind tunnels.
 
 use glam::{DVec3, dvec3};
 
 use super::{turbulence::Turbulence, *};
 
-/// A field round a cube, 1 m an edge, of `n` cells an edge.
+/// Creates a field round a cube with edges of 1 m and `n` cells along an edge.
 fn round_cube(cells: [u32; 3], n: u32, center: DVec3, roughness_m: f64, wind: impl Fn(DVec3) -> DVec3) -> FlowField {
     let settings = FlowSettings {
         cells,
@@ -20,7 +20,8 @@ fn round_cube(cells: [u32; 3], n: u32, center: DVec3, roughness_m: f64, wind: im
     field(&settings, &FlowObstacles { terrain: None, boxes: &cube }, wind)
 }
 
-/// Mean drag coefficient of a cube of 10 cells an edge in 96 x 64 x 64 between two times, edges over the wind's speed.
+/// Returns the mean drag coefficient of a cube between two times, in edges divided by the wind's speed. The edge has 10
+/// cells, the field 96 x 64 x 64.
 fn drag(begin: f64, end: f64) -> f64 {
     let center = dvec3(2.5, 3.2, 3.2);
     let mut field = round_cube([96, 64, 64], 10, center, 0.0, |_| DVec3::X);
@@ -29,7 +30,7 @@ fn drag(begin: f64, end: f64) -> f64 {
     for step in 1..=(end / dt) as u32 {
         field.step(dt).expect("a step");
         if f64::from(step) * dt > begin {
-            // Over half the density and the square of the speed, 1 each, and the area.
+            // `c = F / (0.5 rho v^2 A)` with `rho`, `v` and `A` equal to 1.
             sum += 2.0 * field.pressure_force(center - 0.7, center + 0.7).x;
             count += 1.0;
         }
@@ -47,9 +48,9 @@ fn a_cube_has_the_drag_that_was_measured() {
     assert!((found / 1.05 - 1.0).abs() < 0.2, "{found}");
 }
 
-/// Standard deviations of the air in a turbulent channel along it, across it and upward, in friction velocities, about
-/// as Moser, Kim and Mansour (1999, Phys. Fluids 11, 943) have them; first the distance from the nearer wall over half
-/// the channel's height.
+/// Standard deviations of the velocity along a turbulent channel, across it and upward, in friction velocities,
+/// approximately as in Moser, Kim and Mansour (1999, Phys. Fluids 11, 943). The first number is the distance from the
+/// nearer wall in halves of the channel's height.
 const CHANNEL: [(f64, DVec3); 6] = [
     (0.0, DVec3::ZERO),
     (0.05, dvec3(2.4, 1.4, 0.85)),
@@ -66,8 +67,8 @@ fn deviation(y: f64) -> DVec3 {
     a.lerp(b, ((y - low) / (high - low)).clamp(0.0, 1.0))
 }
 
-/// Edges behind a cube on the floor of a turbulent channel two edges high at which the flow along the floor comes back,
-/// in the mean of 30 edges over the wind's speed, with `N` cells an edge.
+/// Returns the length of the reverse flow along the floor behind a cube, in edges. The cube, with `N` cells along an
+/// edge, stands in a turbulent channel two edges high; the mean is over a time of 30 edges divided by the wind's speed.
 fn reattachment<const N: u32>() -> f64 {
     const ROUGHNESS: f64 = 1e-4;
     let profile = |z: f64| (1.0 + z.min(2.0 - z).max(0.0) / ROUGHNESS).ln() / (1.0 + 1.0 / ROUGHNESS).ln();
@@ -76,7 +77,7 @@ fn reattachment<const N: u32>() -> f64 {
     let mut field = round_cube([10 * N, 7 * N, 2 * N], N, dvec3(3.5, 3.5, 0.5), ROUGHNESS, wind);
     let friction_velocity = 0.4 / (1.0 + 1.0 / ROUGHNESS).ln();
     field.set_mixing(0.4 * friction_velocity, h, |_| 0.0);
-    // An integral length of half an edge, a quarter of the channel's height.
+    // The integral length is half an edge, a quarter of the channel's height.
     let whirls = Turbulence::new(1, 0.5, h, 7.0).expect("room for whirls");
     let dt = 2.4 * h;
     let [first, last] = [15.0, 45.0].map(|t: f64| (t / dt) as u32);
@@ -119,7 +120,7 @@ fn the_first_air_that_meets_a_cube_is_dammed_up_before_it() {
     let force = |low: DVec3| field.pressure_force(low, center + 0.9);
     let [all, behind] = [center - 0.9, dvec3(center.x, center.y - 0.9, center.z - 0.9)].map(force);
     println!("all {all:.3}, behind {behind:.3}");
-    // What the air before the cube pushes and what it sucks behind it, and nothing to the side.
+    // The pressure in front and the suction behind both push the cube downwind, and nothing pushes it aside.
     assert!(all.x > behind.x && behind.x > 0.0 && all.y.abs() + all.z.abs() < 0.02 * all.x, "{all} {behind}");
     assert_eq!(field.pressure_force(DVec3::ZERO, DVec3::ONE), DVec3::ZERO);
 }

@@ -1,4 +1,5 @@
-//! Water on tiles: as on one grid, joined across borders, kept whole when the ground changes, saved.
+//! Tests of water on tiles: against one grid, across borders, its balance where the ground changes, and its saved
+//! state.
 
 use std::time::Instant;
 
@@ -28,7 +29,7 @@ use crate::{
 
 const SIDE: i32 = 32;
 
-/// A terrain and the water on it, led without a context.
+/// A terrain and its water, stepped without a context, with the sums of rain and of losses.
 struct Bench {
     world: World,
     terrain: Terrain,
@@ -46,13 +47,13 @@ fn world() -> World {
         tone: ToneCurve::default(),
         utc_at_zero: Utc(1_782_036_000.0),
     };
-    // No light is asked for here.
+    // These tests compute no light.
     let couplings =
         Couplings { dim: |_| Ok(()), cloud_over_areas: |_, _, _, _| Ok(None), night_lux: |_, _, _, _| Ok([0.0; 3]) };
     World::new(made, derive(&Weather::default()).unwrap(), couplings).unwrap()
 }
 
-/// Weather of a rain, mm/h.
+/// Returns the default weather with rain of this rate, mm/h.
 fn conditions(rain_mm_h: f64) -> Conditions {
     let mut c = derive(&Weather::default()).unwrap();
     c.precipitation.rain_mm_h = rain_mm_h;
@@ -64,7 +65,7 @@ fn forcing(rain_mm_h: f64, evaporation_mm_h: f64) -> Forcing {
 }
 
 impl Bench {
-    /// Tiles from `low` on, of `heights` at places of the lattice.
+    /// Creates `tiles` tiles from the key `low` on, with `heights` of the places of the lattice, m.
     fn new(side: u32, [low, tiles]: [[i32; 2]; 2], heights: impl Fn([i32; 2]) -> f32) -> Self {
         let world = world();
         let desc = TerrainDesc { origin: DVec3::ZERO, cell_m: 1.0, tile_cells: side };
@@ -96,7 +97,7 @@ impl Bench {
         stepped
     }
 
-    /// Changes the cells of a rectangle by tiles.
+    /// Changes the heights and classes of the cells in a rectangle, tile by tile.
     fn change(&mut self, rect: CellRect, height: impl Fn([i32; 2]) -> f32, class: Option<SurfaceClass>) {
         for key in self.terrain.keys_within(rect).collect::<Vec<_>>() {
             let Some(part) = self.terrain.rect(key).meets(rect) else { continue };
@@ -138,7 +139,7 @@ impl Bench {
         );
     }
 
-    /// That every water lies level and no deeper than its saddle, by the cells alone.
+    /// Checks that all pits of a lake have the same water level.
     fn lies_level(&self) {
         for (branches, _) in self.water.lakes.saved() {
             let pits = branches.iter().filter_map(|b| if let LakeBranch::Pit(pit) = b { Some(*pit) } else { None });
@@ -153,7 +154,8 @@ impl Bench {
     }
 }
 
-/// Hours of showers and sun on four tiles come to the water of one grid of the same heights, cell by cell.
+/// Compares the water on four tiles with that on one grid of the same heights, cell by cell, over hours of rain and
+/// sun.
 #[test]
 fn four_tiles_have_the_water_of_one_grid() {
     let size = 2 * SIDE as usize;
@@ -187,13 +189,13 @@ fn four_tiles_have_the_water_of_one_grid() {
         tiles.holds_its_water("in the weather");
         tiles.lies_level();
     }
-    // Where three hollows meet in one cell the two choose among them in different order.
+    // Where three hollows meet in one cell, tiles and grid join them in a different order.
     let share = other as f64 / (20 * size * size) as f64;
     println!("{:.2} % of the cells differ, at most {wettest:.0} mm deep", 100.0 * share);
     assert!(wettest > 50.0 && share < 0.02, "{wettest} {share}");
 }
 
-/// Rain without end stands at the levels of the priority-flood.
+/// Compares the levels after long heavy rain with those of the priority-flood algorithm.
 #[test]
 fn endless_rain_stands_as_high_as_each_hollow_spills() {
     let size = 2 * SIDE as usize;
@@ -207,13 +209,13 @@ fn endless_rain_stands_as_high_as_each_hollow_spills() {
         for (cell, level) in levels.iter().enumerate() {
             let depth = bench.at([(cell % size) as i32, (cell / size) as i32]).standing_mm.max(0.0);
             let wanted = level - f64::from(heights[cell]) * 1e3;
-            // A step leaks a thousandth of a millimetre.
+            // 0.001 mm leaks into the ground in a step.
             assert!((depth - wanted).abs() < 0.01, "{cell}: {depth} mm deep, {wanted} mm by the flood");
         }
     }
 }
 
-/// A bowl of which each tile has a quarter fills to one level over all four.
+/// Fills a bowl that spans four tiles and checks that its water has one level.
 #[test]
 fn a_puddle_lies_level_across_the_borders_of_tiles() {
     let bowl = |[x, y]: [i32; 2]| {
@@ -232,7 +234,7 @@ fn a_puddle_lies_level_across_the_borders_of_tiles() {
     bench.holds_its_water("after the rain");
 }
 
-/// A bucket digs and tips across tiles while it rains and dries: no water comes or goes but as it is said.
+/// Raises, lowers, removes and restores ground in rain and sun, and checks the balance of water after each change.
 #[test]
 fn no_water_is_lost_where_the_ground_changes() {
     let size = 3 * SIDE as usize;
@@ -271,7 +273,7 @@ fn no_water_is_lost_where_the_ground_changes() {
     );
 }
 
-/// A changed terrain ends with the same state as the same terrain set anew: nothing of the earlier one is left over.
+/// Checks that a changed terrain has the same state as one created with the changed heights.
 #[test]
 fn changes_leave_the_same_ground_as_setting_it_anew() {
     let size = 2 * SIDE as usize;
@@ -296,7 +298,7 @@ fn changes_leave_the_same_ground_as_setting_it_anew() {
 
 #[test]
 fn a_raised_floor_lifts_its_water_over_the_rim() {
-    // A trench of 8 x 3 cells over the border of two tiles, half a metre deep, in a plain that falls gently to the
+    // A trench of 8 x 3 cells, half a metre deep, across the border of two tiles in a plain that slopes gently to the
     // east.
     let trench = CellRect { low: [28, 10], high: [36, 13] };
     let plain = |p: [i32; 2]| -0.002 * p[0] as f32;
@@ -364,7 +366,7 @@ fn saved_water_goes_on_to_the_bit_and_damage_is_refused() {
     assert!(e.contains("tile (0, 0) has other cells here"), "{e}");
 }
 
-/// Tiles of rough hills, 256 cells along a side.
+/// Creates `tiles` by `tiles` tiles of rough hills, each of 256 by 256 cells.
 fn hills(tiles: i32) -> Bench {
     let patch = rough(256, 256, 8);
     Bench::new(256, [[0, 0], [tiles, tiles]], move |[x, y]| {
@@ -372,7 +374,7 @@ fn hills(tiles: i32) -> Bench {
     })
 }
 
-/// Seconds of the fastest of some changes of so many cells along a side, moved on each time.
+/// Returns the duration of the fastest of 24 changes of `side` by `side` cells at different places, s.
 fn change_s(bench: &mut Bench, side: i32) -> f64 {
     let mut fastest = f64::INFINITY;
     for i in 0..24 {
@@ -392,7 +394,7 @@ fn change_s(bench: &mut Bench, side: i32) -> f64 {
     fastest
 }
 
-/// Cells along a side of the large terrain: 4096 with `WELKIN_ACCEPT=1`.
+/// Returns the number of tiles along a side of the large terrain: 4, or 16 (4096 cells) with `WELKIN_ACCEPT=1`.
 fn large() -> i32 {
     if std::env::var_os("WELKIN_ACCEPT").is_some() { 16 } else { 4 }
 }
@@ -427,7 +429,7 @@ fn a_change_takes_as_long_as_its_rectangle_is_large() {
         wide * 1e3,
         n = 256 * large(),
     );
-    // A terrain sixteen times as large; other work on the machine takes its part.
+    // The large terrain has at least 16 times the cells; the factor 3 allows for other work on the machine.
     assert!(many < 3.0 * one, "{many} s on the large terrain, {one} s on the small one");
     assert!(wide > 2.0 * many && wide < 72.0 * many, "36 times the cells: {wide} s after {many} s");
 }
@@ -438,7 +440,7 @@ fn tiles_at_rest_cost_nothing() {
     let mut many = Bench::new(32, [[0, 0], [8, 8]], |p| 0.01 * p[0] as f32);
     let seconds = |bench: &mut Bench| {
         bench.step(0.0, 0.1);
-        // The least of some batches: whatever else the machine does is not theirs.
+        // Fastest of ten batches: other work on the machine only slows batches down.
         let batch = |_| {
             let begun = Instant::now();
             (0..40).for_each(|_| {

@@ -1,4 +1,4 @@
-//! Tests of what is found of a lattice, against its twin in f64.
+//! Tests of the drops that the pass finds in a lattice, against the same selection in f64.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ struct Bench {
     surroundings: surroundings::SurroundingsBlock,
     classes: Classes,
     clip: DMat4,
-    /// Velocity of the camera.
+    /// Velocity of the camera, m/s.
     velocity_m_s: DVec3,
 }
 
@@ -53,8 +53,8 @@ impl Bench {
         Self { device, blocks, block, pass, surroundings, classes, clip: DMat4::IDENTITY, velocity_m_s: DVec3::ZERO }
     }
 
-    /// Finds what a camera at [`EYE`] sees; answers (vertices, drops, ...) of the draw, and middles and widths of the
-    /// streaks.
+    /// Finds the drops that a camera at [`EYE`] sees. Returns the arguments of the draw (vertices, drops, ...), and the
+    /// middles and widths of the streaks.
     fn find(&mut self, fov_rad: f64) -> ([u32; 4], Vec<([f32; 3], f32)>) {
         let camera = Camera::look_to(EYE, DVec3::Y, DVec3::Z, fov_rad, 1.5, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
@@ -105,7 +105,7 @@ impl Bench {
         bytemuck::pod_collect_to_vec(&copy.slice(..).get_mapped_range().unwrap())
     }
 
-    /// Whether the twin has a drop in the picture: none where that hangs on a rounding.
+    /// Returns whether a drop is in the picture by the selection in f64, or `None` where rounding decides.
     fn surely(&self, drop: &Drop) -> Option<bool> {
         let speed = f64::from(self.classes.table[drop.id.1 as usize][1]) * SPEED_UNIT;
         let whole = (WIND - DVec3::Z * speed - self.velocity_m_s) * (0.5 * EXPOSURE_S);
@@ -123,7 +123,7 @@ impl Bench {
 
 #[test]
 fn the_list_has_what_the_picture_shows_in_the_lattices_order() {
-    // Room is made anew on the way.
+    // Rates that need lists of different sizes.
     for rate_mm_h in [0.5, 60.0, 8.0] {
         let mut bench = Bench::new(rate_mm_h);
         let (draw, shown) = bench.find(0.9);

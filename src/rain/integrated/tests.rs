@@ -1,4 +1,5 @@
-//! Stepped drops against their reference in f64, against the lattice, and in conditions that make explicit steps burst.
+//! Tests of stepped drops: against their reference in f64, against the lattice, and in conditions in which explicit
+//! integration diverges.
 
 use std::sync::Arc;
 
@@ -34,15 +35,15 @@ struct Bench {
     most: u32,
 }
 
-/// A drop as it was read back.
+/// State of a drop, read back from the GPU.
 #[derive(Clone, Copy)]
 struct Read {
-    /// From the camera, m.
+    /// Position relative to the camera, m.
     position_m: DVec3,
     velocity_m_s: DVec3,
     shell: usize,
     class: usize,
-    /// How often it came in.
+    /// Number of times that the drop has re-entered its shell's cell.
     times: u32,
 }
 
@@ -61,7 +62,7 @@ impl Bench {
         Self { device, blocks, block, pass, wind: WindTexture::default(), classes: classes(rate_mm_h, most), most }
     }
 
-    /// Steps to `time_s`; the wind is even but for the grid.
+    /// Advances the drops to `time_s` in a wind that is uniform except inside `grid`.
     fn step(&mut self, time_s: f64, position_m: DVec3, wind: DVec3, grid: Option<&WindVolume>) {
         let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.9, 1.6, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
@@ -117,7 +118,8 @@ impl Bench {
 const RADIUS_M: f64 = 1.5;
 const SPEED_M_S: f64 = 6.0;
 
-/// Potential flow across a cylinder that lies along north at the origin (Lamb 1932, section 68); none inside.
+/// Returns the potential flow across a cylinder that lies along north through the origin (Lamb 1932, section 68), m/s;
+/// 0 inside the cylinder.
 fn round_cylinder(p: DVec3) -> DVec3 {
     let r2 = p.x * p.x + p.z * p.z;
     if r2 < RADIUS_M * RADIUS_M {
@@ -144,7 +146,8 @@ fn cylinder() -> WindVolume {
     WindVolume::of_grid(&grid, glam::DMat3::IDENTITY)
 }
 
-/// Drag by the square of the relative speed, by Runge and Kutta's fourth order.
+/// Integrates the motion of a drop with quadratic drag by the fourth-order Runge-Kutta method. Returns its last
+/// position and its smallest distance from the cylinder's axis, m.
 fn fall(mut x: DVec3, mut v: DVec3, terminal: f64, time_s: f64) -> (DVec3, f64) {
     let pull = |x: DVec3, v: DVec3| {
         let w = v - round_cylinder(x);
@@ -229,7 +232,8 @@ fn in_an_even_wind_they_are_the_lattices_drops_until_they_leave_and_as_many_afte
     }
 }
 
-/// As many drops in each eighth of a shell's cell, and near the camera, as chance allows.
+/// Checks that each octant of a shell's cell, and the sphere in it around the camera, have their share of the drops
+/// within chance.
 fn evenly_spread(drops: &[Read], what: &str) {
     for s in 0..SHELLS {
         let mut octants = [0u32; 8];
@@ -266,7 +270,7 @@ fn no_step_wind_rate_or_camera_makes_a_burst_or_a_gap() {
             bench.step(t, eye, wind, None);
             evenly_spread(&bench.read(eye), &format!("rate {rate}, wind {wind}, camera {speed}, step {k} of {dt} s"));
         }
-        // A teleport without a word.
+        // The camera jumps without notice.
         eye += DVec3::new(12_345.6, -777.7, 33.3);
         bench.step(t + 1.0 / 60.0, eye, wind, None);
         evenly_spread(&bench.read(eye), "after a teleport");
@@ -281,7 +285,7 @@ fn nothing_moves_while_time_stands_and_rain_that_grows_adds_drops() {
     bench.step(7.25, eye, wind, None);
     let before = bench.read(eye);
     bench.step(7.25, eye, wind, None);
-    // A camera that moves while time stands sees the same drops from another place.
+    // While time stands still, a moved camera sees the same drops from another place.
     bench.step(7.25, DVec3::new(0.0, 0.25, 0.0), wind, None);
     let after = bench.read(DVec3::new(0.0, 0.25, 0.0));
     let mut kept = 0;
@@ -298,7 +302,7 @@ fn nothing_moves_while_time_stands_and_rain_that_grows_adds_drops() {
     evenly_spread(&bench.read(eye), "after the rate grew");
 }
 
-/// The GPU's step is the reference's.
+/// Checks `step`, the reference of the shader's step.
 #[test]
 fn a_step_ends_at_rest_and_short_steps_follow_drag_by_the_square() {
     let mut ends = Vec::new();

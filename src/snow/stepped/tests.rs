@@ -1,4 +1,4 @@
-//! Stepped flakes against the lattice and in a wind of their own.
+//! Tests of stepped flakes, against the lattice and in a wind grid.
 
 use std::sync::Arc;
 
@@ -33,7 +33,8 @@ struct Bench {
     flakes: Flakes,
 }
 
-/// A flake as it was read back: from the camera, m, without its helix; m/s; and how often it came in.
+/// State of a flake, read back from the GPU: position without its helix relative to the camera, m; velocity, m/s; and
+/// number of times that it has re-entered its shell's cell.
 struct Read {
     position_m: DVec3,
     velocity_m_s: DVec3,
@@ -48,7 +49,7 @@ fn flakes(rate_mm_h: f64, most: u32) -> Flakes {
     Flakes::new(&FlakeSizes::new(&falling, -3.0, 1.0), 1.0, most)
 }
 
-/// All through 60 m about the origin.
+/// Creates a uniform wind within 60 m of the origin along each axis.
 fn even(velocity: [f32; 3], kind: WindGridKind) -> WindVolume {
     let grid = WindGrid {
         origin: DVec3::splat(-60.0),
@@ -70,7 +71,7 @@ impl Bench {
         Self { device, blocks, block, pass, wind: WindTexture::default(), flakes: flakes(rate_mm_h, most) }
     }
 
-    /// Steps to `time_s`; the weather's wind is even.
+    /// Advances the flakes to `time_s` in a weather with a uniform wind.
     fn step(&mut self, time_s: f64, eye: DVec3, wind: DVec3, volume: Option<&WindVolume>) {
         let camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.9, 1.6, 0.1);
         let rays = ViewRays::new(&camera, &DepthMapping { reversed: true, ..DepthMapping::default() }).unwrap();
@@ -112,7 +113,8 @@ impl Bench {
         self.pass.read(&self.device).into_iter().enumerate().flat_map(of_shell).collect()
     }
 
-    /// The lattice's flakes without their helix, in the order of the states.
+    /// Returns the places of the lattice's flakes relative to the camera, without their helix, in the order of the
+    /// states, m.
     fn of_lattice(&self, eye: DVec3, wind: DVec3, time_s: f64) -> Vec<DVec3> {
         let all = lattice::flakes(&self.flakes, SEED, eye, wind * time_s, time_s);
         let place = |f: lattice::Flake| {
@@ -127,7 +129,7 @@ impl Bench {
 fn in_an_even_wind_they_are_the_lattices_flakes_until_they_leave() {
     let mut bench = Bench::new(1.5, 12_000);
     let (eye, wind) = (DVec3::new(3.0, -2.0, 1.5), DVec3::new(1.5, 0.5, 0.0));
-    // A wind that is there and adds nothing.
+    // A wind volume that adds 0 m/s.
     let nothing = even([0.0; 3], WindGridKind::Added);
     bench.step(100.0, eye, wind, Some(&nothing));
     let first = bench.read(eye);
@@ -162,14 +164,14 @@ fn they_go_with_the_wind_where_they_are_at_their_own_fall() {
         let v = f.velocity_m_s - DVec3::new(4.0, 0.0, 0.5);
         assert!(v.truncate().length() < 0.02 && v.z < -0.9 * slowest && v.z > -4.0, "{}", f.velocity_m_s);
     }
-    // The mean fall is that of the classes by number.
+    // The mean fall speed is that of the classes, weighted by their numbers of flakes.
     let per_class = (0..lattice::CLASSES).map(|k| {
         let upto = |k: usize| (0..SHELLS).map(|s| f64::from(bench.flakes.upto[k][s])).sum::<f64>();
         (upto(k) - if k > 0 { upto(k - 1) } else { 0.0 }) * f64::from(bench.flakes.table[k][1]) * SPEED_UNIT
     });
     let (want, got) = (per_class.sum::<f64>() / n, 0.5 - now.iter().map(|f| f.velocity_m_s.z).sum::<f64>() / n);
     assert!((got / want - 1.0).abs() < 0.01, "{got} of {want}");
-    // Evenly spread after all have come in anew, many times.
+    // The flakes stay evenly spread after each has re-entered the cell.
     assert!(now.iter().all(|f| f.times > 0));
     for s in 0..bench.flakes.shells {
         let mut octants = [0.0; 8];

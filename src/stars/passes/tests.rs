@@ -13,7 +13,7 @@ use crate::{
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SIZES: [[u32; 2]; 3] = [[320, 180], [640, 360], [1280, 720]];
 
-/// Stars over a place at a time.
+/// A star pass with its device, and the sky of one place and time.
 struct Night {
     device: Arc<Device>,
     pass: StarPass,
@@ -22,7 +22,7 @@ struct Night {
 }
 
 impl Night {
-    /// Stars that stand still, their directions (east, north, up).
+    /// Creates a night with these stars, whose directions are (east, north, up).
     fn new(stars: Vec<Star>) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let place = Place { latitude_deg: 45.0, longitude_deg: 0.0, altitude_m: 0.0 };
@@ -33,8 +33,7 @@ impl Night {
         Self { pass: StarPass::new(&device), device, settings, heavens }
     }
 
-    /// Draws the stars and reads them back; `depth` is written over the left half of the picture, beyond it is the far
-    /// end.
+    /// Draws the stars and reads the picture back; `depth` is the host's depth.
     fn draw(&mut self, view: &StarView<'_>, depth: Option<StarDepth<'_>>) -> Vec<[f64; 3]> {
         let device = self.device.clone();
         let target = texture(&device, view.size.into(), FORMAT, 1);
@@ -61,7 +60,7 @@ impl Night {
     }
 }
 
-/// A depth texture that holds one depth.
+/// Creates a depth texture with the same depth in all pixels.
 fn depth_of(device: &Device, size: [u32; 2], samples: u32, depth: f32) -> wgpu::TextureView {
     let view =
         texture(device, size.into(), wgpu::TextureFormat::Depth32Float, samples).create_view(&Default::default());
@@ -78,7 +77,7 @@ fn depth_of(device: &Device, size: [u32; 2], samples: u32, depth: f32) -> wgpu::
     view
 }
 
-/// 60 stars of magnitudes 0 to 5 and several colours, 10 to 40 degrees up and within 30 degrees of the north.
+/// Returns 60 stars of magnitudes 0 to 5 and several colours, 10 to 40 degrees up and within 30 degrees of north.
 fn sprinkled() -> Vec<Star> {
     let share = |i: u32, prime: u32| f64::from(i * prime % 61) / 61.0;
     let star = |i: u32| {
@@ -88,7 +87,7 @@ fn sprinkled() -> Vec<Star> {
     (0..60).map(star).collect()
 }
 
-/// A camera that looks north, 25 degrees up, turned to the left by so many rad.
+/// Creates a camera that looks 25 degrees above the northern horizon, turned to the left by `turn` rad.
 fn camera(turn: f64, aspect: f64) -> Camera {
     let forward = crate::almanac::celestial::direction(-turn.to_degrees(), 25.0);
     Camera::look_to(DVec3::ZERO, forward, DVec3::Z, 50f64.to_radians(), aspect, 0.1)
@@ -99,7 +98,7 @@ fn rays(camera: &Camera) -> ViewRays {
     ViewRays::new(camera, &mapping).unwrap()
 }
 
-/// A view in clear air without stars left out.
+/// Creates a view in clear air without a limit of brightness.
 fn view<'a>(heavens: &'a Heavens, camera: &Camera, rays: &'a ViewRays, size: [u32; 2]) -> StarView<'a> {
     StarView {
         heavens,
@@ -116,7 +115,7 @@ fn view<'a>(heavens: &'a Heavens, camera: &Camera, rays: &'a ViewRays, size: [u3
     }
 }
 
-/// All light of a picture, each pixel's radiance times its own solid angle.
+/// Returns the sum of a picture's light: luminance times solid angle of each pixel.
 fn light_of(picture: &[[f64; 3]], view: &StarView<'_>, camera: &Camera) -> f64 {
     let [width, height] = view.size.map(f64::from);
     let focal = [camera.projection.x_axis.x, camera.projection.y_axis.y];
@@ -129,7 +128,7 @@ fn light_of(picture: &[[f64; 3]], view: &StarView<'_>, camera: &Camera) -> f64 {
     (0..picture.len()).map(texel).sum()
 }
 
-/// Returns the picture that the reference makes of the same stars, and all their light.
+/// Returns the picture of the same stars by the reference, and the sum of its light.
 fn expected(view: &StarView<'_>, stars: &[Star]) -> (Vec<[f64; 3]>, f64) {
     let mut picture = vec![[0.0; 3]; (view.size[0] * view.size[1]) as usize];
     let mut light = 0.0;
@@ -177,7 +176,8 @@ fn stars_send_the_same_light_at_every_size_and_do_not_flicker_as_the_camera_turn
         let aspect = f64::from(size[0]) / f64::from(size[1]);
         let mut lights = Vec::new();
         for step in 0..6 {
-            // A pixel is some 50 degrees over the height: turned by a sixth of it each time.
+            // A pixel spans about 50 degrees divided by the picture's height; each step turns the camera by a sixth of
+            // that.
             let turn = f64::from(step) / 6.0 * 50f64.to_radians() / f64::from(size[1]);
             let camera = camera(turn, aspect);
             let rays = rays(&camera);
@@ -233,7 +233,7 @@ fn faint_stars_planets_and_the_sky_below_cost_nothing() {
     assert_eq!([count(&mut night, &all), count(&mut night, &some)], [60, bright]);
     assert_eq!(night.pass.bytes(), (66 * 24 + size_of::<StarUniform>()) as u64);
     let mut whole = StarPass::new(&device);
-    // Of the catalogue only what is in the picture, and a rim of it.
+    // The pass prepares only stars of the catalogue in the picture and in a margin around it.
     let shown = whole.prepare(&device, &StarSettings::default(), &all, FORMAT, None).unwrap() as usize;
     let lux = |s: &Star| crate::stars::light::star_lux(s.magnitude, s.temperature_k);
     let direction = |s: &Star| s.direction_at(heavens.years);
@@ -241,12 +241,12 @@ fn faint_stars_planets_and_the_sky_below_cost_nothing() {
     let seen = catalogue().iter().filter(|s| reference::point(&sky, direction(s), lux(s)).is_some()).count();
     assert!(shown >= seen && shown < seen + seen / 8 + 6, "{shown} of {seen}");
     assert_eq!(whole.bytes(), 218_448 + size_of::<StarUniform>() as u64);
-    // What falls below the limit fades rather than leaps.
+    // Stars near the limit fade rather than vanish at once.
     let (picture, _) = expected(&some, night.settings.stars());
     let drawn = night.draw(&some, None);
     let off = picture.iter().zip(&drawn).map(|(a, b)| (luminance(a) - luminance(b)).abs()).fold(0.0, f64::max);
     assert!(off < 0.01 * picture.iter().map(luminance).fold(0.0, f64::max), "{off}");
-    // The planet hides all of it.
+    // With the horizon at 80 degrees the planet hides all stars.
     let below = night.draw(&StarView { horizon_deg: 80.0, ..all }, None);
     assert!(below.iter().all(|p| *p == [0.0; 3]));
     let bad = StarView { transmittance: 1.5, ..all };
