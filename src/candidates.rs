@@ -29,7 +29,7 @@ use crate::{
 /// Effects that can be drawn. New rooms add to the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
-    /// Clear air with haze: the sky behind and the air in front of things.
+    /// Clear air with haze: the sky behind and the air in front of objects.
     Sky,
     /// The low layer of fog or mist.
     Fog,

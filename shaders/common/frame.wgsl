@@ -52,7 +52,7 @@ struct FrameUniform {
     medium_share: f32,
     // Share of the direct light of sun or moon that clouds let through.
     direct_share: f32,
-    // Of the rain: the extinction that drawn drops replace, 1/m, and the distance up to which they do, m. The veil
+    // Extinction of the rain that drawn drops replace, 1/m, and the distance up to which they replace it, m. The veil
     // leaves this part out.
     drops: vec2f,
     // Drawn shares of air, fog, clear sky and drops, 0 to 1 (src/plan).
@@ -85,8 +85,7 @@ struct FrameUniform {
     clouds_over: f32,
     // Mean light of the clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without such clouds.
     mean_cloud: vec4f,
-    // Of falling snow, as `drops`: the extinction that drawn flakes replace, 1/m, and the distance up to which they do,
-    // m.
+    // Extinction of falling snow that drawn flakes replace, 1/m, and the distance up to which they replace it, m.
     flakes: vec2f,
     // Factor, a power of two, that scales light so that white is about 1 (frame/even.wgsl).
     even_scale: f32,

@@ -11,8 +11,8 @@ const WET_SNOW: f32 = 0.15;
 const SNOW_WRAP: f32 = 0.12;
 // Width of the edges of patches, in units of the hollows' depth.
 const SNOW_EDGE: f32 = 0.35;
-// Apparent albedo of the host's ground in full light. Below x the ground is taken to lie in the lamp's shadow, above y
-// it is taken not to: nothing outdoors is so dark.
+// Apparent albedo of the host's ground in full light. Ground that appears darker than x, as no outdoor ground is,
+// counts as in the lamp's shadow; ground brighter than y counts as lit.
 const SHADOWED: vec2f = vec2f(0.015, 0.05);
 // Number of halvings from a cell of the rings' grid to the finest cells of glints.
 const FINEST_GLINT: f32 = 6.0;

@@ -49,7 +49,7 @@ struct SkyView {
 }
 
 @group(1) @binding(0) var<uniform> sky_view: SkyView;
-// Observer's sky, and the air in front of things.
+// Observer's sky, and the air in front of objects.
 @group(1) @binding(1) var sky_tables: texture_2d_array<f32>;
 // Light of the planet; where pixels march, the sources lie below it.
 @group(1) @binding(2) var sky_lights: texture_2d<f32>;

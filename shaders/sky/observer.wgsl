@@ -1,7 +1,7 @@
 //!include "common/fullscreen.wgsl"
 //!include "sky/march.wgsl"
 //!include "sky/view.wgsl"
-// Tables of an observer: the sky by direction, and the air in front of things by direction and distance. They hold two
+// Tables of an observer: the sky by direction, and the air in front of objects by direction and distance. They hold two
 // colours. One is light scattered by gas or more than once, which is complete. The other is light scattered once by
 // haze without its phase function. Pixels apply that function, so that the glow around the light is sharp.
 
@@ -9,7 +9,7 @@ struct SkyObserver {
     altitude: Length,
     // Zenith cosine of the light.
     mu_s: Cosine,
-    // 1 draws the air in front of things, 0 the sky.
+    // 1 draws the air in front of objects, 0 the sky.
     is_air: u32,
     unused: u32,
     edges: SkyEdges,

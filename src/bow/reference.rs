@@ -76,7 +76,7 @@ impl Rays {
         reflected.map(|r| (1.0 - r * r) * (-r).powi(self.inside as i32))
     }
 
-    /// Returns the amplitudes of a ray in both polarisations, spread over the directions of its neighbours.
+    /// Returns the amplitudes of a ray in both polarisations, reduced by the divergence of neighbouring rays.
     fn amplitude(&self, b: f64, turned: f64) -> [f64; 2] {
         let spread = b / (turned.sin().abs().max(1e-6) * self.slope(b).abs());
         self.passed(b).map(|f| f * spread.sqrt())

@@ -7,7 +7,7 @@
 //! so every cell except a pit has a lower neighbour that has been visited. Run-off takes the steepest of the eight
 //! directions. Water leaves at the border.
 
-/// Number of no hollow: water that drains there leaves the grid.
+/// Index that stands for no hollow: water that drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
 /// Owner of a cell that has not been visited yet.
 const UNSEEN: u32 = u32::MAX - 1;

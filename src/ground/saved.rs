@@ -1,5 +1,5 @@
-//! Saved form of a terrain and its water as text. Numbers are the words of their bits; a run of equal ones is written
-//! as "bits*times".
+//! Saved form of a terrain and its water as text. Each number is the hexadecimal word of its bits; a run of equal
+//! numbers is written as "bits*times".
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! One-channel noise texture on the CPU: its bytes with mip levels, and the cover that clouds cut out of it have.
+//! One-channel noise texture on the CPU: its bytes with mip levels, and the cover of clouds that are cut out of it.
 
 use glam::DVec3;
 

@@ -35,7 +35,7 @@ use crate::{
 pub(crate) struct RainLayer {
     /// Block of drops, followed by that of splashes.
     block: UniformBlock,
-    /// Columns of areas, followed by their drops; used where a rim of an area is near.
+    /// Columns of rain areas, followed by the numbers of drops near a rim ([`LocalUniform`]).
     local: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
@@ -324,7 +324,7 @@ fn pipeline(
     counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("rain/drops_view.wgsl"))?;
-    // Mixtures use each column by itself: the order of the columns takes care of overlaps.
+    // Overlaps need no test here: near a rim the columns' drops are mixed one column after another.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     pass::quads(
         device,

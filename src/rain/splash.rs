@@ -20,7 +20,7 @@ pub const LEAST_MM: f64 = 1.2;
 
 /// Number of groups of drops, equal in number; each group has its mean size.
 const SIZES: usize = 8;
-/// Ratio of slots to those that level ground fills: slopes to windward get more drops.
+/// Ratio of the number of slots to the number of drops on level ground: windward slopes get more drops.
 const MARGIN: f64 = 1.25;
 
 /// `SplashUniform` of `shaders/rain/splash.wgsl`, which explains the fields.

@@ -90,7 +90,7 @@ pub struct SkySettings {
     pub sky_below: u32,
     /// Number of panels in a march for an observer's sky, `[1, 32]`, default 5.
     pub sky_panels: u32,
-    /// Number of azimuths on `[0, pi]` in the table of the air in front of things, `[4, 64]`, default 24.
+    /// Number of azimuths on `[0, pi]` in the table of the air in front of objects, `[4, 64]`, default 24.
     pub air_azimuths: u32,
     /// Number of rows above the horizon in the table of the air, `[4, 128]`, default 20.
     pub air_above: u32,

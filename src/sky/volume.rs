@@ -1,4 +1,4 @@
-//! Tables of one observer, for each lamp: the sky by direction, and the air in front of things.
+//! Tables of one observer, for each lamp: the sky by direction, and the air in front of objects.
 
 use std::{ops::Range, sync::Arc};
 

@@ -66,8 +66,8 @@ pub(super) struct ColumnForcing {
     albedo_kept: f64,
 }
 
-/// Settling in a step, tabulated by density: the rate by grain changes in dry snow, and the rate per unit of the
-/// column's mass.
+/// Settling in a step, tabulated by density: the relative loss of depth by metamorphism of dry grains, and the loss by
+/// load per unit of the column's mass.
 #[derive(Clone, Debug)]
 pub(super) struct Settling(Box<[[f64; 2]; DENSITIES]>);
 

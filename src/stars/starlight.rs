@@ -1,10 +1,10 @@
-//! Starlight as measured from beyond the dust of the planets, and its interpolation.
+//! Starlight as measured from beyond the interplanetary dust, and its interpolation.
 //!
 //! Pioneer 10 mapped the sky from more than 2.8 au, where there is no zodiacal light: Leinert et al. 1998, tables 37
 //! (440 nm) and 38 (640 nm), after Toller 1981 and Weinberg et al. 1974, within 5 to 8 %. The tables leave out stars
 //! brighter than magnitude 6.5, which are drawn as points. They include faint stars, dust lit by stars, and other
-//! galaxies. Their directions are 4 to 10 degrees apart, too coarse for the dark lane in the band. Between them the
-//! light follows the disc of [`super::galaxy`], times the mean ratio of measured to modelled light around each
+//! galaxies. Their directions are 4 to 10 degrees apart, too coarse for the dark lane of the Milky Way. Between them
+//! the light follows the disc of [`super::galaxy`], times the mean ratio of measured to modelled light around each
 //! direction.
 
 use glam::DVec3;

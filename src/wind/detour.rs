@@ -315,7 +315,7 @@ mod tests {
         assert!(at(0.0) > 15.0, "{}", at(0.0));
         let half = at(map.half_height_m) / at(0.0);
         assert!((half - 0.5).abs() < 1e-9 && (4.0..10.0).contains(&map.half_height_m), "{half} {}", map.half_height_m);
-        // The same layer of slow air over a hill as high as the wall: there the wind is sampled above it.
+        // On a hill as high as the wall the wind is sampled above the layer of slow air.
         let hill = DetourMap::new(&wall, &|_| 7.0, &|_| DVec2::ZERO, 40.0).expect("wind");
         assert!(hill.lags_m.as_flattened().iter().all(|v| v.abs() < 1e-3));
     }

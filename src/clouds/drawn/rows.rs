@@ -1,5 +1,5 @@
-//! Rows of a map around the camera that a frame refreshes: as many as have become old, or all if nothing of the map
-//! holds any more.
+//! Rows of a map around the camera that a frame refreshes: as many as have become old, or all if the whole map is out
+//! of date.
 
 /// Progress of a map.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! Threshold, dome and extinction with which a part of a layer with its own cover is cut out of the field.
+//! Threshold, dome and extinction (see the folder's `mod.rs`) that give a part of a layer its own cover.
 
 use super::{
     shape::Shape,

@@ -14,7 +14,7 @@ const SOLID_MEAN: f64 = 0.47;
 /// Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f64 = 2.2;
 
-/// Largest amount that the solid noise adds to the excess, in units of `rough`; nearly all of the noise is below it.
+/// Amount, in units of `rough`, that the solid noise adds to the excess at most; only rare peaks exceed it.
 pub(crate) const MOST_FRAYED: f64 = 0.8;
 
 /// Clouds of a layer.

@@ -7,8 +7,8 @@
 //! between.
 //!
 //! Cells over rain areas ([`super::cells`]) are a separate layer with cloud nowhere else. Over an area the layer is
-//! closed. It opens across an edge beyond the area's border that is a little wider than its clouds, so that the field
-//! shapes it.
+//! overcast. Beyond the area's border its cover falls to 0 across a strip slightly wider than its clouds, so that the
+//! field gives the edge its shape.
 
 use std::sync::Arc;
 

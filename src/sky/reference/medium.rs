@@ -87,7 +87,7 @@ impl Medium {
         }
         marks.retain(|m| (0.0..=self.top_m).contains(m));
         marks.sort_by(f64::total_cmp);
-        // Of marks closer than a tenth of their height one is kept; the ends always stay.
+        // Marks less than a tenth of their height above the one below are dropped; the two ends always stay.
         let mut kept: Vec<f64> = vec![0.0];
         for m in marks {
             if m > kept[kept.len() - 1] * 1.1 + 1e-9 && m < self.top_m * 0.95 {

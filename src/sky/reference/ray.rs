@@ -363,7 +363,7 @@ mod tests {
             let middle = start + 0.43 * (end - start);
             let (whole, a, b) =
                 (ray.columns(&m, start, end), ray.columns(&m, start, middle), ray.columns(&m, middle, end));
-            // The same path, followed from its other end.
+            // Follows the same path from its other end.
             let h = ray.altitude_at(middle);
             let back_mu = -(ray.radius_m() * mu + middle) / (m.bottom_m + h);
             let back = Ray::new(&m, h, back_mu).columns(&m, 0.0, middle - start);
