@@ -117,9 +117,9 @@ fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
     return step.here.extinction * layer.medium.y * step.length;
 }
 
-// Returns the step after the place at `next` was looked up, once cloud was found there or before. `clear` has the
-// distance of the last place without cloud since the last cloud (x), and the excess that cloud needed there beyond what
-// the place had, or 0 (y).
+// Returns the step after the place at `next` was looked up, once cloud was found there or before. `clear.x` is the
+// distance of the last place without cloud since the last cloud; `clear.y` is the amount by which the excess there fell
+// short of cloud, or 0.
 fn cloud_looked(before: CloudStep, layer: CloudLayer, place: CloudPlace, here: CloudHere, clear: vec2f, jitter: f32) -> CloudStep {
     var step = before;
     if before.looks_for == CLOUD_WITHIN {

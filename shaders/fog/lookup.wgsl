@@ -19,7 +19,7 @@ override FOG_KINDS: u32 = 63u;
 override FOG_ABSORBING: bool = true;
 // Whether layers may have patches.
 override FOG_PATCHES: bool = true;
-// Whether anything falls.
+// Whether there may be precipitation.
 override FOG_FALLING: bool = true;
 // Whether rain may have curtains.
 override FOG_CURTAINS: bool = true;

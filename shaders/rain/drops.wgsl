@@ -172,7 +172,7 @@ fn drop_part(drop: Drop, velocity: vec3f) -> vec4f {
     return part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), max(length(drop.position), 1e-3));
 }
 
-// Whether a drop with a `velocity` can be in the picture, if nothing keeps it off.
+// Whether a drop with a `velocity` can be in the picture if it is not sheltered.
 fn may_show(drop: Drop, velocity: vec3f) -> bool {
     let half = drop_part(drop, velocity).xyz;
     return drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
@@ -190,7 +190,7 @@ struct Streak {
     light: vec4f,
 }
 
-// Returns `cover` raised by the contrast gain: the cover of `gain` such things, one in front of the other.
+// Returns `cover` raised by the contrast gain: the cover of `gain` such streaks, one in front of the other.
 fn gained(cover: f32) -> f32 {
     let most = min(cover, 1.0);
     return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);

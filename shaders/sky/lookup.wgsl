@@ -57,8 +57,8 @@ struct SkyView {
 
 // Whether every pixel marches; set by `SkyTables::pipeline_constants` for that model.
 override SKY_MARCH: bool = false;
-// Number of lamps that a pipeline draws; 2 means `lamp_count`. On a software driver a loop costs one turn more than it
-// takes; a constant of 0 or 1 needs no loop.
+// Number of lamps that a pipeline draws; 2 means `lamp_count`. On a software driver a loop costs one iteration more
+// than it runs; a constant of 0 or 1 needs no loop.
 override SKY_LAMPS: u32 = 2u;
 
 fn sky_lamps() -> u32 {

@@ -93,7 +93,7 @@ struct Flake {
     shape: u32,
 }
 
-// Returns the units of a class scattered by a flake's random word, up to an eighth up or down.
+// Returns the fall speed or turns of a flake, in units: those of its class, varied at random by up to an eighth.
 fn scattered(units: i32, random: u32) -> i32 {
     return units + ((units * (i32(random & 255u) - 128)) >> 10u);
 }
@@ -235,7 +235,7 @@ fn flake_part(flake: Flake) -> vec4f {
     return part_drawn((flake.velocity - flakes.camera) * (0.5 * flakes.exposure), max(length(flake.position), 1e-3));
 }
 
-// Whether a flake can be in the picture, if nothing keeps it off.
+// Whether a flake can be in the picture if it is not sheltered.
 fn may_show(flake: Flake, half: vec3f) -> bool {
     return flake.share > 0.0 && in_picture(flake.position - half, flake.position + half, flake.diameter);
 }

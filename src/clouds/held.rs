@@ -1,5 +1,5 @@
 //! Clouds of a context: the model that draws them, and the noise that they are cut out of, which answers the host's
-//! questions about clouds.
+//! queries about clouds.
 
 use std::sync::{Arc, OnceLock};
 

@@ -21,7 +21,7 @@
 //! Each folder uses only those before it. [`field`] says where cloud is: shape, threshold, cells and maps of cover, and
 //! `field::overhead`, the one query for the layers over a place. [`light`] says how bright cloud is. `drawn` marches
 //! rays and holds the GPU resources of a picture. `maps` has the shadow map and the panorama. `view` and `passes`
-//! combine them for a frame, `held` for a host's questions.
+//! combine them for a frame, `held` for a host's queries.
 //!
 //! # Error
 //! Drawn light: even slabs within 5 % or 0.01 of discrete ordinates; each face of a cube within 15 % or 0.03 of the

@@ -4,10 +4,10 @@
 
 use super::basins::{Basins, OUT};
 
-/// Mark in place of the volume of a hollow whose parts hold separate waters.
+/// Mark in place of the volume of a hollow whose parts hold separate lakes.
 const APART: f64 = -1.0;
 
-/// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate waters.
+/// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate lakes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pools {
     pub held: Vec<f64>,
@@ -128,7 +128,7 @@ impl Pools {
     }
 
     /// Returns the water level in a hollow that is not part of another, mm; negative infinity while its parts hold
-    /// separate waters.
+    /// separate lakes.
     pub fn level(&self, basins: &Basins, basin: usize) -> f64 {
         let held = self.held[basin];
         if held >= 0.0 { basins.level(basin, held).0 } else { f64::NEG_INFINITY }
@@ -176,7 +176,7 @@ mod tests {
         // Above the saddle 400 fit in; the rest leaves.
         assert!((pools.pour(&basins, a as u32, 1000.0) - 640.0).abs() < 1e-3);
         assert!((pools.total(&basins) - 900.0).abs() < 1e-3);
-        // Down by 120 mm: below the saddle the waters part again, and each sinks on its own.
+        // Down by 120 mm: below the saddle the lakes part again, and each sinks on its own.
         assert!((pools.sink(&basins, 100.0) - 400.0).abs() < 1e-3);
         assert!((pools.sink(&basins, 20.0) - 80.0).abs() < 1e-3, "the saddle is dry: 4 cells give 20 each");
         assert!((pools.total(&basins) - 420.0).abs() < 1e-3);

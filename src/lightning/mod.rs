@@ -6,9 +6,10 @@
 //!
 //! # Model
 //! * [`schedule`]: the flashes of a storm are a Poisson process, evenly spread in time. They are taken from a fixed
-//!   stream of sixty candidates a minute, each with a random number from 0 to 1. A candidate strikes if its number is
-//!   below the rate divided by sixty a minute. A changing rate therefore adds and removes flashes, but moves none. Each
-//!   flash stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak current.
+//!   stream of sixty candidates a minute, each with a random number from 0 to 1. A candidate becomes a flash if its
+//!   number is below the rate divided by sixty a minute. A changing rate therefore adds and removes flashes, but moves
+//!   none. Each flash stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak
+//!   current.
 //! * Storm cells: one in each square of 20 km where the weather has thunder, or the host's ([`LightningSettings`]). A
 //!   host may also trigger single flashes ([`FlashTrigger`]).
 //! * [`channel`]: the path of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or

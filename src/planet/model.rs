@@ -86,8 +86,8 @@ pub struct Planet {
     pub ground_albedo: [f64; 3],
     /// Gas.
     pub rayleigh: Rayleigh,
-    /// Haze. The Earth's means that the weather alone gives the haze; any other is the planet's own
-    /// ([`Planet::own_haze`]).
+    /// Haze. If it equals the Earth's, all haze comes from the weather; otherwise this haze is there besides the
+    /// weather's ([`Planet::own_haze`]).
     pub mie: Mie,
     /// Ozone.
     pub absorption: Absorption,

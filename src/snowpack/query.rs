@@ -1,4 +1,4 @@
-//! Answers to a host's questions about lying snow.
+//! Answers to a host's queries about lying snow.
 
 use glam::DVec3;
 

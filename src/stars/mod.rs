@@ -30,10 +30,10 @@
 //!
 //! # Glow
 //! Airglow has 145 S10 at the zenith (Benn and Ellison 1998) and brightens towards the horizon by van Rhijn 1921.
-//! Zodiacal light follows table 16 of Leinert et al. 1998. Starlight is what Pioneer 10 measured beyond the dust of the
-//! planets (Leinert et al. 1998, tables 37 and 38; [`starlight`]), interpolated by a disc of stars and dust with the
-//! luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, one star of magnitude 10 a square degree, is 8.34e-7 cd/m^2.
-//! The air dims all three and adds scattered light from the dome's mean.
+//! Zodiacal light follows table 16 of Leinert et al. 1998. Starlight is what Pioneer 10 measured beyond the
+//! interplanetary dust (Leinert et al. 1998, tables 37 and 38; [`starlight`]), interpolated by a disc of stars and dust
+//! with the luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, one star of magnitude 10 a square degree, is 8.34e-7
+//! cd/m^2. The air dims all three and adds scattered light from the dome's mean.
 //!
 //! # Settings
 //! [`StarSettings`]: the host's own stars, its own matrix, whether planets are drawn, and the strength of the airglow.

@@ -200,7 +200,7 @@ struct Fluxes {
     sky: f64,
 }
 
-/// Light that comes down through the parts of layers above a place, for 1 above them all.
+/// Light that comes down through the parts of layers above a place, as shares of the light above them all.
 struct FromAbove {
     /// Share of the beam that passed a cloud unscattered; `beam_through` also contains light scattered nearly straight
     /// on.

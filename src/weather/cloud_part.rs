@@ -52,8 +52,8 @@ impl CloudSlab {
     /// Shares of its cover and of its optical depth above a height, which counts from 0 at the base to 1 at the top.
     ///
     /// Laws fitted to means over the drawn clouds (`clouds::field`). The higher above the base, the fewer broken clouds
-    /// reach there; a cumulonimbus has its anvil on top; a closed layer ends below its top, sheets more unevenly than
-    /// cumulus.
+    /// reach there; a cumulonimbus has its anvil on top; a closed layer ends below its top, and more unevenly for
+    /// sheets than for cumulus.
     fn shares_above(&self, height: f64) -> [f64; 2] {
         if height <= 0.0 || height >= 1.0 {
             return [1.0 - height; 2];

@@ -18,7 +18,7 @@ pub const LN_20: f64 = 2.995_732_273_553_991;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Total extinction at station height, 1/m: air, aerosol, fog, precipitation and matter lifted by the wind.
-    /// Excludes shallow or patchy fog that the reported visibility looks over or past.
+    /// Excludes shallow or patchy fog, which the reported visibility leaves out.
     pub extinction_per_m: f64,
     /// Temperature, humidity, pressure, and the Rayleigh scattering that follows from them.
     pub air: Air,
@@ -250,7 +250,8 @@ impl AerosolLayer {
         })
     }
 
-    /// Returns the factor from a value at station height to one at sea level, for which planet files state theirs.
+    /// Returns the factor that converts an extinction at station height to sea level, the altitude of the values in
+    /// planet files.
     pub fn sea_level_factor(&self) -> f64 {
         libm::exp(self.reference_altitude_m / self.scale_height_m)
     }

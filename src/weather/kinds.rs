@@ -1,4 +1,5 @@
-//! Kinds of things that a weather report names, each with a number that never changes (C hosts pass the number).
+//! Kinds of cloud, fog, precipitation and other matter that a weather report names, each with a number that never
+//! changes (C hosts pass the number).
 
 use crate::error::{Error, Result};
 

@@ -56,7 +56,7 @@ pub fn humidity_growth(kind: AerosolKind, relative_humidity: f64) -> f64 {
     libm::pow(dryness, -properties(kind).growth_exponent)
 }
 
-/// Returns the visibility under clean skies for which a report says only "at least", m. A background aerosol with a
+/// Returns the visibility in clean air, m, for a report that gives only a lower bound. A background aerosol with a
 /// visibility of 40 km at humidity 0.5 grows with humidity ([`humidity_growth`]), and `falling_extinction_per_m` adds
 /// to it.
 pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: f64) -> f64 {
@@ -137,8 +137,7 @@ fn visibility_above_m(w: &Weather, o: &Overrides) -> f64 {
     o.visibility_above_fog_m.unwrap_or(if fog { 10_000.0 } else { 5_000.0 })
 }
 
-/// Returns the visibility inside a layer that the report looks over or past, m; `None` if the layer is part of the
-/// reported visibility.
+/// Returns the visibility inside a layer that the reported visibility leaves out, m; `None` if it includes the layer.
 fn visibility_inside_m(w: &Weather) -> Option<f64> {
     let beside = match (w.fog.kind, w.lofted.kind) {
         (FogKind::Shallow, _) => true,
@@ -165,9 +164,9 @@ fn sky_depth(depth: f64) -> f64 {
 /// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the
 /// ground.
 ///
-/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] allows. Other aerosols take at most what
-/// leaves [`visibility_above_m`], because dry background air never gets thicker than that; the remainder is mist or
-/// fog, whether the report names it or not.
+/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] allows. Other aerosols take at most the
+/// extinction that belongs to [`visibility_above_m`], because dry background air never gets hazier than that; the
+/// remainder is mist or fog, whether the report names it or not.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> ExtinctionShares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);

@@ -1,4 +1,4 @@
-//! Radiance and transmittance of clouds along a ray, in f64, for questions: twin of `shaders/clouds/march.wgsl` and
+//! Radiance and transmittance of clouds along a ray, in f64, for queries: twin of `shaders/clouds/march.wgsl` and
 //! `shaders/clouds/about.wgsl`, with finer steps.
 //!
 //! # Error
@@ -76,7 +76,7 @@ struct MarchedLayer<'a> {
     scale: f64,
 }
 
-/// Clouds around a place, for questions.
+/// Clouds around a place, for queries.
 pub(crate) struct CloudRays<'a> {
     layers: Vec<MarchedLayer<'a>>,
     light: LightWithin<'a>,

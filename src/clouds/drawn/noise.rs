@@ -1,4 +1,4 @@
-//! Noise that clouds are cut out of, for the host's questions, with caches of the light in clouds and of layers under
+//! Noise that clouds are cut out of, for the host's queries, with caches of the light in clouds and of layers under
 //! maps.
 
 use std::sync::{Arc, Mutex};

@@ -109,8 +109,8 @@ impl LitLayer {
         Field { shape: self.shape, map: &self.map, solid: &self.solid, placed: Default::default() }
     }
 
-    /// Returns the model's light along a ray from `eye` (east, north, up), m: the march for questions through this
-    /// field. `longer` scales the lengths of its steps by depth and by angle.
+    /// Returns the model's light along a ray from `eye` (east, north, up), m: the march for queries through this field.
+    /// `longer` scales the lengths of its steps by depth and by angle.
     pub fn model(&self, eye: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
         // Each source has its own channel, with unit strength.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };

@@ -207,7 +207,7 @@ pub(crate) fn over_place(
         let radius_m = (semi_m.x * semi_m.y).sqrt();
         open * (1.0 - view_factor(radius_m, height_m, (away / semi_m).length() * radius_m))
     });
-    // Such a cell is whole: none of its cover is gaps between clouds, so their distance is infinite.
+    // Such a cell has no gaps between clouds, so the distance from cloud to cloud is infinite.
     Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
 }
 

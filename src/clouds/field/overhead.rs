@@ -1,5 +1,5 @@
 //! Query for the layers over a place: the weather's layers where the wind has carried them, with a host's map of cover
-//! and the cells over rain areas. Both pictures and questions use it.
+//! and the cells over rain areas. Both pictures and queries use it.
 
 use std::sync::Arc;
 

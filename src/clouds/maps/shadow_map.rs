@@ -156,9 +156,9 @@ impl ShadowMap {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
-    /// Refreshes some rows once enough of them are old. If nothing of the map holds any more, or the picture is cut,
-    /// the whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows. Returns
-    /// the number of passes.
+    /// Refreshes some rows once enough of them are old. If the whole map is out of date, or the picture is cut, the
+    /// whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows. Returns the
+    /// number of passes.
     pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
         let here = lie.standing;
         self.block.write(bytemuck::bytes_of(&lie.uniform()));

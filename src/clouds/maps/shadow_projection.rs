@@ -150,7 +150,7 @@ impl ShadowProjection {
 }
 
 impl ShadowInputs {
-    /// Whether nothing of a map drawn from `earlier` holds any more.
+    /// Whether a map drawn from `earlier` is wholly out of date.
     pub fn leaps_from(&self, earlier: &Self) -> bool {
         let (time_s, turn, threshold) = LEAPS;
         (self.time_s - earlier.time_s).abs() > time_s

@@ -2,10 +2,11 @@
 //!
 //! The water of a pit rises over its neighbours from the lowest up, until the next cell has a lower neighbour outside
 //! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014) of one hollow, and only as far as
-//! its water reaches. Further water spills over the saddle into the pit beyond. Two full waters that spill into each
+//! its water reaches. Further water spills over the saddle into the pit beyond. Two full lakes that spill into each
 //! other become one, which rises on from the saddle; when it sinks below the saddle, they part again. This builds the
 //! depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below. So the ground is examined only
-//! where water stands. After a change of the ground, the waters that it touches are discarded and poured again.
+//! where water stands. After a change of the ground, the lakes that it touches are removed and their water is poured
+//! again.
 //!
 //! Water is counted in millimetres times cells. Cells of equal height are ordered by place, so the same ground and
 //! water give the same hollows, whatever their history.
@@ -18,10 +19,10 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use super::drains::is_lower;
 use crate::terrain::{CellId, Terrain};
 
-/// Number of no hollow or lake.
+/// Index that stands for no hollow or lake.
 const NONE: u32 = u32::MAX;
 
-/// Cell at the rim of a water. The lowest cell compares greatest, for the heap.
+/// Cell at the rim of a lake. The lowest cell compares greatest, so that the heap returns it first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rim {
     height_mm: f64,
@@ -66,7 +67,7 @@ struct Hollow {
     below: f64,
     /// Water that its parts hold.
     base: f64,
-    /// Height at which it begins, mm.
+    /// Height at which it begins, mm: that of its pit, or of the saddle where its parts meet.
     birth_mm: f64,
     close: Option<Close>,
 }
@@ -366,7 +367,7 @@ impl Lakes {
         left.max(0.0)
     }
 
-    /// Joins two full waters that spill into each other.
+    /// Joins two full lakes that spill into each other.
     fn join(&mut self, terrain: &Terrain, a: u32, b: u32) -> u32 {
         for lake in [a, b] {
             if self.lake(lake).is_some_and(|l| l.rim.is_none()) {
