@@ -84,8 +84,8 @@ fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     state.place += wrapped(way / side);
     // A thing that leaves the cell through the sides of an axis re-enters through the opposite side, as far inside as
     // it had gone outside. Its coordinates on the axes after that one are random. Those on the axes before it are
-    // random too, but only where a thing with this motion does not leave along them. This keeps an even distribution
-    // even.
+    // random too, among the positions from which a thing with this motion does not leave along these axes. This keeps
+    // an even distribution even.
     let course = (way - stepping.moved) / side;
     let left = floor((away + way) / side + 0.5) != vec3f(0.0);
     if any(left) {

@@ -140,8 +140,8 @@ fn node(index: vec2u) -> u32 {
     return share;
 }
 
-// Share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. The loop starts at its end where
-// all rain reaches all cells: a software driver skips such loops.
+// Share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. Where all rain reaches all cells
+// the loop has no iterations, and a software driver skips it.
 fn reached(cell: vec2i) -> u32 {
     var share = 65536u;
     for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {

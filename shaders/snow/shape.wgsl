@@ -28,7 +28,7 @@ fn shape_noise(p: vec2f, seed: u32) -> f32 {
     return mix(low, high, w.y);
 }
 
-// Returns the opacity of a flake at a place, in radii. 0 where it is not `wanted`: the loop then starts at its end.
+// Returns the opacity of a flake at a place, in radii. 0 where it is not `wanted`; the loop then has no iterations.
 fn flake_shape(at: vec2f, seed: u32, wanted: bool) -> f32 {
     var noise = 0.0;
     var strength = 0.5;
