@@ -2,7 +2,7 @@
 
 /// Stream of pseudorandom numbers; any number may be its seed (SplitMix64, Steele, Lea and Flood 2014).
 #[derive(Clone, Copy, Debug)]
-pub struct Chance(u64);
+pub struct RandomStream(u64);
 
 /// Mixes the bits of a number over the whole word: a hash (the finalizer of SplitMix64, Steele, Lea and Flood 2014).
 pub(crate) fn mixed(v: u64) -> u64 {
@@ -11,7 +11,7 @@ pub(crate) fn mixed(v: u64) -> u64 {
     v ^ (v >> 31)
 }
 
-impl Chance {
+impl RandomStream {
     /// Creates the stream of a seed exactly as published for SplitMix64.
     pub(crate) fn seeded(seed: u64) -> Self {
         Self(seed)

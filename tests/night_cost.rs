@@ -9,7 +9,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Frame, PARTS, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
-    plan::{Budget, Wish},
+    plan::{Budget, PartWish},
     scene::Camera,
 };
 use welkin_support::{
@@ -30,7 +30,7 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_little_more() {
     let place = PARTS.iter().position(|p| p.name == "stars").unwrap();
     let view = |rung: usize| {
         let mut view = View::new(&context).unwrap();
-        let mut wishes = vec![Wish::default(); PARTS.len()];
+        let mut wishes = vec![PartWish::default(); PARTS.len()];
         wishes[place].rung = Some(rung);
         view.set_budget(Budget { wishes, ..Budget::default() }).unwrap();
         view

@@ -535,7 +535,7 @@ fn snow_on_tiles_allocates_nothing() {
         assert_eq!(CALLS.load(Relaxed) - before, 0, "{kind:?}: {:?}", OWN.lock().unwrap());
         hour += 1.0;
     }
-    assert!(context.snow_books().unwrap().ran_off_kg > 0.0);
+    assert!(context.snow_balance().unwrap().ran_off_kg > 0.0);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::ephemeris::Geocentric;
-use super::sun::{Turned, Utc};
+use super::sun::{Topocentric, Utc};
 use crate::{
     error::Result,
     scene::{Place, angle_between},
@@ -41,11 +41,11 @@ pub struct MoonPosition {
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
 pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
     place.validate()?;
-    Ok(lit(&Turned::new(&Geocentric::at(utc)?, utc, place)))
+    Ok(lit(&Topocentric::new(&Geocentric::at(utc)?, utc, place)))
 }
 
 /// Returns the position of the moon over a place, with the light that it gets from the sun.
-pub(crate) fn lit(turned: &Turned) -> MoonPosition {
+pub(crate) fn lit(turned: &Topocentric) -> MoonPosition {
     let seen = turned.moon_m;
     let direction = seen.normalize();
     let distance_m = seen.length();

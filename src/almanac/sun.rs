@@ -33,18 +33,18 @@ pub struct SunPosition {
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
 pub fn sun_position(utc: Utc, place: &Place) -> Result<SunPosition> {
     place.validate()?;
-    Ok(Turned::new(&Geocentric::at(utc)?, utc, place).sun())
+    Ok(Topocentric::new(&Geocentric::at(utc)?, utc, place).sun())
 }
 
 /// Sun and moon relative to a place (topocentric): vectors (east, north, up) from the place, m.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turned {
+pub(crate) struct Topocentric {
     pub(super) sun_m: DVec3,
     pub(super) moon_m: DVec3,
     distance_au: f64,
 }
 
-impl Turned {
+impl Topocentric {
     pub fn new(from_centre: &Geocentric, utc: Utc, place: &Place) -> Self {
         let to_enu = place.ecef_to_enu();
         let turn = turn_z(-(mean_sidereal_time(utc) + from_centre.equinoxes));

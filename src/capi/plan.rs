@@ -35,7 +35,7 @@ use super::boundary::{
 use crate::{
     error::{Error, Result, Status},
     frame::PARTS,
-    plan::{Budget, GaveWay, PartPlan, Reason, Wish},
+    plan::{Budget, GaveWay, PartPlan, PartWish, Reason},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_plan.rs"));
@@ -448,8 +448,8 @@ fn in_list(parts: &[usize], e: Error) -> Error {
 }
 
 /// Returns the wishes for the parts, by number, and the part of each element of the host's list.
-fn wishes(c: &wk_budget) -> Result<(Vec<Wish>, Vec<usize>)> {
-    let mut wishes = vec![Wish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
+fn wishes(c: &wk_budget) -> Result<(Vec<PartWish>, Vec<usize>)> {
+    let mut wishes = vec![PartWish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
     let mut parts = Vec::new();
     let mut take = |i: usize, w: wk_part_wish| {
         let name = format!("budget.wishes[{i}]");
@@ -459,7 +459,7 @@ fn wishes(c: &wk_budget) -> Result<(Vec<Wish>, Vec<usize>)> {
             return Err(Error::range(&format!("{name}.part"), "a part that is not in the list yet", w.part));
         }
         parts.push(part);
-        wishes[part] = Wish {
+        wishes[part] = PartWish {
             importance: (w.has & WK_PART_WISH_HAS_IMPORTANCE != 0).then_some(w.importance),
             rung: (w.has & WK_PART_WISH_HAS_RUNG != 0).then_some(w.rung as usize),
         };

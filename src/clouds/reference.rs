@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use crate::{chance::Chance, light::phase::PhaseLobes};
+use crate::{chance::RandomStream, light::phase::PhaseLobes};
 
 /// Draws the cosine of a scattering angle of Henyey and Greenstein's phase function.
-fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
+fn lobe_cosine(g: f64, chance: &mut RandomStream) -> f64 {
     let u = chance.even();
     if g.abs() < 1e-6 {
         return 2.0 * u - 1.0;
@@ -22,13 +22,13 @@ fn lobe_cosine(g: f64, chance: &mut Chance) -> f64 {
 }
 
 /// Draws a photon's direction after a droplet with this phase function has scattered it.
-pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> DVec3 {
+pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut RandomStream) -> DVec3 {
     turned(lobes, direction, chance).0
 }
 
 /// Draws the direction after scattering, and returns whether the Draine lobe was used. The angle in that lobe is drawn
 /// by rejection from Henyey and Greenstein's lobe of the same g.
-pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut Chance) -> (DVec3, bool) {
+pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut RandomStream) -> (DVec3, bool) {
     let by_draine = chance.even() < lobes.w_draine;
     let cosine = if by_draine {
         loop {
@@ -63,7 +63,7 @@ pub struct Box<'a> {
 impl Box<'_> {
     /// Traces a photon from a place along `direction`. Returns the face through which it leaves (low and high x, y, z),
     /// or `None` if it is absorbed.
-    pub fn leaves_by(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> Option<usize> {
+    pub fn leaves_by(&self, mut position: DVec3, mut direction: DVec3, chance: &mut RandomStream) -> Option<usize> {
         loop {
             let mut exit = (f64::INFINITY, 0);
             for axis in 0..3 {
@@ -94,9 +94,9 @@ impl Box<'_> {
         let sine = (1.0 - cosine * cosine).sqrt();
         let is_slab = self.sides.x.is_infinite();
         let top = if is_slab { 1.0 } else { cosine * self.sides.x / (cosine * self.sides.x + sine * self.sides.z) };
-        let (mut chance, mut out) = (Chance::new(seed, 0), [0.0; 6]);
+        let (mut chance, mut out) = (RandomStream::new(seed, 0), [0.0; 6]);
         for _ in 0..photons {
-            let wide = |side: f64, c: &mut Chance| if side.is_infinite() { 0.0 } else { side * c.even() };
+            let wide = |side: f64, c: &mut RandomStream| if side.is_infinite() { 0.0 } else { side * c.even() };
             let y = wide(self.sides.y, &mut chance);
             let at = if chance.even() < top {
                 DVec3::new(wide(self.sides.x, &mut chance), y, self.sides.z)
@@ -147,7 +147,7 @@ pub(super) mod tests {
     #[test]
     fn photons_turn_as_the_phase_function_says() {
         let lobes = PhaseLobes::new(&Phase::Droplets { diameter_um: 12.0 });
-        let mut chance = Chance::new(3, 0);
+        let mut chance = RandomStream::new(3, 0);
         let (mut mean, mut back) = (0.0, 0.0);
         let n = 200_000;
         for _ in 0..n {

@@ -9,7 +9,7 @@ use super::shared_world::Context;
 use crate::{
     error::{Error, Result, Status, check_range, number},
     weather::timeline::MAX_TIME_S,
-    world::Within,
+    world::UpdateBudget,
 };
 
 /// Longest time of one batch of steps, after which [`Context::update`] checks whether more remain.
@@ -50,14 +50,14 @@ impl Context {
                 format!("time_s must be at least {} s, got {}", number(now), number(time_s)),
             ));
         }
-        if self.behind.is_some() && self.lead(Within { until_s: now, begun, most })? == Status::Pending {
+        if self.behind.is_some() && self.advance(UpdateBudget { until_s: now, begun, most })? == Status::Pending {
             return Ok(Status::Pending);
         }
         self.world.keep_carried(time_s)?;
         let world = &self.world;
         self.held.each().into_iter().try_for_each(|effect| effect.begin(world, time_s))?;
         self.world.time_s = time_s;
-        self.lead(Within { until_s: time_s, begun, most })
+        self.advance(UpdateBudget { until_s: time_s, begun, most })
     }
 
     /// Whether an update has left steps for a later call.
@@ -66,40 +66,42 @@ impl Context {
     }
 
     /// Advances all state towards the present, as far as the budget allows.
-    fn lead(&mut self, budget: Within) -> Result<Status> {
-        let led = self.lead_steps(budget)?;
+    fn advance(&mut self, budget: UpdateBudget) -> Result<Status> {
+        let advanced = self.advance_steps(budget)?;
         // The timeline forgets ended changes, except those that the next steps need.
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         let keep_s = stepped.fold(self.world.time_s, f64::min);
         self.world.forget_before(keep_s);
         self.refresh()?;
-        Ok(led)
+        Ok(advanced)
     }
 
     /// Advances the effects to the present, or until the budget is used up, by at least one step. Returns
     /// [`Status::Ok`] if they reached the present.
-    fn lead_steps(&mut self, budget: Within) -> Result<Status> {
+    fn advance_steps(&mut self, budget: UpdateBudget) -> Result<Status> {
         let mut behind = self.behind.take();
         if let Some(then) = &mut behind {
             std::mem::swap(&mut self.world.set, then);
         }
-        let mut until_s = self.next_stop_s(f64::NEG_INFINITY, budget.until_s);
-        let mut led = self.lead_each(Within { until_s, ..budget });
-        while led == Ok(Status::Ok) && until_s < budget.until_s {
+        let mut until_s = f64::NEG_INFINITY;
+        let advanced = loop {
             until_s = self.next_stop_s(until_s, budget.until_s);
-            led = self.lead_each(Within { until_s, ..budget });
-        }
-        match (&mut behind, &led) {
+            let advanced = self.advance_each(UpdateBudget { until_s, ..budget });
+            if advanced != Ok(Status::Ok) || until_s >= budget.until_s {
+                break advanced;
+            }
+        };
+        match (&mut behind, &advanced) {
             (Some(then), _) => std::mem::swap(&mut self.world.set, then),
             (None, Ok(Status::Pending)) => behind = Some(Box::new(self.world.set.clone())),
             (None, _) => {}
         }
-        if led == Ok(Status::Ok) {
+        if advanced == Ok(Status::Ok) {
             self.settle();
         } else {
             self.behind = behind;
         }
-        led
+        advanced
     }
 
     /// Returns the simulation time, s, up to which the effects advance together: the end of the next step that reads
@@ -114,19 +116,19 @@ impl Context {
     }
 
     /// Advances each effect in turn, as far as the budget allows.
-    fn lead_each(&mut self, budget: Within) -> Result<Status> {
-        let mut led = Ok(Status::Ok);
+    fn advance_each(&mut self, budget: UpdateBudget) -> Result<Status> {
+        let mut advanced = Ok(Status::Ok);
         for effect in self.held.each() {
-            let led_to = effect.lead(&self.world, budget);
+            let reached = effect.advance(&self.world, budget);
             effect.publish(&mut self.world);
-            match led_to {
+            match reached {
                 Ok(Status::Ok) => {}
                 // Later effects read the published state of this one. They must not see how far it gets in one call.
                 Ok(status) => return Ok(status),
-                fault => led = fault,
+                fault => advanced = fault,
             }
         }
-        led
+        advanced
     }
 
     /// Lets each effect take over the host's settings since its last step, as far as they are part of its state. While

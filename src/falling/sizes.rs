@@ -139,7 +139,7 @@ impl DropSizes {
     /// Mixes in the drops of a rain area: `share` (0 to 1) of the result is the area's distribution `region`, the rest
     /// is this one. `begun` (0 to 1) is the part of the area's rain that has left its cloud. Both distributions must
     /// have the same speed factor.
-    pub fn covered(mut self, region: &Self, share: f64, begun: f64) -> Self {
+    pub fn mixed_with(mut self, region: &Self, share: f64, begun: f64) -> Self {
         for part in &mut self.parts {
             part.n0 *= 1.0 - share;
         }

@@ -12,7 +12,7 @@ use crate::{
     error::{Error, Result, Status, check_range},
     weather::timeline::MAX_TIME_S,
     wind::WindVolume,
-    world::{HeldEffect, Within, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
 /// Largest number of changes of the field that may lie in the future.
@@ -110,7 +110,7 @@ impl HeldFlow {
     /// Does the next piece of work that is due until `until_s`. Returns whether there was any.
     fn go_on(&mut self, world: &World, until_s: f64) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
-        let outcome = self.lead_live(&mut live, world, until_s);
+        let outcome = self.advance_live(&mut live, world, until_s);
         if matches!(outcome, Ok(StepOutcome::Changed)) {
             live.shown_over = live.wind_over(world);
         }
@@ -127,7 +127,7 @@ impl HeldFlow {
         }
     }
 
-    fn lead_live(&mut self, live: &mut Live, world: &World, until_s: f64) -> Result<StepOutcome> {
+    fn advance_live(&mut self, live: &mut Live, world: &World, until_s: f64) -> Result<StepOutcome> {
         let changed = |is_over: bool| if is_over { StepOutcome::Changed } else { StepOutcome::Unchanged };
         if live.start.is_some() {
             return live.go_on_with_start(world).map(changed);
@@ -203,7 +203,7 @@ enum StepOutcome {
 }
 
 impl HeldEffect for HeldFlow {
-    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
+    fn advance(&mut self, world: &World, budget: UpdateBudget) -> Result<Status> {
         while self.go_on(world, budget.until_s)? {
             if budget.begun.elapsed() >= budget.most {
                 return Ok(Status::Pending);

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DMat3, DVec2, DVec3};
 
 use super::WindFieldDesc;
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// Number of waves in the sum.
 const WAVES: usize = 32;
@@ -56,7 +56,7 @@ impl Turbulence {
             return None;
         }
         // Separate random numbers, as gusts have.
-        let mut stream = Chance::seeded(seed ^ 0x7768_6972_6c73_2069);
+        let mut stream = RandomStream::seeded(seed ^ 0x7768_6972_6c73_2069);
         let mut random = || stream.unit();
         let x_of = |length_m: f64| 1.339 * integral_m * TAU / length_m;
         let (low, high) = (x_of(longest), x_of(shortest));

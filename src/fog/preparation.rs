@@ -12,7 +12,7 @@ use super::{
     viewpoint::{FogLight, Viewpoint},
 };
 use crate::{
-    chance::Chance,
+    chance::RandomStream,
     error::{Result, check_range},
     falling::FallingLayer,
     light::{Phase, PhaseLobes},
@@ -302,7 +302,7 @@ impl FogModel {
     /// sum.
     fn set_patches(&mut self, patches: &Patches, view: &Viewpoint) {
         self.patch_amount = patches.amount;
-        let mut stream = Chance::seeded(patches.seed);
+        let mut stream = RandomStream::seeded(patches.seed);
         let mut random = move || stream.unit();
         let tau = std::f64::consts::TAU;
         let place = [view.map_m[0] - patches.drift_m[0], view.map_m[1] - patches.drift_m[1]];

@@ -59,7 +59,7 @@ impl Frame<'_> {
         let albedo = scene.ground_albedo;
         let up = [0, 1, 2].map(|i| albedo[i] * (diffuse[i] + facing[i] * level(main)));
         let numbers =
-            Numbers { space: self.color_space, unit: self.cd_m2_per_unit, exposure, curve: context.tone_curve() };
+            HostUnits { space: self.color_space, unit: self.cd_m2_per_unit, exposure, curve: context.tone_curve() };
         let zip = |a: [f64; 3], b: [f64; 3], f: &dyn Fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
         Ok(FrameLight {
             direction: scene.world_to_enu.transpose() * main.direction,
@@ -72,7 +72,7 @@ impl Frame<'_> {
 }
 
 /// Settings that convert illuminance to the host's values.
-struct Numbers {
+struct HostUnits {
     space: ColorSpace,
     /// Luminance of the value 1 in a scene-linear picture, cd/m^2.
     unit: f64,
@@ -81,7 +81,7 @@ struct Numbers {
     curve: ToneCurve,
 }
 
-impl Numbers {
+impl HostUnits {
     /// Returns the host's value for white under `lux`, computed with the grey card.
     fn of(&self, lux: f64) -> f64 {
         let shown = || self.curve.apply(self.exposure * GREY * lux / PI);

@@ -75,7 +75,7 @@ impl View {
         Ok(plan::write(PARTS, &plan.rungs(), &self.effects.saved_with()))
     }
 
-    /// Pins a plan that [`View::save_plan`] wrote ([`plan::Wish::rung`]). The rest of the budget stays, and limits that
+    /// Pins a plan that [`View::save_plan`] wrote ([`plan::PartWish::rung`]). The rest of the budget stays, and limits that
     /// the plan breaks are reported. After an error the budget is unchanged.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl View {
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();
-        budget.wishes.resize(PARTS.len(), plan::Wish::default());
+        budget.wishes.resize(PARTS.len(), plan::PartWish::default());
         budget.wishes.iter_mut().zip(rungs).for_each(|(wish, rung)| wish.rung = Some(rung));
         self.set_budget(budget)
     }

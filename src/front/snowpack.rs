@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::{
     context::Context,
     error::{Error, Result, Status, check_range},
-    snowpack::{SnowAt, SnowBooks, SnowStrip},
+    snowpack::{SnowAt, SnowBalance, SnowStrip},
 };
 
 /// Longest time of one fast-forward, hours.
@@ -23,7 +23,7 @@ impl Context {
 
     /// Returns the mass balance of the snow on the host's terrain, kg; `None` without a terrain or without simulated
     /// snow.
-    pub fn snow_books(&self) -> Option<SnowBooks> {
+    pub fn snow_balance(&self) -> Option<SnowBalance> {
         self.held.snowpack.books()
     }
 
@@ -40,7 +40,7 @@ impl Context {
     /// ([`LyingSnowModel::Simulated`](crate::snowpack::LyingSnowModel::Simulated)), and while steps of an update
     /// remain.
     pub fn take_snow(&mut self, strip: &SnowStrip, left_m: f64) -> Result<f64> {
-        self.check_led()?;
+        self.check_advanced()?;
         self.change_snow(|held, world| held.take(world, strip, left_m))
     }
 
@@ -49,7 +49,7 @@ impl Context {
     /// # Errors
     /// As [`Context::take_snow`].
     pub fn press_snow(&mut self, strip: &SnowStrip) -> Result<()> {
-        self.check_led()?;
+        self.check_advanced()?;
         self.change_snow(|held, world| held.press(world, strip))
     }
 
@@ -76,15 +76,15 @@ impl Context {
             return Err(Error::range("hours", "in (0, 720]", hours));
         }
         check_range("hours", hours, 0.0, MOST_HOURS, "")?;
-        self.check_led()?;
+        self.check_advanced()?;
         self.held.snowpack.is_fast = true;
-        let led = self.update(self.world.time_s + 3600.0 * hours);
+        let advanced = self.update(self.world.time_s + 3600.0 * hours);
         self.held.snowpack.is_fast = false;
-        led
+        advanced
     }
 
     /// Checks that no steps of an update remain.
-    fn check_led(&self) -> Result<()> {
+    fn check_advanced(&self) -> Result<()> {
         let wanted = "this comes after an update has done all of its steps";
         if self.is_behind() { Err(Error::new(Status::WrongOrder, wanted)) } else { Ok(()) }
     }

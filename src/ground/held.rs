@@ -23,7 +23,7 @@ use crate::{
     surroundings::{SnowHere, TerrainHeights},
     terrain::Terrain,
     weather::{Conditions, SurfaceCover, cover_under_rain},
-    world::{HeldEffect, Within, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 use glam::{DMat3, DVec2, DVec3};
 
@@ -374,7 +374,7 @@ impl HeldEffect for HeldGround {
         self.follow_late(world);
     }
 
-    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
+    fn advance(&mut self, world: &World, budget: UpdateBudget) -> Result<Status> {
         self.follow_late(world);
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
@@ -398,7 +398,7 @@ impl HeldEffect for HeldGround {
             state.set(before.after(&forcing, seconds));
             state.time_s = end_s;
             if let Some(host) = self.host.as_mut().filter(|_| from_s >= self.terrain_from_s) {
-                let stepped = host.lead(world, &step)?;
+                let stepped = host.advance(world, &step)?;
                 self.revision += u64::from(stepped);
             }
             self.state = Some(state);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     held::HeldGround,
-    texture::{Filled, GroundTexture, TerrainTextures, uv_from_world},
+    texture::{GroundTexture, TerrainTextures, UploadedTerrain, uv_from_world},
     window::{DrawnTerrain, TerrainWindow},
 };
 use crate::{
@@ -43,7 +43,8 @@ impl HeldGround {
         let rows = uv_from_world(&DrawnTerrain::of_grid(grid, to_enu));
         let _entered = device.enter()?;
         let mut textures = self.locked();
-        let Some(Filled { water, generation, revision, .. }) = self.fill(device, &mut textures, snow).cloned() else {
+        let Some(UploadedTerrain { water, generation, revision, .. }) = self.fill(device, &mut textures, snow).cloned()
+        else {
             return Err(Error::new(Status::Internal, "a terrain without textures"));
         };
         let snow = textures.host_snow(device, snow.filter(|s| s.cells.len() as u32 == water.width() * water.height()));
@@ -105,7 +106,7 @@ impl HeldGround {
         device: &Arc<Device>,
         textures: &'a mut TerrainTextures,
         snow: Option<&LyingSnow>,
-    ) -> Option<&'a Filled> {
+    ) -> Option<&'a UploadedTerrain> {
         let Some(held) = &self.host else {
             *textures = TerrainTextures::default();
             return None;

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status},
     terrain::{CellRect, Terrain, TerrainCells, TerrainDesc, TileKey},
-    world::{Within, World},
+    world::{UpdateBudget, World},
 };
 
 fn without_terrain() -> Error {
@@ -115,7 +115,7 @@ impl HeldGround {
     }
 
     /// Steps the water on the tiles, or on some of them within the budget. Returns whether the step is complete.
-    pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: Within) -> Result<bool> {
+    pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: UpdateBudget) -> Result<bool> {
         let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
         if !tiled.is_of(terrain) {
             return Ok(true);

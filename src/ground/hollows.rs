@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// Distance after which the pattern repeats, m: a multiple of every wavelength.
 pub const PERIOD_M: f64 = 1e4;
@@ -71,7 +71,7 @@ fn amplitude(wave: usize) -> f64 {
 impl Hollows {
     /// Creates the hollows of a world with this seed.
     pub fn new(seed: u64) -> Self {
-        let mut stream = Chance::seeded(seed);
+        let mut stream = RandomStream::seeded(seed);
         // Every second random number is skipped: for seed 0, the skipped ones gave the wavelengths in TURNS.
         let phases = [(); WAVES].map(|()| {
             stream.unit();

@@ -94,7 +94,7 @@ impl HostGround {
     }
 
     /// Steps the water together with that of level, open ground. Returns whether it may have changed.
-    pub fn lead(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
+    pub fn advance(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
         let GroundStep { from_s, seconds, conditions, forcing, water } = *step;
         let overs = self.rain.overs(world, from_s + 0.5 * seconds, conditions)?;
         let shelters = &world.set.shelters;

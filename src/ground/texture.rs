@@ -53,7 +53,7 @@ pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
 
 /// GPU textures of a terrain.
 #[derive(Clone, Debug)]
-pub(crate) struct Filled {
+pub(crate) struct UploadedTerrain {
     pub water: wgpu::Texture,
     /// Rows of the surface, followed by as many rows of the snow.
     surface: wgpu::Texture,
@@ -74,7 +74,7 @@ pub(crate) struct Filled {
 /// Terrain textures of a context; created when they are first asked for.
 #[derive(Default)]
 pub(crate) struct TerrainTextures {
-    filled: Option<Filled>,
+    filled: Option<UploadedTerrain>,
     /// Whether the water or the host's snow was written since they were last handed over to the host.
     pub written: bool,
     texels: Vec<[u16; 4]>,
@@ -83,7 +83,7 @@ pub(crate) struct TerrainTextures {
 
 impl TerrainTextures {
     /// Returns the textures as they are, which may be out of date.
-    pub fn filled(&self) -> Option<&Filled> {
+    pub fn filled(&self) -> Option<&UploadedTerrain> {
         self.filled.as_ref()
     }
 
@@ -98,7 +98,7 @@ impl TerrainTextures {
         [generation, revision, classes]: [u64; 3],
     ) {
         let filled = self.filled.take().filter(|f| f.generation == generation);
-        let mut filled = filled.unwrap_or_else(|| Filled::new(device, &terrain.grid, generation));
+        let mut filled = filled.unwrap_or_else(|| UploadedTerrain::new(device, &terrain.grid, generation));
         if filled.classes != classes {
             surface_texels(&terrain.grid, &mut self.surface);
             let whole = (wgpu::Origin3d::ZERO, filled.water.size());
@@ -134,7 +134,7 @@ impl TerrainTextures {
     }
 
     /// Uploads the snow on the terrain, if it has changed, into the rows below the surface.
-    pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&Filled> {
+    pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&UploadedTerrain> {
         let filled = self.filled.as_mut()?;
         if let Some(snow) = snow.filter(|s| s.revision != filled.snow) {
             let place = wgpu::Origin3d { x: 0, y: filled.water.height(), z: 0 };
@@ -145,7 +145,7 @@ impl TerrainTextures {
     }
 }
 
-impl Filled {
+impl UploadedTerrain {
     /// Creates the empty textures of a grid.
     fn new(device: &Device, grid: &GroundGrid, generation: u64) -> Self {
         use wgpu::TextureFormat as F;

@@ -14,7 +14,7 @@
 use glam::{DVec2, DVec3};
 
 use super::flash::{Flash, FlashKind};
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// Ratio of the standard deviation of the sideways move of an interval's middle to the interval's length.
 const WANDERING: f64 = 0.25;
@@ -85,7 +85,7 @@ impl Channel {
     /// Creates the channel of a flash that starts at the height `top_m`. A ground flash ends at `end_m`, a flash in the
     /// cloud some kilometres away.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
-        let mut chance = Chance::new(flash.id, 0xc4a1);
+        let mut chance = RandomStream::new(flash.id, 0xc4a1);
         let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
         let end = match flash.kind {
             FlashKind::ToGround => end_m,
@@ -160,7 +160,7 @@ impl Channel {
 }
 
 /// Returns a path between two points by `halvings` halvings that stays above `lowest_m`.
-fn wander(chance: &mut Chance, (start, end): (DVec3, DVec3), halvings: u32, lowest_m: f64) -> Vec<DVec3> {
+fn wander(chance: &mut RandomStream, (start, end): (DVec3, DVec3), halvings: u32, lowest_m: f64) -> Vec<DVec3> {
     let last = 1usize << halvings;
     let mut points_m = vec![DVec3::ZERO; last + 1];
     (points_m[0], points_m[last]) = (start, end);
@@ -195,7 +195,7 @@ const FAINTER: f64 = 0.35;
 /// Least height of a branch's end above the end of the main path, m.
 const CLEAR_M: f64 = 30.0;
 
-fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
+fn branches(chance: &mut RandomStream, main: &[DVec3]) -> Vec<Branch> {
     let end = main[main.len() - 1];
     let count = (BRANCHES.0 + BRANCHES.1 * chance.even()) as usize;
     let mut out = Vec::with_capacity(2 * count);
@@ -218,7 +218,7 @@ fn branches(chance: &mut Chance, main: &[DVec3]) -> Vec<Branch> {
 
 /// Creates a branch from a point of a path that goes on along `way`.
 fn branch(
-    chance: &mut Chance,
+    chance: &mut RandomStream,
     (from, way): (DVec3, DVec3),
     remains_m: f64,
     lowest_m: f64,
@@ -235,7 +235,7 @@ fn branch(
 }
 
 /// Returns a random unit vector at right angles to `way`.
-fn aside(chance: &mut Chance, way: DVec3) -> DVec3 {
+fn aside(chance: &mut RandomStream, way: DVec3) -> DVec3 {
     let (a, b) = way.normalize_or(DVec3::Z).any_orthonormal_pair();
     let turn = 2.0 * std::f64::consts::PI * chance.even();
     a * libm::cos(turn) + b * libm::sin(turn)

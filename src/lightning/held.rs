@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
-    world::{HeldEffect, Within, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
 /// Time for which a triggered flash is kept after it, s. Its thunder has passed by then.
@@ -121,7 +121,7 @@ impl HeldLightning {
 }
 
 impl HeldEffect for HeldLightning {
-    fn lead(&mut self, world: &World, _within: Within) -> Result<Status> {
+    fn advance(&mut self, world: &World, _within: UpdateBudget) -> Result<Status> {
         self.triggered.retain(|t| t.time_s + KEPT_S >= world.time_s);
         Ok(Status::Ok)
     }

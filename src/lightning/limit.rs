@@ -34,11 +34,11 @@ pub fn is_drawn(time_s: f64, times_s: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chance::Chance;
+    use crate::chance::RandomStream;
 
     #[test]
     fn drawn_flashes_are_a_second_apart() {
-        let mut chance = Chance::new(3, 4);
+        let mut chance = RandomStream::new(3, 4);
         let mut times: Vec<f64> = (0..2000).map(|_| 1000.0 * chance.even()).collect();
         times.sort_by(f64::total_cmp);
         let drawn: Vec<f64> = times

@@ -7,7 +7,7 @@ use glam::DVec2;
 pub use super::flash::{Flash, FlashKind, MOST_STROKES, Stroke};
 use super::trigger::FlashTrigger;
 use crate::{
-    chance::Chance,
+    chance::RandomStream,
     error::{Result, check_range},
 };
 
@@ -64,7 +64,7 @@ impl Storm {
     pub fn visit(&self, from_s: f64, until_s: f64, rate: impl Fn(f64) -> f64, mut see: impl FnMut(&Flash)) {
         let (first, last) = ((from_s / WINDOW_S).floor() as i64, (until_s / WINDOW_S).ceil() as i64);
         for window in first..last {
-            let mut chance = Chance::new(self.seed, window as u64);
+            let mut chance = RandomStream::new(self.seed, window as u64);
             for k in 0..candidates(&mut chance) {
                 let time_s = (window as f64 + chance.even()) * WINDOW_S;
                 let number = chance.even();
@@ -92,7 +92,7 @@ impl Storm {
     }
 
     fn flash(&self, number: u64, time_s: f64) -> Flash {
-        let mut chance = Chance::new(self.seed ^ 0x5bd1_e995, number);
+        let mut chance = RandomStream::new(self.seed ^ 0x5bd1_e995, number);
         let kind = if chance.even() < TO_GROUND { FlashKind::ToGround } else { FlashKind::InCloud };
         let (distance, azimuth) = (self.radius_m * chance.normal(), PI * chance.even());
         let mut flash = Flash {
@@ -116,7 +116,7 @@ impl Storm {
 }
 
 /// Returns the number of candidates in a window, with a Poisson distribution (by multiplication; Knuth 1969).
-fn candidates(chance: &mut Chance) -> u64 {
+fn candidates(chance: &mut RandomStream) -> u64 {
     let least = libm::exp(-MOST_PER_MINUTE / 60.0 * WINDOW_S);
     let (mut product, mut count) = (chance.even(), 0);
     while product > least {
@@ -126,7 +126,7 @@ fn candidates(chance: &mut Chance) -> u64 {
     count
 }
 
-fn strokes(chance: &mut Chance) -> usize {
+fn strokes(chance: &mut RandomStream) -> usize {
     if chance.even() < SINGLE {
         return 1;
     }

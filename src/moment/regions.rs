@@ -155,7 +155,7 @@ impl<'a> WeatherOver<'a> {
         for shaft in self.shafts_at(time_s, c)? {
             let share = shaft.share_at(position, &local.world_to_enu, altitude_m);
             if share > 0.0 {
-                sizes = sizes.covered(&DropSizes::new(&shaft.falling, factor), share, shaft.begun(altitude_m));
+                sizes = sizes.mixed_with(&DropSizes::new(&shaft.falling, factor), share, shaft.begun(altitude_m));
             }
         }
         Ok(sizes)
@@ -173,7 +173,7 @@ impl<'a> WeatherOver<'a> {
         for shaft in shafts {
             let share = shaft.share_at(position, &local.world_to_enu, local.place.altitude_m);
             let begun = shaft.begun(local.place.altitude_m);
-            falling = covered(&falling, &shaft.falling, share, begun);
+            falling = mixed_with(&falling, &shaft.falling, share, begun);
         }
         with_falling(c, falling)
     }
@@ -211,7 +211,7 @@ fn with_falling(c: Conditions, falling: Falling) -> Conditions {
 
 /// Returns rates and extinction of drops where `region` covers `falling` by `share`. Of the region's rain, the share
 /// `begun` has already left its cloud.
-fn covered(falling: &Falling, region: &Falling, share: f64, begun: f64) -> Falling {
+fn mixed_with(falling: &Falling, region: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
     let rain = falling.rain_mm_h * kept + region.rain_mm_h * come;
     let showers = falling.rain_mm_h * falling.showers * kept + region.rain_mm_h * region.showers * come;

@@ -96,7 +96,7 @@ pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: 
 
 /// State at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Left {
+struct LastStep {
     time_s: f64,
     position_m: DVec3,
     counts: [u32; SHELLS],
@@ -104,7 +104,7 @@ struct Left {
 
 impl ParticleStepUniform {
     /// Creates the block for the step from `left` to now; `None` if there is nothing to step.
-    fn new(stepped: &Stepped<'_>, left: Option<Left>, rooms: &Rooms) -> Option<Self> {
+    fn new(stepped: &Stepped<'_>, left: Option<LastStep>, rooms: &ShellCapacities) -> Option<Self> {
         let v = |d: DVec3| d.as_vec3().to_array();
         let left = left.filter(|l| (0.0..=MOST_S).contains(&(stepped.time_s - l.time_s)));
         let dt = left.map_or(0.0, |l| stepped.time_s - l.time_s);
@@ -147,9 +147,9 @@ impl ParticleStepUniform {
 
 /// Capacity of each shell, in states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Rooms([u32; SHELLS]);
+struct ShellCapacities([u32; SHELLS]);
 
-impl Rooms {
+impl ShellCapacities {
     /// Returns the index of each shell's first state.
     fn begins(&self) -> [u32; SHELLS] {
         std::array::from_fn(|s| self.0[..s].iter().sum())
@@ -191,8 +191,8 @@ pub(crate) struct StepPass {
     shader: (&'static str, &'static str),
     group: u32,
     block: UniformBlock,
-    states: Option<(Rooms, wgpu::Buffer)>,
-    left: Option<Left>,
+    states: Option<(ShellCapacities, wgpu::Buffer)>,
+    left: Option<LastStep>,
     /// Bound texture of the wind; one texel if there is no wind that varies in space.
     wind: Option<WindView>,
     sampler: wgpu::Sampler,
@@ -277,7 +277,7 @@ impl StepPass {
         let Some((rooms, _)) = &self.states else { return Ok(()) };
         let left = self.left.filter(|_| !stepped.anew);
         let counts = rooms.within(stepped.counts);
-        self.left = Some(Left { time_s: stepped.time_s, position_m: stepped.position_m, counts });
+        self.left = Some(LastStep { time_s: stepped.time_s, position_m: stepped.position_m, counts });
         let Some(block) = ParticleStepUniform::new(stepped, left, rooms) else { return Ok(()) };
         let mut bytes = [0; EYES + 16 * SHELLS];
         bytes[..size_of::<ParticleStepUniform>()].copy_from_slice(bytemuck::bytes_of(&block));
@@ -306,7 +306,7 @@ impl StepPass {
 
     /// Makes room for more states, and copies the existing ones.
     fn make_room(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, stepped: &Stepped<'_>) {
-        let before = self.states.as_ref().map_or(Rooms::default(), |(rooms, _)| *rooms);
+        let before = self.states.as_ref().map_or(ShellCapacities::default(), |(rooms, _)| *rooms);
         let rooms = before.for_counts(stepped.counts, stepped.least_room, Self::most(device));
         if self.states.is_some() && rooms == before {
             return;
@@ -411,15 +411,15 @@ mod tests {
 
     #[test]
     fn shells_keep_their_room_and_get_more_where_they_need_it() {
-        let first = Rooms::default().for_counts([10, 0, 30, 7], 0, 1000);
-        assert_eq!(first, Rooms([10, 0, 30, 7]));
+        let first = ShellCapacities::default().for_counts([10, 0, 30, 7], 0, 1000);
+        assert_eq!(first, ShellCapacities([10, 0, 30, 7]));
         assert_eq!(first.begins(), [0, 10, 10, 40]);
         assert_eq!(first.for_counts([10, 0, 20, 0], 0, 1000), first, "what is there is kept");
-        assert_eq!(first.for_counts([12, 0, 20, 0], 0, 1000), Rooms([18, 0, 30, 7]));
-        assert_eq!(Rooms::default().for_counts([1, 1, 1, 1], 50, 1000), Rooms([50; 4]));
+        assert_eq!(first.for_counts([12, 0, 20, 0], 0, 1000), ShellCapacities([18, 0, 30, 7]));
+        assert_eq!(ShellCapacities::default().for_counts([1, 1, 1, 1], 50, 1000), ShellCapacities([50; 4]));
         // Without growth if that is too much, and at last an equal share for each shell.
-        assert_eq!(first.for_counts([40, 0, 5, 0], 0, 50), Rooms([40, 0, 5, 0]));
-        assert_eq!(first.for_counts([400, 0, 5, 0], 0, 48), Rooms([12; 4]));
-        assert_eq!(Rooms([12; 4]).within([400, 0, 5, 0]), [12, 0, 5, 0]);
+        assert_eq!(first.for_counts([40, 0, 5, 0], 0, 50), ShellCapacities([40, 0, 5, 0]));
+        assert_eq!(first.for_counts([400, 0, 5, 0], 0, 48), ShellCapacities([12; 4]));
+        assert_eq!(ShellCapacities([12; 4]).within([400, 0, 5, 0]), [12, 0, 5, 0]);
     }
 }

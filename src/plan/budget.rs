@@ -5,7 +5,7 @@ use crate::error::{Error, Result, check_range};
 
 /// Wish of a host for one part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct PartWish {
     /// Importance of the part to viewers, [0, 1]. A budget of time leaves out the less important parts first. Default
     /// `None`: the part's own [`Part::importance`].
     pub importance: Option<f64>,
@@ -29,14 +29,14 @@ pub struct Budget {
     pub milliseconds: Option<f64>,
     /// Wishes for single parts, in the order of [`frame::PARTS`](crate::frame::PARTS). The list may be shorter: the
     /// parts after its end have no wish. Default: empty.
-    pub wishes: Vec<Wish>,
+    pub wishes: Vec<PartWish>,
 }
 
 impl Budget {
     /// Creates a budget that pins each part to its rung in `rungs`, in the order of
     /// [`frame::PARTS`](crate::frame::PARTS).
     pub fn pinned(rungs: &[usize]) -> Self {
-        let wishes = rungs.iter().map(|rung| Wish { rung: Some(*rung), ..Wish::default() }).collect();
+        let wishes = rungs.iter().map(|rung| PartWish { rung: Some(*rung), ..PartWish::default() }).collect();
         Self { wishes, ..Self::default() }
     }
 

@@ -188,7 +188,7 @@ mod tests {
         parts::{Part, Worth},
     };
     use super::*;
-    use crate::chance::Chance;
+    use crate::chance::RandomStream;
 
     const fn part(importance: f64) -> Part {
         Part { name: "part", rungs: &["all", "none"], importance, worth: Worth::Composed(0) }
@@ -307,7 +307,7 @@ mod tests {
     }
 
     impl Machine {
-        fn frame(&mut self, all: &WorkAmount, absent: Set, random: &mut Chance) -> Option<f64> {
+        fn frame(&mut self, all: &WorkAmount, absent: Set, random: &mut RandomStream) -> Option<f64> {
             self.drawn.push(absent);
             let frame = self.drawn.len().checked_sub(1 + self.late)?;
             let noise = 1.0 + self.noise * (2.0 * random.unit() - 1.0);
@@ -320,7 +320,8 @@ mod tests {
         // Everything takes 19.9 ms of a budget of 19. By the constants there would be enough room for air to return.
         let mut picture = Picture::new([0.05, 0.3, 0.02], [0.41, 0.17, 0.0]);
         let mut machine = Machine { ms: 10.0, ratios: steps([2.0, 1.0, 1.0]), late: 2, noise: 0.02, drawn: Vec::new() };
-        let (mut governor, mut random, mut set, mut switches) = (Governor::default(), Chance::seeded(7), 0, Vec::new());
+        let (mut governor, mut random, mut set, mut switches) =
+            (Governor::default(), RandomStream::seeded(7), 0, Vec::new());
         for frame in 0..300 {
             if let Some(ms) = machine.frame(&picture.all, set, &mut random) {
                 governor.report(ms, &picture.all, set);
@@ -338,7 +339,7 @@ mod tests {
     fn times_are_predicted_within_a_quarter_on_machines_unlike_the_one_that_was_measured() {
         let (mut settled, mut stepped) = (Vec::new(), Vec::new());
         for seed in 0..64 {
-            let mut random = Chance::seeded(seed);
+            let mut random = RandomStream::seeded(seed);
             let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
             let ratios = steps([0; 3].map(|_| between(0.5, 2.0)));
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
@@ -371,7 +372,7 @@ mod tests {
         assert!(beyond(&stepped) == 0.0, "{} of {}", beyond(&stepped), stepped.len());
     }
 
-    fn random_of(seed: u64, step: usize, frame: usize) -> Chance {
-        Chance::seeded(seed * 1_000_003 + step as u64 * 1009 + frame as u64)
+    fn random_of(seed: u64, step: usize, frame: usize) -> RandomStream {
+        RandomStream::seeded(seed * 1_000_003 + step as u64 * 1009 + frame as u64)
     }
 }

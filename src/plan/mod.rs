@@ -19,7 +19,7 @@ mod saved;
 mod search;
 mod work;
 
-pub use budget::{Budget, Wish};
+pub use budget::{Budget, PartWish};
 pub use difference::{Difference, difference};
 pub use estimate::Estimate;
 pub use governor::GaveWay;

@@ -18,7 +18,7 @@ use crate::{
     surroundings::{Meltwater, TerrainHeights},
     terrain::{Terrain, TileKey},
     weather::snow_cover,
-    world::{HeldEffect, Within, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
 /// Source of the lying snow.
@@ -341,7 +341,7 @@ impl HeldEffect for HeldSnow {
         self.settle_on(&SnowGround::of(world));
     }
 
-    fn lead(&mut self, world: &World, budget: Within) -> Result<Status> {
+    fn advance(&mut self, world: &World, budget: UpdateBudget) -> Result<Status> {
         for steps in 0.. {
             let Some(end_s) = self.state.as_ref().map(|s| s.next_s(self.coarse_until_s)) else { break };
             if end_s > budget.until_s {

@@ -39,6 +39,6 @@ mod tests;
 
 pub use held::LyingSnowModel;
 pub(crate) use held::{HeldSnow, LoadedSnow};
-pub use query::{SnowAt, SnowBooks, SnowFriction};
+pub use query::{SnowAt, SnowBalance, SnowFriction};
 pub use state::{COARSE_STEP_S, STEP_S};
 pub use strips::{MAX_STRIP_POINTS, SnowStrip};

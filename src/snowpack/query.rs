@@ -53,7 +53,7 @@ pub struct SnowAt {
 /// Mass balance of the snow on the host's terrain since the snow began, kg:
 /// began + fallen + blown in = lying + blown out + ran off + sublimated + taken.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct SnowBooks {
+pub struct SnowBalance {
     /// Snow that lay on a part of the terrain when the host set that part.
     pub began_kg: f64,
     /// Snow and ice that fell, and rain that fell on snow.
@@ -129,11 +129,11 @@ impl HeldSnow {
     }
 
     /// Mass balance of the snow on the host's terrain; `None` without a terrain.
-    pub fn books(&self) -> Option<SnowBooks> {
+    pub fn books(&self) -> Option<SnowBalance> {
         let (_, field) = self.field()?;
         let kg = |units: i64| units as f64 / UNITS * field.cell_m * field.cell_m;
         let b = field.books;
-        Some(SnowBooks {
+        Some(SnowBalance {
             began_kg: kg(b.began),
             fallen_kg: kg(b.fallen),
             blown_in_kg: kg(b.blown_in),

@@ -88,7 +88,7 @@ fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
 }
 
 /// Steps a field in constant weather, with bare country around it.
-fn lead(field: &mut SnowField, acts: &Acts, wind: DVec2, steps: usize) {
+fn advance(field: &mut SnowField, acts: &Acts, wind: DVec2, steps: usize) {
     lead_amid(&Column::default(), field, acts, (wind, None), steps);
 }
 
@@ -119,7 +119,7 @@ fn what_falls_lies_to_the_last_bit() {
     let mut field = land.field(Column::default());
     let c = weather(-8.0, 0.0, 1.0);
     let forcing = acts(&c, &snow(1.5), 0.0);
-    lead(&mut field, &forcing, DVec2::ZERO, 600);
+    advance(&mut field, &forcing, DVec2::ZERO, 600);
     // 10 hours of 1.5 mm/h make 15 kg/m^2.
     let lies = columns(&field)[5].mass_kg_m2();
     assert!((lies / 15.0 - 1.0).abs() < 1e-5, "{lies}");
@@ -148,7 +148,7 @@ fn the_books_close_over_ten_thousand_steps_of_drift_slides_and_thaw() {
     ];
     for i in 0..100 {
         let (forcing, wind) = &weathers[i % 4];
-        lead(&mut field, forcing, *wind, 100);
+        advance(&mut field, forcing, *wind, 100);
         assert_eq!(field.lying(), field.books.balance(), "after {} steps", (i + 1) * 100);
         assert!(columns(&field).iter().all(Column::is_sound));
     }
@@ -209,7 +209,7 @@ fn drift_starts_at_the_threshold_wind_of_dry_and_wet_snow() {
         column.water = if wet { column.ice / 20 } else { 0 };
         let mut field = land.field(column);
         let forcing = acts(&weather(0.0, wind, 1.0), &Falling::NONE, 0.0);
-        lead(&mut field, &forcing, DVec2::new(wind, 0.0), 30);
+        advance(&mut field, &forcing, DVec2::new(wind, 0.0), 30);
         field.books.blown_out
     };
     assert_eq!((moved(7.6, false), moved(9.8, true)), (0, 0));
@@ -259,7 +259,7 @@ fn a_fence_gets_a_lower_drift_to_windward_that_fills_up() {
     // A wind along the fence makes no drift beside it.
     let mut field = land.field(Column::of(0.3, 120.0));
     let forcing = acts(&weather(-6.0, 14.0, 1.0), &Falling::NONE, 0.0);
-    lead(&mut field, &forcing, DVec2::new(0.0, 14.0), 60);
+    advance(&mut field, &forcing, DVec2::new(0.0, 14.0), 60);
     let beside = columns(&field);
     assert_eq!(beside[2 * 120 + 69].mass(), beside[2 * 120 + 20].mass());
 }
@@ -284,13 +284,13 @@ fn a_roof_keeps_its_porch_bare_and_rain_takes_snow_away() {
     land.sheltered = (0..81).map(|c| c % 9 < 3).collect();
     let mut field = land.field(Column::default());
     let cold = acts(&weather(-3.0, 1.0, 1.0), &snow(2.0), 0.0);
-    lead(&mut field, &cold, DVec2::ZERO, 300);
+    advance(&mut field, &cold, DVec2::ZERO, 300);
     assert!(columns(&field)[1].mass() == 0 && columns(&field)[7].mass_kg_m2() > 9.9);
     let rain = Falling { rain_mm_h: 6.0, ..Falling::NONE };
     let warm = acts(&weather(6.0, 5.0, 1.0), &rain, 0.0);
-    lead(&mut field, &warm, DVec2::ZERO, 60);
+    advance(&mut field, &warm, DVec2::ZERO, 60);
     assert!(columns(&field)[7].wetness() > 0.9 && field.runoff_mm_h > 4.0, "{}", field.runoff_mm_h);
-    lead(&mut field, &warm, DVec2::ZERO, 1200);
+    advance(&mut field, &warm, DVec2::ZERO, 1200);
     assert!(field.patches[0].is_bare() && field.lying() == 0 && field.books.balance() == 0);
 }
 
@@ -371,14 +371,14 @@ fn a_tiles_snow_blows_and_slides_onto_bare_tiles_and_over_holes() {
     field.patches[1].put(16 * 32, Column::of(4.0, 150.0));
     field.books.began = field.lying();
     let calm = acts(&weather(-6.0, 0.0, 1.0), &Falling::NONE, 0.0);
-    lead(&mut field, &calm, DVec2::ZERO, 30);
+    advance(&mut field, &calm, DVec2::ZERO, 30);
     assert_eq!(field.lying(), field.books.balance());
     assert_eq!([0, 1, 2].map(|at| field.patches[at].is_bare()), [false, true, true]);
     let blows = acts(&weather(-6.0, 14.0, 1.0), &Falling::NONE, 0.0);
-    lead(&mut field, &blows, DVec2::new(14.0, 0.0), 300);
+    advance(&mut field, &blows, DVec2::new(14.0, 0.0), 300);
     assert!(!field.patches[2].is_bare() && field.lying() == field.books.balance() && field.books.blown_out > 0);
     let snows = acts(&weather(-6.0, 1.0, 1.0), &snow(3.0), 0.0);
-    lead(&mut field, &snows, DVec2::new(1.0, 0.0), 60);
+    advance(&mut field, &snows, DVec2::new(1.0, 0.0), 60);
     let east = &field.patches[2].columns;
     assert!(east[10 * 32..12 * 32].iter().all(|c| c.mass() == 0), "holes hold none");
     assert!(east[12 * 32..].iter().all(|c| c.mass() > 0) && field.lying() == field.books.balance());
@@ -389,12 +389,12 @@ fn quiet_tiles_hold_and_cost_nothing() {
     let land = flat([8 * 32, 8 * 32], 1.0);
     let mut field = land.cut([32, 32], Column::default());
     let still = acts(&weather(-6.0, 15.0, 1.0), &Falling::NONE, 0.0);
-    lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
+    advance(&mut field, &still, DVec2::new(15.0, 3.0), 20);
     assert!(field.patches.iter().all(|p| p.is_bare() && p.columns.capacity() == 0 && p.revision == 0));
     // Fastest of ten batches: other work on the machine only slows batches down.
     let batch = |_| {
         let begun = std::time::Instant::now();
-        lead(&mut field, &still, DVec2::new(15.0, 3.0), 100);
+        advance(&mut field, &still, DVec2::new(15.0, 3.0), 100);
         begun.elapsed().as_secs_f64() * 1e4
     };
     let microseconds = (0..10).map(batch).fold(f64::INFINITY, f64::min);
@@ -403,7 +403,7 @@ fn quiet_tiles_hold_and_cost_nothing() {
     // Snow on one tile allocates no columns on the tiles beside and behind it.
     field.patches[27].put(0, Column::of(0.2, 600.0));
     field.books.began = field.lying();
-    lead(&mut field, &still, DVec2::new(15.0, 3.0), 20);
+    advance(&mut field, &still, DVec2::new(15.0, 3.0), 20);
     assert_eq!(field.patches.iter().filter(|p| p.columns.capacity() > 0).count(), 1);
 }
 
@@ -414,7 +414,7 @@ fn suspended_snow_moves_most_of_the_mass_where_the_wind_blows_a_long_way() {
     let flux = |cells: usize| {
         let land = flat([cells, 3], 5.0);
         let mut field = land.field(Column::of(1.0, 200.0));
-        lead(&mut field, &acts(&weather(-6.0, wind, 1.0), &Falling::NONE, 0.0), DVec2::new(wind, 0.0), 20);
+        advance(&mut field, &acts(&weather(-6.0, wind, 1.0), &Falling::NONE, 0.0), DVec2::new(wind, 0.0), 20);
         assert_eq!(field.lying(), field.books.balance());
         field.books.blown_out as f64 / UNITS * 25.0 / (3.0 * 5.0 * 20.0 * STEP_S)
     };

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// Number of waves along the wind, and of waves across it.
 const TONES: usize = 24;
@@ -122,7 +122,7 @@ pub(super) struct Stirred {
 impl Gusts {
     pub fn new(seed: u64) -> Self {
         // A constant of its own keeps the gusts independent of everything else that uses the seed.
-        let mut stream = Chance::seeded(seed ^ 0x7769_6e64_2067_7573);
+        let mut stream = RandomStream::seeded(seed ^ 0x7769_6e64_2067_7573);
         let mut random = || stream.unit();
         let mut tones = |scale_m: f64| -> [GustWave; TONES] {
             let (low, high) = (scale_m / WAVES_M.0, scale_m / WAVES_M.1);

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, Status};
 
 /// Target and time limit of an update.
 #[derive(Clone, Copy)]
-pub(crate) struct Within {
+pub(crate) struct UpdateBudget {
     /// Simulation time to which states are advanced, s; the present at the latest.
     pub until_s: f64,
     /// Time at which the update began.
@@ -26,7 +26,7 @@ pub(crate) trait HeldEffect: std::any::Any {
 
     /// Advances the state to `budget.until_s` by steps of a grid that is anchored at time 0, or until the time limit is
     /// reached; one step at least. Returns whether it got there.
-    fn lead(&mut self, _world: &World, _budget: Within) -> Result<Status> {
+    fn advance(&mut self, _world: &World, _budget: UpdateBudget) -> Result<Status> {
         Ok(Status::Ok)
     }
 

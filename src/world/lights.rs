@@ -6,7 +6,7 @@ use super::{air::planet_under, color::color_of, state::World};
 use crate::{
     almanac::{
         moon::{self, MoonPosition},
-        sun::{self, SunPosition, Turned},
+        sun::{self, SunPosition, Topocentric},
     },
     error::{Error, Result},
     moment::Light,
@@ -99,7 +99,7 @@ impl World {
     ) -> Result<[UnderClouds; 2]> {
         let utc = self.utc_at(time_s);
         let sky = self.ephemeris.at(utc).map_err(|_| out_of_almanac(time_s))?;
-        let turned = Turned::new(&sky, utc, place);
+        let turned = Topocentric::new(&sky, utc, place);
         let pressure = c.air.pressure_hpa * libm::exp(-place.altitude_m.max(0.0) / c.air.rayleigh_scale_height_m);
         let see = |d: DVec3| refracted(d, pressure, c.air.temperature_c);
         let sun = self.sun_over(&turned.sun(), (c, albedo), place.altitude_m, see);

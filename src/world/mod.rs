@@ -25,7 +25,7 @@ mod wind;
 pub(crate) use binary::{binary_text, text_binary};
 pub(crate) use color::color_of;
 pub(crate) use couplings::Couplings;
-pub(crate) use held::{HeldEffect, HeldEffects, Within};
+pub(crate) use held::{HeldEffect, HeldEffects, UpdateBudget};
 pub(crate) use kept::KeptScene;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};
 pub(crate) use saved_settings::{values, words};

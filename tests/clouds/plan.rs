@@ -5,7 +5,7 @@ use welkin::{
     clouds::CloudModel,
     frame::{FrameFlags, PARTS},
     light::luminance,
-    plan::{Budget, Part, PartPlan, Reason, Wish},
+    plan::{Budget, Part, PartPlan, PartWish, Reason},
 };
 
 use crate::drawn::{BROKEN, SIZE, Sky};
@@ -26,7 +26,7 @@ fn slit(sky: &Sky, rows: u32) -> wgpu::Texture {
 fn planned(report: &str, rows: u32, tolerance: f64) -> (PartPlan, Vec<[f64; 3]>) {
     let mut sky = Sky::new(report, CloudModel::Volume);
     // All else is drawn.
-    let wish = |part: &Part| Wish { rung: (part.name != "clouds").then_some(0), ..Wish::default() };
+    let wish = |part: &Part| PartWish { rung: (part.name != "clouds").then_some(0), ..PartWish::default() };
     let wishes = PARTS.iter().map(wish).collect();
     sky.view.set_budget(Budget { tolerance: Some(tolerance), wishes, ..Budget::default() }).unwrap();
     let depth = slit(&sky, rows);

@@ -91,7 +91,7 @@ fn a_saved_snow_goes_on_as_if_nothing_had_been() {
     assert_eq!(second.snow_at(at(0.0, 5.0)).unwrap(), first.snow_at(at(0.0, 5.0)).unwrap());
     [&mut first, &mut second].into_iter().for_each(|c| c.update(2400.0).unwrap());
     assert_eq!(second.save().unwrap(), first.save().unwrap());
-    assert_eq!(second.snow_books(), first.snow_books());
+    assert_eq!(second.snow_balance(), first.snow_balance());
     let e = context(&host, LyingSnowModel::Reported).load(&saved).unwrap_err();
     assert!(e.status != Status::Ok && e.to_string().contains("lying_snow"), "{e}");
     let text = String::from_utf8(saved).unwrap();
@@ -149,10 +149,10 @@ fn a_plough_takes_what_it_says_and_wheels_press_tracks() {
     context.set_weather(&Weather { temperature_c: -5.0, surface, ..Weather::default() }, 0.0, 0.0).unwrap();
     context.set_ground_grid(Some(grid())).unwrap();
     context.update(60.0).unwrap();
-    let before = context.snow_books().unwrap();
+    let before = context.snow_balance().unwrap();
     let open = context.snow_at(at(0.0, 15.0)).unwrap();
     let taken = context.take_snow(&road, 0.02).unwrap();
-    let after = context.snow_books().unwrap();
+    let after = context.snow_balance().unwrap();
     assert!((before.lying_kg - after.lying_kg - taken).abs() < 1e-3 && (after.taken_kg - taken).abs() < 1e-3);
     // 30.5 m by 4 m by 18 cm of 250 kg/m^3.
     assert!((taken / (30.5 * 4.0 * (open.depth_m - 0.02) * open.density_kg_m3) - 1.0).abs() < 0.02, "{taken} kg");

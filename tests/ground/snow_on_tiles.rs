@@ -9,7 +9,7 @@ use welkin::{
     context::{Context, ContextDesc, GivenDirection},
     frame::{Stages, View},
     ground::{GroundGrid, GroundModel, SurfaceClass},
-    snowpack::{LyingSnowModel, SnowBooks, SnowStrip},
+    snowpack::{LyingSnowModel, SnowBalance, SnowStrip},
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{Precipitation, PrecipitationKind, Surface, Weather, Wind},
 };
@@ -93,7 +93,7 @@ fn at(x: f64, y: f64) -> DVec3 {
     DVec3::new(x, y, 0.0)
 }
 
-fn is_balanced(b: &SnowBooks) -> bool {
+fn is_balanced(b: &SnowBalance) -> bool {
     let should =
         b.began_kg + b.fallen_kg + b.blown_in_kg - b.blown_out_kg - b.ran_off_kg - b.sublimated_kg - b.taken_kg;
     (should - b.lying_kg).abs() < 1e-6 * b.began_kg
@@ -111,8 +111,8 @@ fn it_lies_on_tiles_as_on_a_grid_of_the_same_heights() {
         let wheels = SnowStrip { points: vec![at(-2.0, -20.0), at(1.0, 20.0)], width_m: 0.5 };
         [&mut tiles, &mut grid].into_iter().for_each(|c| c.press_snow(&wheels).unwrap());
         assert!(taken[0] == taken[1] && taken[0] > 0.0, "{taken:?}");
-        let books = tiles.snow_books().unwrap();
-        assert_eq!(books, grid.snow_books().unwrap(), "after {end_s} s");
+        let books = tiles.snow_balance().unwrap();
+        assert_eq!(books, grid.snow_balance().unwrap(), "after {end_s} s");
         assert!(is_balanced(&books), "{books:?}");
         for i in 0..400 {
             let place = DVec3::new(f64::from(i % 20) * 3.3 - 31.0, f64::from(i / 20) * 3.2 - 31.5, -1.0);
@@ -120,7 +120,7 @@ fn it_lies_on_tiles_as_on_a_grid_of_the_same_heights() {
         }
         println!("after {end_s} s: {books:?}");
     }
-    let b = tiles.snow_books().unwrap();
+    let b = tiles.snow_balance().unwrap();
     assert!(b.blown_in_kg > 0.0 && b.blown_out_kg > 0.0 && b.ran_off_kg > 0.0 && b.fallen_kg > 0.0, "{b:?}");
 }
 
@@ -156,12 +156,12 @@ fn tiles_that_change_keep_the_snow_of_cells_that_stay_and_account_for_the_rest()
     let host = Host::new();
     let mut context = days(&host, set_tiles);
     context.update(7000.0).unwrap();
-    let (before, stays) = (context.snow_books().unwrap(), context.snow_at(at(20.0, -20.0)).unwrap());
+    let (before, stays) = (context.snow_balance().unwrap(), context.snow_at(at(20.0, -20.0)).unwrap());
     let (hole, country) = (context.snow_at(at(8.0, 11.0)).unwrap(), context.snow_at(at(500.0, 0.0)).unwrap());
     let at_raised = context.snow_at(at(21.0, 21.0)).unwrap();
     assert!(hole.mass_kg_m2 > 1.0, "{hole:?}");
     change(&mut context);
-    let after = context.snow_books().unwrap();
+    let after = context.snow_balance().unwrap();
     assert!(is_balanced(&after) && after.taken_kg > before.taken_kg + 2000.0, "{before:?} {after:?}");
     // The tile that was set again begins with the snow of level ground.
     let began = f64::from(SIDE * SIDE) * country.mass_kg_m2;
@@ -174,10 +174,10 @@ fn tiles_that_change_keep_the_snow_of_cells_that_stay_and_account_for_the_rest()
     // Where the tile was lies the world's own ground.
     assert_eq!(context.snow_at(at(-20.0, -20.0)).unwrap().depth_m, country.depth_m);
     context.update(9000.0).unwrap();
-    assert!(is_balanced(&context.snow_books().unwrap()));
+    assert!(is_balanced(&context.snow_balance().unwrap()));
     context.set_terrain(None).unwrap();
     context.update(9100.0).unwrap();
-    assert_eq!(context.snow_books(), None);
+    assert_eq!(context.snow_balance(), None);
 }
 
 #[test]
@@ -193,12 +193,12 @@ fn any_division_into_calls_lays_the_same_snow_whatever_is_changed_meanwhile() {
         calls += 1;
         if calls == 20 {
             change(&mut parts);
-            assert!(is_balanced(&parts.snow_books().unwrap()));
+            assert!(is_balanced(&parts.snow_balance().unwrap()));
         }
     }
     while parts.update_within(9000.0, Duration::ZERO).unwrap() == Status::Pending {}
     assert!(calls > 100);
-    assert_eq!(parts.snow_books(), whole.snow_books());
+    assert_eq!(parts.snow_balance(), whole.snow_balance());
     assert_eq!(parts.state_hash().unwrap(), whole.state_hash().unwrap());
     assert!(parts.save().unwrap() == whole.save().unwrap());
 }
@@ -219,7 +219,7 @@ fn a_saved_snow_on_tiles_goes_on_as_if_nothing_had_been() {
     assert_ne!(first.state_hash().unwrap(), hash);
     assert_eq!(first.state_hash().unwrap(), second.state_hash().unwrap());
     assert!(first.save().unwrap() == second.save().unwrap());
-    assert_eq!(first.snow_books(), second.snow_books());
+    assert_eq!(first.snow_balance(), second.snow_balance());
     // Snow alone is in the hash.
     first.take_snow(&SnowStrip { points: vec![at(-9.0, -9.0), at(-9.0, -5.0)], width_m: 1.0 }, 0.0).unwrap();
     assert_ne!(first.state_hash().unwrap(), second.state_hash().unwrap());

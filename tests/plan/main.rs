@@ -7,7 +7,7 @@ mod scenes;
 mod time;
 
 use scenes::{Bench, PlanScene};
-use welkin::plan::{Budget, GaveWay, Reason, Wish, difference, estimate::WORST};
+use welkin::plan::{Budget, GaveWay, PartWish, Reason, difference, estimate::WORST};
 
 /// Frames until a gauge has answered and what it chose has faded.
 const SETTLED: u64 = 22;
@@ -185,7 +185,7 @@ fn times_and_importance_out_of_range_are_refused() {
         let budget = Budget { milliseconds: Some(ms), ..Budget::default() };
         assert!(bench.view.set_budget(budget).unwrap_err().to_string().contains("budget.milliseconds"));
     }
-    let wishes = vec![Wish::default(), Wish { importance: Some(2.0), ..Wish::default() }];
+    let wishes = vec![PartWish::default(), PartWish { importance: Some(2.0), ..PartWish::default() }];
     let budget = Budget { wishes, ..Budget::default() };
     let message = bench.view.set_budget(budget).unwrap_err().to_string();
     assert!(message.starts_with("budget.wishes[1].importance must be in [0, 1]"), "{message}");

@@ -8,7 +8,7 @@ use std::{
 
 use welkin::{
     Status,
-    chance::Chance,
+    chance::RandomStream,
     context::{Context, ContextDesc},
     frame::Shared,
     gpu::{Device, DeviceOptions},
@@ -141,7 +141,7 @@ fn whatever_is_set_between_steps_is_in_the_state_as_it_is() {
 #[test]
 fn any_sequence_of_changes_saves_and_steps_goes_on_alike() {
     for seed in 1..=6 {
-        let mut chance = Chance::new(seed, 1);
+        let mut chance = RandomStream::new(seed, 1);
         let mut pick = |below: u32| (chance.even() * f64::from(below)) as u32;
         let mut three = Three::new(GROUNDS[seed as usize % GROUNDS.len()]);
         for _ in 0..40 {

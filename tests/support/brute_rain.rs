@@ -61,9 +61,9 @@ pub fn speed_m_s(diameter_mm: f64) -> f64 {
 }
 
 /// Random number generator: SplitMix64.
-pub struct Chance(pub u64);
+pub struct RandomStream(pub u64);
 
-impl Chance {
+impl RandomStream {
     /// Uniform random number in [0, 1).
     pub fn even(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -154,7 +154,7 @@ impl Film {
 
     /// All drops that can appear in pictures taken within this many seconds.
     pub fn drops(&self, seed: u64, lasts_s: f64) -> Vec<Drop> {
-        let mut chance = Chance(seed);
+        let mut chance = RandomStream(seed);
         let spectrum = Spectrum::of(self.rate_mm_h);
         let number = spectrum.number(self.from_mm);
         let fastest = (self.wind_m_s - self.camera_m_s).length() + speed_m_s(DIAMETERS_MM.1);

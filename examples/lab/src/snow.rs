@@ -15,7 +15,7 @@ use welkin::snow::{
     lattice::{Flakes, NEAREST_M, SPEED_UNIT},
     reference::flake_radiance,
 };
-use welkin_support::brute_rain::Chance;
+use welkin_support::brute_rain::RandomStream;
 
 use crate::rain::{Blocks, EYE, Host, focal, layer};
 
@@ -49,7 +49,7 @@ impl Air {
     /// Light and cover at every pixel. Flakes are discs as thin as their ice, moved along their path while the shutter
     /// is open.
     fn all(&self, size: (u32, u32), exposure_s: f64, seed: u64) -> Vec<[f64; 2]> {
-        let mut chance = Chance(seed);
+        let mut chance = RandomStream(seed);
         let mut sums = vec![[0.0f64; 2]; (size.0 * size.1) as usize];
         let f = focal(size);
         // A pyramid of air, slightly wider than the picture.

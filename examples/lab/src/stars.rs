@@ -13,7 +13,7 @@ use welkin::context::{Context, ContextDesc, GivenDirection, Scene};
 use welkin::frame::{Frame, PARTS, Shared, Stages, View};
 use welkin::gpu::{Device, readback};
 use welkin::light::luminance;
-use welkin::plan::{Budget, Wish};
+use welkin::plan::{Budget, PartWish};
 use welkin::scene::{Camera, ViewRays};
 use welkin::stars::{
     Heavens, NightSky, StarPass, StarSettings, StarView, candidates::StarMethod, light::star_lux, reference,
@@ -86,7 +86,7 @@ impl Host {
         // The lab's own pass draws all points.
         let has_points = matches!(method, StarMethod::Visible | StarMethod::Even);
         self.context.set_stars(if has_points { StarSettings::default() } else { without })?;
-        let mut wishes = vec![Wish::default(); PARTS.len()];
+        let mut wishes = vec![PartWish::default(); PARTS.len()];
         for (wish, part) in wishes.iter_mut().zip(PARTS) {
             wish.rung = Some(usize::from(part.name == "stars" && method == StarMethod::Even));
         }

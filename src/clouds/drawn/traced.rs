@@ -18,7 +18,7 @@ use glam::DVec3;
 
 use super::march::{CloudRays, CloudsSeen, skip};
 use crate::{
-    chance::Chance,
+    chance::RandomStream,
     clouds::{
         field::{
             droplets::nearest_diameter,
@@ -124,7 +124,7 @@ impl LitLayer {
 
     /// Returns the light that `count` photons find along a ray from `eye` (east, north, up), m.
     pub fn photons(&self, eye: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
-        let (mut chance, field) = (Chance::new(seed, 1), self.field());
+        let (mut chance, field) = (RandomStream::new(seed, 1), self.field());
         let s = &self.shape;
         // Start at the layer's nearer face.
         let face = if direction.z > 0.0 { s.base_m } else { s.base_m + s.thickness_m };
@@ -167,7 +167,7 @@ impl Photon<'_> {
     }
 
     /// Returns where a photon is scattered next; `None` if it leaves the layer.
-    fn meets(&self, position: DVec3, direction: DVec3, chance: &mut Chance) -> Option<DVec3> {
+    fn meets(&self, position: DVec3, direction: DVec3, chance: &mut RandomStream) -> Option<DVec3> {
         let s = &self.field.shape;
         let face = if direction.z > 0.0 { s.base_m + s.thickness_m } else { s.base_m };
         let end = (face - position.z) / direction.z;
@@ -187,7 +187,7 @@ impl Photon<'_> {
     }
 
     /// Returns the radiance of one photon by source, and whether it was scattered.
-    fn follow(&self, mut position: DVec3, mut direction: DVec3, chance: &mut Chance) -> ([f64; 3], bool) {
+    fn follow(&self, mut position: DVec3, mut direction: DVec3, chance: &mut RandomStream) -> ([f64; 3], bool) {
         let light = &self.layer.light;
         let (mut by, mut met, mut turns) = ([0.0; 3], false, 0);
         loop {
@@ -361,7 +361,7 @@ mod tests {
         let want = sun.fluxes(cosine, 100_000, 5);
         for (face, up) in [(5, -1.0), (4, 1.0)] {
             // Directions are distributed as the cosine, so the mean radiance times pi is the flux.
-            let (mut chance, mut flux, rays) = (Chance::new(9, 2), 0.0, 4000);
+            let (mut chance, mut flux, rays) = (RandomStream::new(9, 2), 0.0, 4000);
             for i in 0..rays {
                 let (u, azimuth) = (chance.even().max(1e-4), std::f64::consts::TAU * chance.even());
                 let level = (1.0 - u).sqrt();

@@ -36,5 +36,5 @@ pub(crate) mod thresholds;
 
 pub use extinction::Field;
 pub use map::{MAP_CELLS, MAP_REACH, MAP_SIZE, Map};
-pub use shape::{About, NO_ANVIL, Shape, about, dome};
+pub use shape::{CloudAround, NO_ANVIL, Shape, about, dome};
 pub use solid::Solid;

@@ -91,7 +91,7 @@ const MAP_SLOPE: f64 = 4.0;
 
 /// Amount of cloud above, below and beside a place, as metres of cloud at full extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct About {
+pub struct CloudAround {
     /// Straight up.
     pub above_m: f64,
     /// Straight down.
@@ -115,11 +115,11 @@ pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
 
 /// Returns the amount of cloud around a place at a height, for edges that are not frayed. `excess` is that over the
 /// threshold alone, with no dome taken off.
-pub fn about(shape: &Shape, excess: f64, height: f64) -> About {
+pub fn about(shape: &Shape, excess: f64, height: f64) -> CloudAround {
     let below = filled_below(shape, excess, height);
     // An anvil reaches further than its tower.
     let beyond = if height > ANVIL[0] - 0.5 * ANVIL_FACES[0] { shape.anvil.min(0.0) } else { 0.0 };
-    About {
+    CloudAround {
         above_m: (filled_below(shape, excess, 1.0) - below) * shape.thickness_m,
         below_m: below * shape.thickness_m,
         edge_m: (excess - beyond).max(0.0) / MAP_SLOPE * shape.scale_m,

@@ -57,7 +57,7 @@ mod tests {
     use glam::{DVec2, DVec3, Vec3Swizzles};
 
     use super::*;
-    use crate::{chance::Chance, gpu::shader};
+    use crate::{chance::RandomStream, gpu::shader};
 
     const SIDES: usize = 6;
 
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn light_through_prisms_turned_in_all_ways_falls_off_so() {
         const BIN_RAD: f64 = 0.0087;
-        let (n, mut chance) = (INDEX[1], Chance::new(3, 0));
+        let (n, mut chance) = (INDEX[1], RandomStream::new(3, 0));
         let (mut bins, mut halo, mut all) = ([0.0; 40], 0.0, 0.0);
         for _ in 0..400_000 {
             let (up, azimuth) = (2.0 * chance.even() - 1.0, 2.0 * PI * chance.even());

@@ -159,7 +159,7 @@ fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &S
 pub(crate) mod tests {
     use super::*;
     use crate::{
-        chance::Chance,
+        chance::RandomStream,
         clouds::{
             light::transport::{Scattering, Transport},
             reference,
@@ -260,7 +260,7 @@ pub(crate) mod tests {
 
         /// Traces photons; `each` gets the place and the face where one leaves.
         fn photons(&self, count: u32, mut each: impl FnMut(DVec3, usize)) {
-            let mut chance = Chance::new(5, 0);
+            let mut chance = RandomStream::new(5, 0);
             let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: G });
             for _ in 0..count {
                 let z = 2.0 * chance.even() - 1.0;

@@ -63,14 +63,14 @@ impl Bench {
     fn to(&mut self, time_s: f64) {
         self.world.keep_carried(time_s).expect("regions");
         self.world.time_s = time_s;
-        while self.lead(Duration::ZERO) == Status::Pending {}
+        while self.advance(Duration::ZERO) == Status::Pending {}
         self.world.forget_before(self.flow.stepped_to_s().unwrap_or(time_s));
     }
 
-    fn lead(&mut self, most: Duration) -> Status {
+    fn advance(&mut self, most: Duration) -> Status {
         let led = self
             .flow
-            .lead(&self.world, Within { until_s: self.world.time_s, begun: Instant::now(), most })
+            .advance(&self.world, UpdateBudget { until_s: self.world.time_s, begun: Instant::now(), most })
             .expect("led");
         self.flow.publish(&mut self.world);
         led

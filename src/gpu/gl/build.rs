@@ -19,7 +19,7 @@ use super::{
 use crate::error::{Error, Result, Status};
 
 /// Context and device with which targets are built.
-pub(super) struct Workshop<'a> {
+pub(super) struct TargetBuilder<'a> {
     pub(super) ask: Ask<'a>,
     pub(super) device: &'a wgpu::Device,
     /// Whether the device draws as on OpenGL 3.3 or OpenGL ES 3.0.
@@ -70,7 +70,7 @@ impl TargetImage {
     }
 }
 
-impl Workshop<'_> {
+impl TargetBuilder<'_> {
     /// Builds a target for `desc`.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    build::Workshop,
+    build::TargetBuilder,
     check::GlInfo,
     host::{Inner, Sharing},
     image::{Ask, GlImage},
@@ -60,7 +60,7 @@ impl Inner {
         }
         self.next_id += 1;
         self.check_window(info, desc, true)?;
-        let entry = Workshop { ask: self.ask(info), device, tier0: self.tier0 }.build(*desc, self.next_id)?;
+        let entry = TargetBuilder { ask: self.ask(info), device, tier0: self.tier0 }.build(*desc, self.next_id)?;
         self.targets.push(entry);
         self.begin_target(self.targets.len() - 1)
     }

@@ -14,7 +14,7 @@ use crate::{
     },
     terrain::{CellId, Terrain},
     weather::Conditions,
-    world::{Within, World},
+    world::{UpdateBudget, World},
 };
 
 /// Inputs of a step.
@@ -43,7 +43,7 @@ pub(crate) struct SteppedTiles {
 impl TiledWater {
     /// Steps the water until the step is complete or the time budget is used up, at least one tile per call. Returns
     /// `None` while tiles remain.
-    pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<Within>) -> Result<Option<SteppedTiles>> {
+    pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<UpdateBudget>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
         let keys = std::mem::take(&mut self.keys);
