@@ -1,5 +1,5 @@
-// Glow of the clouds' face and of the air in the light of lightning flashes. The f64 twins are in
-// src/lightning/glow.rs.
+// Glow of the clouds and of the air in the light of lightning flashes. The clouds' face is the level plane in which the
+// camera sees them: their base from below, their tops from above. The f64 twins are in src/lightning/glow.rs.
 //!include "common/frame.wgsl"
 
 // Whether any flash shines.
@@ -12,14 +12,15 @@ const FLASH_TAKES: f32 = 0.2;
 // Farthest distance at which the clouds' face is lit, m.
 const FLASH_FARTHEST: f32 = 60000.0;
 
-// Distance along a ray to the level face of a deck, m; 0 or less if the ray does not meet it.
+// Distance along a ray to the clouds' face, m; 0 or less if the ray does not meet it.
 fn flash_way(d: vec3f) -> f32 {
     return frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
 }
 
-// Luminance of clouds where a ray meets their face. A source at distance h from the face gives k h / R^3 at a place at
-// distance R. For light that diffuses through the cloud, k = F s / (2 pi^2), with the flux F and the share s that
-// leaves by this face; for light that falls on the cloud, k = I rho / pi, with the intensity I and the reflectance rho.
+// Luminance of clouds where a ray meets their face, cd/m^2. A source at distance h from the face, m, gives k h / R^3 at
+// a place of the face that lies R from the source, m. k, cd, is `FlashSource.clouds`. For light that diffuses through
+// the cloud, k = F s / (2 pi^2), with the flux F, lm, and the share s that leaves by this face. For light that falls on
+// the cloud, k = I rho / pi, with the intensity I, cd, and the reflectance rho.
 fn flash_on_clouds(d: vec3f, way: f32) -> vec3f {
     if way <= 0.0 || way > FLASH_FARTHEST {
         return vec3f(0.0);
@@ -43,9 +44,10 @@ fn flash_phase(cosine: f32) -> f32 {
     return 0.07957747 * (1.0 - g * g) / (d * sqrt(d));
 }
 
-// Light that the air before `range` scatters once towards the eye. With s along the ray from its point nearest to a
-// source, at distance h, and s = h tan u, the square of the distance cancels in the integral (Kulla and Fajardo 2012,
-// "equiangular").
+// Luminance of the light that the air up to `range`, m, scatters once towards the eye, cd/m^2. The integral along the
+// ray is taken over the angle u at the source (equiangular sampling, Kulla and Fajardo 2012). `along` is the distance
+// along the ray to its point nearest to the source, and h the distance of that point from the source, m. The distance
+// along the ray is s = along + h tan u, and the distance from the source is D = h / cos u; hence ds / D^2 = du / h.
 fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
     let taken = FLASH_TAKES * frame.flash_scattering;
     var sum = 0.0;
@@ -58,7 +60,8 @@ fn flash_in_air(ray: ViewRay, range: f32) -> vec3f {
         let whole = atan((min(range, FLASH_FARTHEST) - along) / h) - first;
         var part = 0.0;
         for (var k = 0u; k < 4u; k++) {
-            // Samples are denser at the near end, where light is hardly turned.
+            // Samples with u = first + whole t^2 are denser near the eye, where the scattering angle is smallest. The
+            // weight of each is du = 2 whole t dt, with dt = 1/4.
             let t = 0.25 * (f32(k) + 0.5);
             let u = first + whole * t * t;
             let s = along + h * tan(u);

@@ -1,6 +1,8 @@
-// Computes the range of distances of a cell from those of its 8 x 8 finer cells.
+// Computes the range (least, largest) of the distances in a cell of an occluder map, m, from the ranges of the 8 x 8
+// texels or finer cells that it covers.
 //!include "common/fullscreen.wgsl"
 
+// Ranges of the texels or of the finer cells: the bits of two floats each.
 @group(0) @binding(0) var finer: texture_2d<u32>;
 
 @fragment

@@ -1,5 +1,6 @@
-//! Probe of the drawn fog: `probe fog --visibility V`. The GPU path is that of the composition (a depth buffer,
-//! `view_range`, `fog_along`, `fog_apply`) with a synthetic scene.
+//! Probe of the fog: draws targets behind fog of a given visibility and measures their contrast and transmittance
+//! (`probe fog --visibility V`). It calls the functions of the composition's shader (`view_range`, `fog_along`,
+//! `fog_apply`) with a synthetic depth buffer.
 
 use glam::{DVec2, DVec3};
 
@@ -73,6 +74,8 @@ fn model(visibility_m: f64) -> Result<FogModel> {
     FogModel::new(&Law::Layer(layer), &light, &Viewpoint::flat(2.0))
 }
 
+/// Draws one pixel for each of `depths` and reads the texels back. Each texel has three values at 550 nm: the white
+/// target behind the fog, the black target behind it, and the transmittance.
 fn draw(
     device: &Device,
     (depth, fog): (&DepthUniform, &LowAirUniform),

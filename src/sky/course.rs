@@ -1,13 +1,17 @@
-//! Course of an observer that moves steadily: between which two places it is, and which place comes next.
+//! Course of an observer whose altitude changes steadily, or whose sun or moon moves steadily. To draw the observer's
+//! tables of the sky (`observer_tables.rs`) anew in every frame would cost too much. The course therefore picks places
+//! on the observer's way, and has the tables of the next place drawn in slices: some rows in each frame. The tables for
+//! the observer itself are a mix of those of the places behind and ahead of it: the pair.
 
 use std::ops::Range;
 
 use super::observer_tables::LAMPS;
 
-/// Numbers that an observer's tables depend on: its altitude, and the sine of elevation of each lamp.
+/// Count of the values that an observer's tables depend on: its altitude, and the sine of elevation of each lamp.
 pub(super) const NUMBERS: usize = 1 + LAMPS;
 
-/// Altitude of an observer, m, and the sine of elevation of each lamp that lights the air.
+/// Altitude of an observer, m, and the sine of elevation of each lamp that lights the air (sun, moon); `None` for a
+/// lamp that does not shine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ObserverPlace {
     pub altitude_m: f64,
@@ -20,7 +24,7 @@ impl ObserverPlace {
         [self.altitude_m, a, b]
     }
 
-    /// The place with other numbers; lamps that are not there stay away.
+    /// Returns the place with the altitude and sines given; a lamp that is `None` stays `None`.
     fn with(&self, [altitude_m, a, b]: [f64; NUMBERS]) -> Self {
         let mu_s = |lamp: usize, value: f64| self.mu_s[lamp].map(|_| value.clamp(-1.0, 1.0));
         Self { altitude_m, mu_s: [mu_s(0, a), mu_s(1, b)] }
@@ -39,27 +43,31 @@ impl ObserverPlace {
 /// Bounds for following an observer, for its altitude, m, and the sine of elevation of each lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Differences from the observer's place up to which tables serve it.
+    /// Largest difference between an observer and the place of tables at which they still serve it.
     pub near: [f64; NUMBERS],
-    /// Distances over which the light of the air is straight enough to be mixed from both ends.
+    /// Largest distance between two places at which a linear mix of both tables serves in between.
     pub far: [f64; NUMBERS],
 }
 
 /// Frames of motion before anything is drawn ahead.
 const FRAMES_BEFORE: u32 = 8;
-/// Frames from one pair of places to the next: as many as the light allows, up to the first; or more, up to the second,
-/// for a motion so slow that the way is shorter than `SHORT_WAY` of the near bounds.
+/// Largest number of frames from one place to the next, for a usual and for a very slow motion. The far bounds may
+/// allow fewer. A very slow motion takes more than 40 frames to cover [`SHORT_WAY`] times the near bounds, and gets
+/// that number of frames, up to 400.
 const MOST_FRAMES: (f64, f64) = (40.0, 400.0);
+/// Way of a very slow motion from one place to the next, in multiples of the near bounds.
 const SHORT_WAY: f64 = 20.0;
-/// Share of a frame's motion in the speed that is followed: a mean over some frames, so that a camera that sways keeps
-/// its course.
+/// Weight of the newest frame's motion in the speed, an exponential mean over some 10 frames. The mean keeps the course
+/// of a camera that sways.
 const SPEED_SHARE: f64 = 0.1;
 
-/// Tables at one place that are being drawn from the first row on.
+/// Tables of the next place, which are drawn row by row from the first row on.
 #[derive(Clone, Copy, Debug)]
 struct Coming {
     place: ObserverPlace,
+    /// Rows drawn so far.
     rows: u32,
+    /// Rows to draw in each frame.
     rows_a_frame: u32,
 }
 
@@ -68,22 +76,27 @@ struct Coming {
 pub(super) struct CourseStep {
     /// Rows to draw of the tables of a place ahead.
     pub slice: Option<(ObserverPlace, Range<u32>)>,
-    /// Whether, after that, the tables of the place ahead take the place of the pair's second, and those the place of
-    /// its first.
+    /// Whether to shift the pair after drawing `slice`: the second tables become its first, and the next place's its
+    /// second.
     pub turns: bool,
-    /// Whether, after that, the present tables are copied to the pair's first.
+    /// Whether to copy the observer's present tables into the pair's first tables, after the shift.
     pub copies: bool,
-    /// Share of the pair's second tables at the observer's place; `None` without a pair that serves it.
+    /// Weight of the pair's second tables in the mix for the observer, 0 to 1; `None` if no pair serves it.
     pub share: Option<f32>,
 }
 
 /// Course of an observer.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Course {
+    /// Observer's place in the last frame.
     last: Option<ObserverPlace>,
+    /// Mean change of the altitude, m, and of each lamp's sine of elevation, in one frame.
     speed: [f64; NUMBERS],
+    /// Frames of motion since the course began.
     frames: u32,
+    /// Places with whole tables, the first behind and the second ahead of the observer.
     pair: Option<[ObserverPlace; 2]>,
+    /// Next place, whose tables are not yet whole.
     coming: Option<Coming>,
 }
 
@@ -117,7 +130,9 @@ impl Course {
         step
     }
 
-    /// Goes on between two places, or past the second towards the one that comes.
+    /// Plans a frame of an observer with a pair: between its places a mix of their tables and a slice of the next
+    /// tables, past the second place the rest of the next tables and a shift of the pair. Forgets the course if no pair
+    /// serves the observer then.
     fn between(
         &mut self,
         pair: &[ObserverPlace; 2],
@@ -130,7 +145,7 @@ impl Course {
         if step.share.is_none()
             && let Some(mut coming) = self.coming.take()
         {
-            // The rest of the next tables at once: the observer came there sooner than its speed said.
+            // Completes the next tables at once, if the observer passed the second place before they were whole.
             step.slice = coming.next(rows, rows);
             let next = [pair[1], coming.place];
             step.turns = true;
@@ -155,7 +170,8 @@ impl Course {
         }
     }
 
-    /// Draws the first tables ahead, while the present ones are still drawn whole.
+    /// Plans slices of the tables of the first place ahead. Until these are complete there is no pair, and the caller
+    /// draws the observer's own tables whole.
     fn toward(
         &mut self,
         place: &ObserverPlace,
@@ -172,6 +188,7 @@ impl Course {
             return;
         };
         let speed = self.speed;
+        // Plans for twice the way: the observer covers the first half of it while the tables are drawn.
         let coming = self.coming.get_or_insert_with(|| Coming::new(place, &speed.map(|v| 2.0 * v), frames, rows));
         step.slice = coming.next(coming.rows_a_frame, rows);
         let (Some(drawn), true) = (drawn, coming.rows >= rows) else { return };
@@ -188,15 +205,15 @@ impl Course {
 }
 
 impl Coming {
-    /// Tables of the place that is reached from `from` in so many frames.
+    /// Plans the tables of the place that an observer reaches from `from` in `frames` frames at `speed`.
     fn new(from: &ObserverPlace, speed: &[f64; NUMBERS], frames: f64, rows: u32) -> Self {
         let numbers = from.numbers();
         let place = from.with(std::array::from_fn(|i| numbers[i] + frames * speed[i]));
-        // A frame less than there are, for an observer that comes a little sooner.
+        // Plans for one frame fewer, because an observer may arrive a little early.
         Self { place, rows: 0, rows_a_frame: (f64::from(rows) / (frames - 1.0).max(1.0)).ceil() as u32 }
     }
 
-    /// The next rows to draw.
+    /// Returns the next `count` rows to draw of the table's `rows`; `None` if all are drawn.
     fn next(&mut self, count: u32, rows: u32) -> Option<(ObserverPlace, Range<u32>)> {
         let range = self.rows..(self.rows + count).min(rows);
         self.rows = range.end;
@@ -209,7 +226,8 @@ fn difference(a: &ObserverPlace, b: &ObserverPlace) -> [f64; NUMBERS] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// Frames until an observer at this speed has gone as far as tables may be mixed over; `None` if it is there at once.
+/// Returns the number of frames from `place` to the next place: until the observer has moved by a far bound, or the
+/// limit of [`MOST_FRAMES`]. `speed` is the motion in one frame. Returns `None` below 2 frames, too few for slices.
 fn frames_ahead(place: &ObserverPlace, speed: &[f64; NUMBERS], bounds: &Bounds) -> Option<f64> {
     let numbers = || (0..NUMBERS).filter(|i| *i == 0 || place.mu_s[i - 1].is_some());
     let frames =
@@ -219,7 +237,8 @@ fn frames_ahead(place: &ObserverPlace, speed: &[f64; NUMBERS], bounds: &Bounds) 
     (frames >= 2.0).then_some(frames)
 }
 
-/// Share of the second of two places in `place`, if it lies between them: beside the way by less than the near bounds.
+/// Returns the weight of the pair's second place in a linear mix for `place`, 0 to 1. Returns `None` if `place` lies
+/// before the first or past the second place, or farther from the line between them than the near bounds.
 fn share(pair: &[ObserverPlace; 2], place: &ObserverPlace, bounds: &Bounds) -> Option<f32> {
     let (way, gone) = (difference(&pair[1], &pair[0]), difference(place, &pair[0]));
     let sum = |a: &[f64; NUMBERS]| (0..NUMBERS).map(|i| a[i] * way[i] / bounds.near[i].powi(2)).sum::<f64>();
@@ -239,7 +258,8 @@ mod tests {
         ObserverPlace { altitude_m, mu_s: [Some(mu_s), None] }
     }
 
-    /// Rows drawn ahead and tables drawn whole, over frames of a motion; tables are drawn whole where nothing serves.
+    /// Counts, over `frames` frames of a motion, the rows drawn ahead and the tables drawn whole. A frame draws tables
+    /// whole where neither a pair nor the present tables serve the observer.
     fn drawn(frames: u32, motion: impl Fn(f64) -> ObserverPlace) -> (u32, u32) {
         let (mut course, mut tables, mut rows, mut whole) = (Course::default(), None::<ObserverPlace>, 0, 0);
         for i in 0..frames {
@@ -265,10 +285,10 @@ mod tests {
             assert!(whole <= 20, "{whole} of 400 frames draw whole tables");
             assert!((30 * ROWS..56 * ROWS).contains(&rows), "{rows} rows: one table in about eleven frames");
         }
-        // The sun at its pace: 40 rows in 333 frames.
+        // The real sun, at 60 frames/s: 20 times the near bound of 2e-5 takes 333 frames, which draw 40 rows.
         let (rows, whole) = drawn(4000, |i| sun(10.0, 0.7 - 1.2e-6 * i));
         assert!(whole <= 3 && (8 * ROWS..16 * ROWS).contains(&rows), "{rows} rows, {whole} whole");
-        // Frames of uneven length lie on the same way.
+        // A motion whose speed varies from frame to frame, but whose places lie on one line.
         let (_, whole) = drawn(400, |i| sun(10.0, 0.7 - 8.7e-4 * (i + 0.4 * (i * 0.9).sin())));
         assert!(whole <= 24, "{whole}");
     }

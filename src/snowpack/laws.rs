@@ -14,11 +14,12 @@ pub const PELLETS_KG_M3: f64 = 550.0;
 pub const NEW_ALBEDO: f64 = 0.88;
 /// Lower limit of the albedo of old snow: Wiscombe and Warren (1980) find 0.6 to 0.7 for old, wet and dirty snow.
 pub const OLD_ALBEDO: f64 = 0.6;
-/// Mass of new snow that restores most of the albedo, kg/m^2 (Douville, Royer and Mahfouf 1995; Essery 2015).
+/// Scale S0 of the mass of new snow that renews the albedo, kg/m^2: a fall of S kg/m^2 restores the share
+/// 1 - exp(-S / S0) of the difference to [`NEW_ALBEDO`] (Douville, Royer and Mahfouf 1995; Essery 2015).
 pub const RENEWING_KG_M2: f64 = 10.0;
-/// Time in which the albedo falls to 1/e in frost, s (same sources).
+/// Time in which the excess of the albedo over [`OLD_ALBEDO`] falls to 1/e in frost, s (same sources).
 const FROST_S: f64 = 3.6e6;
-/// Time in which the albedo falls to 1/e in thaw, s.
+/// Time in which the excess of the albedo over [`OLD_ALBEDO`] falls to 1/e in thaw, s (same sources).
 const THAW_S: f64 = 3.6e5;
 /// Share of the ice's mass that snow can hold as liquid water (Bergstroem 1976).
 pub const HELD_SHARE: f64 = 0.1;
@@ -48,22 +49,23 @@ pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> 
     2.777e-6 * if wet { 2.0 } else { 1.0 } * libm::exp(-0.04 * cold - 0.046 * dense)
 }
 
-/// Returns the viscosity of snow, kg s/m^2: 9e5 exp(0.08 F + 0.023 rho), with F and rho as in [`metamorphism_per_s`],
-/// but without the limit (Anderson 1976). Under a load W, kg/m^2, snow settles at the rate W / viscosity, 1/s.
+/// Returns the viscosity of snow, kg s/m^2: 9e5 exp(0.08 F + 0.023 rho) (Anderson 1976). F is the frost, degrees below
+/// 0 C; rho is the density, kg/m^3. Under a load W, kg/m^2, snow settles at the rate W / viscosity, 1/s.
 pub fn viscosity(temperature_c: f64, density_kg_m3: f64) -> f64 {
     9e5 * libm::exp(0.08 * (-temperature_c).max(0.0) + 0.023 * density_kg_m3)
 }
 
-/// Returns the factor by which the difference of the albedo from that of old snow falls in `seconds`: exp(-seconds /
-/// t), with t for frost or thaw.
+/// Returns the share of the albedo's excess over [`OLD_ALBEDO`] that is left after `seconds`: exp(-seconds / t). t is
+/// 3.6e5 s if the snow thaws and 3.6e6 s in frost.
 pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
 
-/// Returns `[m0, m1]` of the melting rate, mm/h: m0 + m1 G, where G is the sunlight that the snow absorbs, W/m^2. Above
-/// 1 C, m0 = 0.05 T and m1 = 0.0094 (Pellicciotti et al. 2005); below, both are 0. Rain adds its own heat to m0, and
-/// with it the heat of moist wind in the open: 0.24 mm per day for each degree and m/s (US Army Corps of Engineers
-/// 1956).
+/// Returns (m0, m1) of the melting rate m0 + m1 G, mm/h, where G is the sunlight that the snow absorbs, W/m^2. Above
+/// 1 C, m0 = 0.05 T + r and m1 = 0.0094; below, m0 = r and m1 = 0 (Pellicciotti et al. 2005). r is the melt by rain, 0
+/// at or below 0 C: `r = P T / 79.8 + 0.01 U T min(P / 0.5, 1)`. P is the rain, mm/h; T the air temperature, C; U the
+/// wind, m/s. The first term is the rain's own heat, the second that of moist wind in the open: 0.24 mm per day for
+/// each degree and m/s (US Army Corps of Engineers 1956), reduced in rain below 0.5 mm/h.
 pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     let t = c.air.temperature_c;
     let rain = if rain_mm_h > 0.0 && t > 0.0 {
@@ -75,6 +77,7 @@ pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
 }
 
 /// Returns the rate at which liquid water refreezes, mm/h: 0.05 x 3.5 / 24 for each degree below 0 C (Bergstroem 1976).
+/// 3.5 mm per day and degree is a rate of melting, 0.05 the ratio of the rate of refreezing to it.
 pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
     0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
 }
@@ -100,9 +103,9 @@ pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
     loose * libm::exp(0.013 * (density_kg_m3 - 300.0).max(0.0))
 }
 
-/// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: `Q = 0.68 rho u*t (u*^2 - u*t^2) / (u* g)` (Pomeroy
-/// and Gray 1990). rho is the air's density, and u* and u*t are the friction velocities of the wind and of the
-/// threshold.
+/// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: `Q = 0.68 rho t (u^2 - t^2) / (u g)` (Pomeroy and
+/// Gray 1990). u and t are the friction velocities of the wind and of the threshold, m/s; rho = 1.3 kg/m^3 is the air's
+/// density; g = 9.81 m/s^2.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;
@@ -111,9 +114,10 @@ pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     0.68 * 1.3 / (u * 9.81) * t * (u * u - t * t)
 }
 
-/// Returns the flux of fully developed suspended snow, kg/(m s), for winds at 10 m: `Q = (1 - u*t^2 / u*^2) U^3.8 /
-/// 233847 - Qs`. U^3.8 / 233847 is the flux of all snow up to 5 m (Tabler 1990), Qs that of [`saltation_kg_m_s`]. The
-/// factor in brackets is that of saltation, so that suspension begins at the same threshold.
+/// Returns the flux of fully developed suspended snow, kg/(m s), for a wind U at 10 m, m/s:
+/// `Q = (1 - t^2 / u^2) U^3.8 / 233847 - Qs`. U^3.8 / 233847 is the flux of all snow up to 5 m (Tabler 1990). Qs is the
+/// flux of [`saltation_kg_m_s`], with the same u and t: friction velocities of the wind and of the threshold, m/s. Qs
+/// contains the factor 1 - t^2 / u^2 too, so that suspension begins at the threshold of saltation.
 pub fn suspension_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;

@@ -52,12 +52,15 @@ pub struct StarPass {
     block: wgpu::Buffer,
     /// Layouts for depths of one sample and of several.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Placeholder texture, bound where the host gives no depth.
     none: wgpu::TextureView,
     loaded: Option<LoadedStars>,
+    /// Bind group of the next draw, and the view of the depth that it was made for; `None` for the placeholder.
     bound: Option<(Option<wgpu::TextureView>, wgpu::BindGroup)>,
     pipelines: Vec<(PointsKind, wgpu::RenderPipeline)>,
     /// Pipeline key and number of instances of the next draw.
     prepared: Option<(PointsKind, u32)>,
+    /// Content of the uniform block.
     written: Option<StarUniform>,
     has_changed: bool,
 }

@@ -1,5 +1,6 @@
-//! Occluder maps on the GPU: one table with the range of distances that each texel spans, and beside it the ranges of
-//! cells of 8 and 64 texels.
+//! Occluder maps on the GPU: one table, a texture, for all maps. Its upper part has for each texel of each map the
+//! range of distances that the surface in it spans, m. The rows below have the ranges of cells of 8 x 8 and 64 x 64
+//! texels.
 
 use std::sync::Arc;
 
@@ -20,13 +21,17 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Value of a texel without a surface, which no path crosses: the bits of 1e12 and of -1e12.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
-/// `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
+/// Constants for drawing one map's texels: `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MapUniform {
+    /// Rays and depth of the view in which the host drew the map.
     depth: DepthUniform,
+    /// Origin of the map in the table, texels.
     origin: [f32; 2],
+    /// Width and height of the map, texels.
     size: [f32; 2],
+    /// Sign of clip y in row 0: 1 if row 0 is the map's top, -1 if it is the bottom.
     y_sign: f32,
     pad: [f32; 3],
 }
@@ -54,10 +59,14 @@ struct Placed {
 
 /// The occluder maps of a context.
 pub(crate) struct OccluderMaps {
+    /// Layouts for the passes that draw texels and cells.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Pipelines that draw texels and cells.
     pipelines: [wgpu::RenderPipeline; 2],
+    /// Buffer with a [`MapUniform`] for each map, every [`BLOCK`] bytes.
     blocks: wgpu::Buffer,
     table: Option<OccluderTable>,
+    /// Maps in use; empty if the host has set none.
     list: Vec<Placed>,
 }
 
@@ -83,7 +92,9 @@ fn pipeline(
 /// texels.
 fn placed(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, [u32; 2]) {
     let up = |v: u32| v.next_multiple_of(64);
+    // Returns the index of a map's column, or of its row.
     type Line = fn(usize) -> usize;
+    // Returns the largest size along `axis` of the maps in column or row `n`.
     let most = |axis: usize, which: Line, n: usize| {
         sizes.iter().enumerate().filter(|(i, _)| which(*i) == n).map(|(_, s)| up(s[axis])).max().unwrap_or(0)
     };
@@ -240,7 +251,8 @@ impl OccluderMaps {
         }
     }
 
-    /// Computes the ranges of the cells of 8 and of 64 texels.
+    /// Computes the ranges of the cells of `target`, each from the 8 x 8 texels or finer cells of `source` that it
+    /// covers.
     fn draw_cells(
         &self,
         device: &Device,
@@ -270,7 +282,8 @@ impl OccluderMaps {
         self.table.as_ref().map_or([0; 2], OccluderTable::cells_at)
     }
 
-    /// Returns the maps as shaders read them, for a camera at `eye` with axes `to_enu`.
+    /// Returns the maps as shaders read them, for a camera at `eye` in the host's world, m, with axes `to_enu`.
+    /// `time_s` is the simulation time, s, up to which each map has moved with its velocity.
     pub fn uniforms(
         &self,
         eye: glam::DVec3,

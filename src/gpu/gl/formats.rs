@@ -52,7 +52,7 @@ pub(super) struct Bits {
     pub(super) alpha: i32,
     pub(super) depth: i32,
     pub(super) stencil: i32,
-    /// `GL_FLOAT`, `GL_UNSIGNED_NORMALIZED` and others.
+    /// Component type of the attachment, of colour or of depth: `GL_FLOAT`, `GL_UNSIGNED_NORMALIZED` and others.
     pub(super) component: u32,
     pub(super) srgb: bool,
 }
@@ -63,7 +63,7 @@ impl Bits {
         let float = self.component == FLOAT;
         Some(match (self.red, self.green, self.alpha, float) {
             (8, 8, _, false) if self.srgb => SRGB8_ALPHA8,
-            // A window with 5 or 6 bits gets a copy with 8; the copy back rounds.
+            // A window with 5 or 6 bits a channel is drawn in a texture of 8; copying the texture back rounds.
             (1..=8, 1..=8, _, false) => RGBA8,
             (10, 10, _, false) => RGB10_A2,
             (16, 16, _, true) => RGBA16F,
@@ -87,7 +87,8 @@ impl Bits {
     }
 }
 
-/// Returns wgpu's format for format `internal` on one side of a target.
+/// Returns wgpu's format for the internal format `internal` of a target's colour, depth, mask, surface classes or
+/// normals, as `side` says.
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`], which names the parameter, the format and the accepted formats.

@@ -32,7 +32,8 @@ pub(super) fn fault(report: &str, byte: usize, expected: &str, found: Option<&st
     let before = &report[..byte.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    // A long or binary word would hide the message: the escape of a character takes up to ten bytes.
+    // Limits a long or binary word to 24 characters, and to 48 once it is escaped (an escape has up to ten bytes), so
+    // that the message stays legible.
     let short = |w: &str| format!("{:?}", w.chars().take(24).collect::<String>()).chars().take(48).collect::<String>();
     let found = found.map_or_else(|| "the end".into(), short);
     Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))
