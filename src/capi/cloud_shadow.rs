@@ -27,8 +27,9 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_cloud_shadow.rs"));
 
-/// Map of the clouds' shadows, and its placement in the view's last frame. The map is a plane at the station's height.
-/// It moves with the air that carries the clouds, and repeats every 20 km.
+/// Map of the clouds' shadows, and its placement in the view's last frame. The map is a level plane at the altitude of
+/// the weather's station (station_altitude_m of wk_weather). It moves with the air that carries the clouds, and repeats
+/// every 20 km.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_shadows {
@@ -47,13 +48,15 @@ pub struct wk_cloud_shadows {
     /// Height, texels; equal to the width.
     pub height: u32,
     /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
-    /// Single precision is enough once the fourth column includes the camera's position.
+    /// For single precision, subtract the camera's position (x0, y0, z0) from the place. In each row (p, q, r, s), then
+    /// replace s by p x0 + q y0 + r z0 + s, computed in double precision.
     pub uv_from_world: [[f64; 4]; 2],
     /// Row of a matrix, used like uv_from_world: it gives the height of a place above the plane, m.
     pub height_from_world: [f64; 4],
     /// u and v of the point of the plane below the camera of the last frame.
     pub camera_uv: [f64; 2],
-    /// Mean share of the direct light over all places: wk_context_get_light returns that mean light.
+    /// Mean over all places of the share in `texture`. The direct light from wk_context_get_light includes it already:
+    /// multiply that light by the place's own share / mean_share.
     pub mean_share: f64,
     /// Weight of the texture against mean_share, 0 to 1. It is 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and
     /// with the light near the horizon: the texture is then meaningless.
@@ -84,8 +87,8 @@ impl wk_cloud_shadows {
 /// updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
 /// and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
 /// calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
-/// last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on an own
-/// device, where the host has no shaders.
+/// last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on a
+/// device that Welkin made itself (wk_device_create), on which the host's shaders cannot run.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_cloud_shadows(
     view: *mut wk_view,

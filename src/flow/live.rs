@@ -1,4 +1,5 @@
-//! Field that a context steps: its place, its obstacles, its inflow, and its start.
+//! Wind field of a context, advanced in steps of time: its place, its obstacles, its inflow, and its start. A start is
+//! the search for the steady field of the mean wind, from which the steps begin.
 
 use std::sync::Arc;
 
@@ -26,14 +27,15 @@ const STEADY_STEP_S: f64 = 2.0;
 const CFL: f64 = 4.0;
 /// Largest number of parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// Limit of change at which a steady field rests: largest change of a velocity in the time in which the wind crosses
-/// the field, as a share of the largest velocity.
+/// Limit of a T / v below which a steady field rests. a is the largest change of a velocity per time, m/s^2, v the
+/// largest speed, m/s, and T the crossing time: the time in which air of speed v crosses the field, s.
 const REST: f64 = 0.01;
-/// Number of such times after which a steady field rests in any case.
+/// Number of crossing times after which a steady field rests in any case.
 const MOST_CROSSINGS: f64 = 6.0;
-/// Change of the mean wind at which a steady field wakes, as a share of its speed or of 1 m/s.
+/// Change of the mean wind above which a resting field is stepped again, as a share of the mean wind's speed. A speed
+/// below 1 m/s counts as 1 m/s.
 const WAKES: f64 = 0.02;
-/// Number of parts of a start at each finer level after the first.
+/// Largest number of parts (single solver steps) of a start at each level after the first, coarsest one.
 const FINER_PARTS: u32 = 6;
 /// Duration of a start at the first level, in crossings of the field.
 const FIRST_CROSSINGS: f64 = 4.0;
@@ -86,6 +88,7 @@ impl Anchor {
 /// Inflow: the wind that comes in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inflow {
+    /// Wind at 10 m: mean, wander and gusts, and the displacement of the air by them.
     pub blowing: Blowing,
     pub profile: WindProfile,
     pub is_steady: bool,
@@ -126,14 +129,14 @@ impl Inflow {
     }
 }
 
-/// Ground and boxes from the view of a field; lengths are measured from its lowest corner.
+/// Ground and boxes around a field. Their positions are measured from the field's lowest corner, m (east, north, up).
 struct Scenery<'a> {
     world: &'a World,
     anchor: Anchor,
     corner: [i64; 3],
     corner_m: DVec3,
     size_m: DVec3,
-    /// Time after the one at which the host placed its boxes, s.
+    /// Time from the world's present, to which the positions of the host's boxes belong, to the time of the scenery, s.
     since_s: f64,
     terrain: Option<&'a Arc<TerrainHeights>>,
     tiles: Option<&'a Arc<Terrain>>,
@@ -223,7 +226,7 @@ impl<'a> Scenery<'a> {
     }
 }
 
-/// Progress of a start, which finds the steady field of a moment, on coarser grids first.
+/// Progress of a start, which finds the steady field of the mean wind at one time, on coarser grids first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
     /// Level: the number of times that the cell size is doubled; 0 for the field's own.
@@ -248,15 +251,16 @@ pub(super) struct Live {
     pub parts: (u32, f64),
     /// Hashes of the terrain and boxes in the field at its last step, as [`Scenery::hash`] returns them.
     pub stood: [u64; 2],
+    /// Obstacles as last evaluated, of which the next step evaluates only the changes; `None` if it must evaluate all.
     standing: Option<SolidBodies>,
-    /// Wind for which a steady field was solved: east, north, and roughness length.
+    /// Wind for which a steady field was solved: mean at 10 m east and north, m/s, and roughness length, m.
     pub solved_for: [f64; 3],
     /// Time for which a steady field has not rested, s.
     pub awake_s: f64,
     /// Whether a steady field rests.
     pub rests: bool,
-    /// Profile of the weather's wind over which a steady field is shown. While the field rests, the present wind may
-    /// differ slightly from it.
+    /// Profile of the weather's mean wind at the last change of a steady field. [`Live::publish`] compares the field
+    /// with it. While the field rests, the present wind may differ slightly from it.
     pub shown_over: Option<WindProfile>,
 }
 
@@ -322,7 +326,7 @@ impl Live {
         }
     }
 
-    /// Restarts from the steady field of a moment.
+    /// Begins a new start at a time: the steady field of the mean wind at that time replaces the present field.
     pub fn restart(&mut self, world: &World, time_s: f64) -> Result<()> {
         (self.time_s, self.begun_s) = (time_s, time_s);
         let mut level = 0;
@@ -500,9 +504,9 @@ impl Live {
         (self.awake_s, self.rests) = (0.0, false);
     }
 
-    /// Whether time has leapt so far that the field must restart. The leap is counted from the end of the field's next
-    /// step, which the last update did not reach. An update of [`LEAP_S`] therefore never counts as a leap, whatever
-    /// the length of the steps.
+    /// Whether time has leapt so far that the field must restart: present - end of the field's next step > [`LEAP_S`].
+    /// The end of the next step lies after the time of the last update. Updates that are at most [`LEAP_S`] apart
+    /// therefore never restart the field.
     pub fn is_left_behind(&self, present_s: f64) -> bool {
         present_s - self.next_s() > LEAP_S
     }
@@ -512,13 +516,14 @@ impl Live {
         [self.time_s - LEAP_S, self.time_s + LEAP_S]
     }
 
-    /// Returns the weather's wind over which a steady field is shown from now on. It is that of the step that changed
-    /// the field, even if the field has advanced further before it is published.
+    /// Returns the profile of the weather's wind at the field's time, to be kept as `shown_over` when a step has
+    /// changed the field; `None` for a field with gusts.
     pub fn wind_over(&self, world: &World) -> Option<WindProfile> {
         (self.desc.mode == WindFieldMode::Steady).then(|| world.timeline.at(self.time_s).wind)
     }
 
-    /// Fills the volume that queries and shaders read.
+    /// Fills the volume that queries and shaders read. Each node gets an own velocity and a share, and the wind there
+    /// is own + (1 - share) x the weather's wind.
     pub fn publish(&self, world: &World, volume: &mut WindVolume) {
         let is_steady = self.desc.mode == WindFieldMode::Steady;
         let inflow = Inflow::of_mean(self.shown_over.unwrap_or_else(|| world.timeline.at(self.time_s).wind));
@@ -544,7 +549,7 @@ impl Live {
                 volume.values.push([v.x, v.y, v.z, share]);
                 return;
             }
-            // The share of gusts that is kept is that of the mean wind.
+            // Gusts of the weather are weakened as the mean wind is: by `kept` = speed in the field / speed outside.
             let place = DVec3::new(i as f64, j as f64, k as f64) * h;
             let outer = inflow.at(place.z - scenery.ground_m(place.truncate())).as_vec3();
             let kept = (v.length() / outer.length().max(0.1)).min(1.0);

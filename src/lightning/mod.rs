@@ -5,18 +5,18 @@
 //! may run back and forth, and all channels of a simulator see the same flash.
 //!
 //! # Model
-//! * [`schedule`]: the flashes of a storm are a Poisson process, evenly spread in time. They are taken from a fixed
-//!   stream of sixty candidates a minute, each with a random number from 0 to 1. A candidate becomes a flash if its
-//!   number is below the rate divided by sixty a minute. A changing rate therefore adds and removes flashes, but moves
-//!   none. Each flash stays in the cloud or goes to ground, and has strokes with pauses between them, each with a peak
-//!   current.
-//! * Storm cells: one in each square of 20 km where the weather has thunder, or the host's ([`LightningSettings`]). A
-//!   host may also trigger single flashes ([`FlashTrigger`]).
+//! * [`schedule`]: the flashes of a storm cell are a Poisson process, evenly spread in time. They are taken from a
+//!   fixed stream of 60 candidates a minute for each cell. Each candidate has a random number u from 0 to 1 and becomes
+//!   a flash if u < rate / 60, with the cell's rate in flashes a minute. A changing rate therefore adds and removes
+//!   flashes, but moves none. Each flash stays in the cloud or goes to ground, and has strokes with pauses between
+//!   them, each with a peak current.
+//! * Storm cells: one in each square of 20 km x 20 km where the weather has thunder. Cells of the host
+//!   ([`LightningSettings`]) replace them. A host may also trigger single flashes ([`FlashTrigger`]).
 //! * [`channel`]: the path of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or
 //!   through the cloud, with branches. Tall objects attract it, and boxes in its path end it. Thunder comes from its
 //!   nearest point.
-//! * [`light`]: the power of each metre over time, W, and the light in a frame: the mean from the frame before to the
-//!   frame's own time.
+//! * [`light`]: the power per metre of the channel over time, W/m, and the light in a frame: the mean of that power
+//!   from the time of the frame before to the frame's own time.
 //! * Picture: a line of light in front of the host's picture. The host's objects hide it, and air and fog dim it as
 //!   they dim these objects. It glows in air and rain (single scattering, Henyey-Greenstein, by equiangular quadrature)
 //!   and on the clouds' base. A source of flux F, lm, in a cloud at the height d above the base gives the base the
@@ -25,7 +25,8 @@
 //! * [`limit`]: fewer flashes for viewers whom flicker may harm.
 //!
 //! # Settings
-//! [`LightningSettings`]: rate, cells, tall objects, the limit. Default: 3 flashes a minute and cell in a thunderstorm.
+//! [`LightningSettings`]: rate, cells, tall objects, the limit. Default: 3 flashes a minute in each cell of a
+//! thunderstorm.
 //!
 //! # Cost
 //! None without a storm: there is no pass, and the composition has no term for it. In a storm, finding that there is no
@@ -33,9 +34,10 @@
 //! 8 sources with 4 samples each.
 //!
 //! # Error
-//! The light of all frames sums to the same amount at any frame rate, within 1e-5; drawn frames within 2 % (tests).
-//! [`light`] has the sources of the light's figures; a single flash differs from the mean by a factor of about 2. The
-//! glow does not show the cloud's structure.
+//! The sum of a flash's light over its frames is the same at any frame rate: the computed light within 1e-5, the
+//! luminance of the drawn pictures within 2 % (tests). [`light`] cites the measurements behind its figures. They are
+//! means; the light of a single flash differs from them by a factor of about 2. The glow does not show the cloud's
+//! structure.
 //!
 //! # What is not here
 //! There is no `reference.rs`: flashes, channels and their light are computed on the CPU in f64, and shaders only draw

@@ -1,15 +1,17 @@
 //! The governor: predicts the time of a picture on this machine from the times that the host reports.
 //!
 //! The time of a picture is modelled as its work times a factor, the median of the last five reported times per unit of
-//! work. The cost of a part relative to a plain pixel differs from machine to machine. Whenever a part appears or
-//! disappears, the change in the reported times corrects that part's cost. A part that is dearer on this machine than
-//! the constants say therefore does not return into a picture that has no time for it.
+//! work. The rooms' constants (`StepWork`) give the work of each part relative to a plain pixel, but the true ratio
+//! differs from machine to machine. Whenever a part appears or disappears, the change in the reported times corrects
+//! that part's cost. A part that is dearer on this machine than the constants say therefore does not return into a
+//! picture that has no time for it.
 //!
-//! More is drawn again only if time remains to spare afterwards, so that a load at the border does not oscillate.
+//! A part returns only if the picture with it is predicted to take at most [`ROOM`] of the budget. The part therefore
+//! does not come and go in every frame of a picture whose time is close to the budget.
 
 use super::parts::{MOST_STEPS, Set};
 
-/// Largest share of the budget that a picture may take for more to be drawn again.
+/// Largest share of the budget that the predicted time may take for a picture with more work than the present one.
 const ROOM: f64 = 0.85;
 
 /// Limit of the budget that could not be kept.
@@ -20,20 +22,22 @@ pub enum GaveWay {
     Nothing,
     /// The tolerance: the time allows no better picture.
     Tolerance,
-    /// The time, and perhaps the tolerance too: even with every part left out, or with the parts that are pinned, the
-    /// picture takes longer than the budget.
+    /// The time, and perhaps the tolerance too: the picture takes longer than the budget even with nothing but the
+    /// parts that the host pinned.
     Time,
 }
 
-/// Work of a picture, in pixels without any parts: the pixels themselves, the work that each step saves, and the extra
-/// work of two parts drawn together.
+/// Work of a picture: the sum of the pixels themselves, the work that each step saves, and the extra work of two parts
+/// drawn together. The unit is the work of one pixel in which no part is drawn. A step leads from one rung of a part
+/// down to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WorkAmount {
     /// Number of pixels.
     pub pixels: f64,
-    /// Work that each step saves, in pixels without any parts.
+    /// Work that taking each step saves; 0 for a step that has been taken.
     pub steps: [f64; MOST_STEPS],
-    /// First steps of both parts, and their extra work, which has the cost ratio of the first one.
+    /// Extra work of two parts while both are drawn in full: the index of each part's first step in `steps`, and the
+    /// work. On this machine it is multiplied by the cost ratio of the first of these two steps.
     pub together: ([usize; 2], f64),
 }
 
@@ -47,7 +51,7 @@ impl WorkAmount {
         self
     }
 
-    /// Returns the whole work, by the constants.
+    /// Returns the whole work with the rooms' constants alone: every cost ratio is 1.
     pub fn total(&self) -> f64 {
         self.weighed(&[1.0; MOST_STEPS])
     }
@@ -66,8 +70,8 @@ const SEEN: usize = 5;
 /// Largest ratio of a part's cost on this machine to the cost that the constants give; its inverse is the smallest
 /// ratio.
 const MOST_RATIO: f64 = 8.0;
-/// Cost of the changed parts, as a share of the rest of the picture, at which a correction counts half. Smaller parts
-/// drown in noise and count less.
+/// Constant h in the weight x / (x + h) of a correction, where x = work of the changed parts / work of the rest of the
+/// picture. The weight is 0.5 at x = h, and less for smaller parts, whose times drown in noise.
 const HALF_BELIEVED: f64 = 0.1;
 
 /// Reported times, and the costs on this machine that follow from them.
@@ -92,7 +96,8 @@ impl Default for Governor {
 }
 
 impl Governor {
-    /// Takes the time of a frame whose work with everything is `all`, and in which the steps of `absent` were taken.
+    /// Records the time of a frame, ms. `all` is its work with all parts drawn in full; `absent` is the set of steps
+    /// that were taken in it.
     pub fn report(&mut self, ms: f64, all: &WorkAmount, absent: Set) {
         if absent != self.absent {
             let from = self.before.map_or(self.absent, |b| b.0);
@@ -115,8 +120,13 @@ impl Governor {
         }
     }
 
-    /// Corrects the costs of the parts by which two sets differ, from the time for a unit of work with each. With
-    /// correct costs both times would be the same.
+    /// Corrects the costs of the parts by which the sets `from` and `to` differ. `k_from` and `k_to` are the times for
+    /// a unit of work with each set, ms; with correct costs they would be equal.
+    ///
+    /// Let p be the work of these parts, r that of the rest, and t_with and t_without the times of the picture with and
+    /// without them. If the true work is c p, then t_with / t_without = (r + c p) / r. This gives
+    /// c = r (t_with / t_without - 1) / p, clamped to \[0.5, 2\]. The ratios of the parts are multiplied by
+    /// 1 + (c - 1) p / (p + [`HALF_BELIEVED`] r).
     fn learn(&mut self, all: &WorkAmount, (from, k_from): (Set, f64), (to, k_to): (Set, f64)) {
         let time = |set: Set, k: f64| k * all.without(set).weighed(&self.ratios);
         // Times with the parts and without them. If some parts come while others go, their costs cannot be told apart.
@@ -168,8 +178,8 @@ impl Governor {
         amount.weighed(&self.ratios)
     }
 
-    /// Whether a picture keeps a budget of time. If it has more work than the present one, it must leave room to spare,
-    /// so that a load at the border does not oscillate.
+    /// Whether the predicted time of a picture is within a budget of time. A picture with more work than the present
+    /// one must be within [`ROOM`] of the budget, so that the choice does not change back and forth.
     pub fn fits(&self, amount: &WorkAmount, budget_ms: Option<f64>, now: &WorkAmount) -> bool {
         match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {
@@ -345,7 +355,7 @@ mod tests {
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
             let mut governor = Governor::default();
-            // Every part comes and goes, a hundred frames each, in scenes with more or less of it.
+            // Every part comes and goes, with 24 frames for each set, in scenes with more or less of it.
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
                 let steps = steps([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);

@@ -13,7 +13,7 @@ pub const MAX_LIGHTS: usize = 64;
 pub struct HostLight {
     /// Position in the host's world, m.
     pub position_m: DVec3,
-    /// Direction of the beam in the host's world; any length but 0.
+    /// Direction of the beam in the host's world, of any length in \[1e-6, 1e6\].
     pub direction: DVec3,
     /// Luminous intensity in the middle of the beam, cd per channel of linear Rec. 709, \[0, 1e9\].
     pub intensity_cd: [f64; 3],
@@ -30,11 +30,13 @@ pub struct HostLight {
 pub(crate) struct LightUniform {
     /// Position relative to the camera, (east, north, up), m.
     pub position: [f32; 3],
-    /// Cosine of the angle at which the beam ends.
+    /// Cosine of the angle at which the beam ends; -2 for a lamp that shines to all sides.
     pub end: f32,
+    /// Unit vector of the beam, (east, north, up).
     pub direction: [f32; 3],
-    /// Inverse of the difference between the cosines of `inner_deg` and `outer_deg`.
+    /// 1 / (cosine of `inner_deg` - `end`).
     pub steepness: f32,
+    /// Luminous intensity in the middle of the beam, cd per channel, times the picture's exposure.
     pub intensity: [f32; 3],
     pub pad: f32,
 }
@@ -57,8 +59,9 @@ pub(crate) struct FlashLamp {
 pub(crate) const MAX_FLASH_LAMPS: usize = 8;
 
 impl FlashLamp {
-    /// Returns the luminous intensity, cd per channel: the same to all sides, or straight down from the base of a
-    /// cloud, which emits by Lambert's law.
+    /// Returns the luminous intensity I of a flash of flux F, cd per channel. To all sides of an open flash it is
+    /// I = F / (4 pi). Below a cloud that hides the flash it is I = s F / pi straight down, where s is `down_share` and
+    /// the cloud's base emits by Lambert's law.
     pub fn intensity_cd(&self) -> [f64; 3] {
         let share = self.down_share.map_or(0.25, |share| share) / std::f64::consts::PI;
         self.flux_lm.map(|lm| lm * share)
@@ -69,7 +72,8 @@ impl FlashLamp {
         let hidden = self.down_share.is_some();
         LightUniform {
             position: self.position.as_vec3().to_array(),
-            // A smooth step from the horizon to straight down approximates the cosine.
+            // For a hidden flash, smoothstep(0, 1, c) stands for Lambert's c, the cosine of the angle from straight
+            // down. For an open flash, `end` makes the step 1 to all sides.
             end: if hidden { 0.0 } else { -2.0 },
             direction: [0.0, 0.0, -1.0],
             steepness: 1.0,
@@ -105,7 +109,7 @@ impl HostLight {
         let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
         LightUniform {
             position: v(to_enu * (self.position_m - eye)),
-            // A lamp that shines to all sides has a beam without an end.
+            // -2 is below every cosine: the beam of a lamp that shines to all sides does not end.
             end: if self.outer_deg >= 180.0 { -2.0 } else { outer as f32 },
             direction: v((to_enu * self.direction).normalize()),
             steepness: (1.0 / (inner - if self.outer_deg >= 180.0 { -2.0 } else { outer }).max(1e-4)) as f32,

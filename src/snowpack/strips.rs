@@ -74,7 +74,7 @@ fn each_under(
     let mut sum = 0;
     for patch in field.patches.iter_mut().filter(|patch| !patch.is_bare()) {
         let corner = [0, 1].map(|i| f64::from(patch.key[i]) * size[i] as f64);
-        // Cells at half the width from the path are included.
+        // Rows or columns of the patch that the bounding box of the strip touches.
         let span = |i: usize| {
             let low = (low[i] / cell_m - 0.5).floor() - corner[i];
             let high = (high[i] / cell_m + 0.5).ceil() - corner[i] + 1.0;
@@ -112,10 +112,11 @@ impl HeldSnow {
         self.field_mut().ok_or_else(|| Error::new(Status::WrongOrder, wanted))
     }
 
-    /// Removes snow; see [`Context::take_snow`](crate::context::Context::take_snow).
+    /// Removes the snow of a strip, except the lowest `left_m`, m, \[0, 100\]. Returns the removed mass, kg. Hosts call
+    /// it as [`Context::take_snow`](crate::context::Context::take_snow).
     ///
     /// # Errors
-    /// As for that function.
+    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or simulated snow.
     pub fn take(&mut self, world: &World, strip: &SnowStrip, left_m: f64) -> Result<f64> {
         check_range("left_m", left_m, 0.0, 100.0, "m")?;
         let revision = self.next_revision();
@@ -131,10 +132,11 @@ impl HeldSnow {
         Ok(taken as f64 / UNITS * area)
     }
 
-    /// Presses tracks; see [`Context::press_snow`](crate::context::Context::press_snow).
+    /// Compacts the snow of a strip to `PRESSED_KG_M3` where it is less dense. Hosts call it as
+    /// [`Context::press_snow`](crate::context::Context::press_snow).
     ///
     /// # Errors
-    /// As for that function.
+    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or simulated snow.
     pub fn press(&mut self, world: &World, strip: &SnowStrip) -> Result<()> {
         let revision = self.next_revision();
         let (site, field) = self.field_for_change(world, strip)?;

@@ -1,14 +1,15 @@
-//! Rows of a map around the camera that a frame refreshes: as many as have become old, or all if the whole map is out
-//! of date.
+//! Choice of the rows that a frame refreshes in a map of clouds around the camera (shadow map, panorama): as many as
+//! have become old, or all if the whole map is out of date.
 
-/// Progress of a map.
+/// Progress of a map's refresh.
 #[derive(Default)]
 pub(crate) struct MapRows {
+    /// Index of the row to refresh next.
     next: u32,
     /// Rows refreshed since the map's inputs last changed. Once it is all rows, there is nothing left to do.
     made: u32,
-    /// Number of rows that have become old, estimated from the changes of the inputs. The map waits until it reaches
-    /// the number of rows that a frame refreshes.
+    /// Number of rows that have become old, estimated from the changes of the inputs. No row is refreshed until this
+    /// number reaches the number of rows that one frame refreshes.
     owed: f64,
     /// Whether the last frame refreshed some rows.
     made_some: bool,

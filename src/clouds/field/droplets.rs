@@ -1,11 +1,12 @@
-//! Droplet diameters for which there are tables of light.
+//! Droplet diameters for which all contexts share the tables of multiple scattering (`clouds::light::transport`).
 
 use crate::weather::CloudSlab;
 
-/// Diameters of droplets for which tables are made, um.
+/// Droplet diameters with shared scattering tables, um.
 pub(crate) const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 
-/// Returns the diameter with a table that is nearest to the mean droplet of these layers.
+/// Returns the diameter of [`LIQUID_UM`] that is nearest to the layers' mean droplet diameter, by ratio, um. Each layer
+/// counts in the mean by its cover times its share of liquid water.
 pub(crate) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
     let add = |(water, sum): (f64, f64), s: &CloudSlab| {
         let liquid = s.cover * (1.0 - s.ice_fraction);

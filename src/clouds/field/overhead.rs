@@ -22,13 +22,15 @@ use crate::{
     weather::{CloudMap, CloudSlab},
 };
 
-/// How much less excess the anvil of a cell over a rain area needs than that of a layer. The excess falls by
-/// `EDGE_SLOPE` per distance from cloud to cloud across a cell's edge. The anvil therefore reaches `ANVIL_WIDER /
-/// EDGE_SLOPE` of these distances farther out than the towers.
+/// Difference between the excess that an anvil needs in a layer and in a cell over a rain area, where it needs less.
+/// Excess is the map's number less the threshold; cloud grows where it is above 0. Across a cell's edge, outwards, the
+/// excess falls by `EDGE_SLOPE` per distance from cloud to cloud. The lower need therefore moves the anvil's border
+/// outwards by `ANVIL_WIDER / EDGE_SLOPE` of these distances.
 const ANVIL_WIDER: f64 = 2.2;
-/// Ratio of a cell's thickness to the distance from cloud to cloud above which its heads grow with its height
-/// (`HEADS`), and the largest `rough` (`MOST_ROUGH`). Shaped by the map alone, the sides would hang like curtains.
+/// Ratio of a cell's thickness to the distance from cloud to cloud above which the heads (bulges) of its clouds grow in
+/// proportion to its thickness. With smaller heads, the sides of so deep a cell would look like hanging curtains.
 const HEADS: f64 = 2.0;
+/// Largest [`Shape::rough`] to which larger heads raise that of a cell: amplitude of the solid noise, as an excess.
 const MOST_ROUGH: f64 = 2.1;
 
 /// Place and time at which the layers of cloud are asked for.
@@ -47,11 +49,11 @@ impl LayersQuery<'_> {
         self.scene.conditions.cloud_slabs().next().is_none() && self.weather.regions.is_empty()
     }
 
-    /// Finds the layers for a model; `None` if it draws no volume. `maps` caches the host's maps of layers, and `still`
-    /// is [`Shape::of`] or a cache of it.
+    /// Finds the layers for a model; `None` if it draws no volume. `maps` caches the host's maps of layers. `still`
+    /// returns a layer's shape in still air: [`Shape::of`] or a cache of it.
     ///
     /// # Errors
-    /// For a time outside the weather.
+    /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
     pub fn layers(
         &self,
         model: CloudModel,
@@ -71,7 +73,7 @@ impl CloudLayers {
     /// Applies a host's map of cover, and adds the cells over rain areas.
     ///
     /// # Errors
-    /// For a time outside the weather.
+    /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
     fn place(&mut self, query: &LayersQuery<'_>, maps: &mut LayerMaps) -> Result<()> {
         let LayersQuery { scene, eye, weather, time_s } = *query;
         if let Some(map) = weather.cloud_map {
@@ -101,12 +103,16 @@ impl CloudLayers {
             }
         }
         if self.maps.iter().any(Option::is_some) {
-            // A deck would close the gaps that the map leaves elsewhere.
+            // All layers become volumes: a deck would be grey also where the map leaves gaps.
             self.show_all();
         }
     }
 
-    /// Inserts the layer of cells over areas. `None` if the areas need no cells, or if there is no room.
+    /// Adds a layer that has cloud only in the cells over rain areas. Returns its index; `None` if the areas need no
+    /// cells or the list of layers is full.
+    ///
+    /// In a deep cell the heads grow by the factor k = thickness / (`HEADS` x distance from cloud to cloud), at least
+    /// 1: the cube of solid noise by k, and its amplitude by k^2 up to `MOST_ROUGH`.
     fn bring(&mut self, scene: &Scene, clouds: &AreaClouds) -> Option<usize> {
         let others = self.all().iter().zip(&self.maps).map(|(layer, map)| (&layer.slab, map.is_some()));
         let slab = clouds.slab(others)?;
