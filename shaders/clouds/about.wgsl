@@ -3,10 +3,11 @@
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
-// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Only in the first `SUN_FRAYED`
-// intervals does solid noise fray the clouds' edges.
+// Number of intervals of the path to the sun.
 const SUN_STEPS: u32 = 5u;
+// Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: u32 = 3u;
+// Ends of the intervals, in distances from cloud to cloud.
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
 // Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
 // and of the solid noise, per side of its cube (`SOLID_SKIP`). Steeper places are too small to matter.
@@ -40,7 +41,7 @@ struct CloudHere {
 // A place where clouds are blurred counts as clear if the mean lies this many standard deviations below the threshold.
 const CLOUD_RARE: f32 = 2.5;
 
-// Horizontal distance after which a ray meets other clouds, cells.
+// Horizontal distance after which a ray meets other clouds, in distances from cloud to cloud.
 const CLOUD_CELL: f32 = 0.3;
 
 // Share of a normal distribution about `mean` that lies above 0 (x), and the mean of the values in that share (y). Both
@@ -53,6 +54,7 @@ fn cloud_share(mean: f32, spread: f32) -> vec2f {
     return vec2f(share, over / max(share, 1e-30));
 }
 
+// Cloud of a layer at a place.
 fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     let local = cloud_local(whole, cloud_unleaned(whole, at));
     let layer = local.layer;
@@ -85,8 +87,8 @@ fn cloud_inside(here: CloudHere) -> f32 {
     return here.inside;
 }
 
-// Distance along a ray from a place outside clouds within which there is no cloud, m. The strength changes no faster
-// than map, noise and dome do, and the noise adds no more than its largest value.
+// Distance along a ray from a place outside clouds within which there is no cloud, m. The map's strength, the noise and
+// the dome change no faster than their largest slopes, and the noise adds no more than its largest value.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
     let level = length(direction.xy) + leaning;
@@ -108,23 +110,24 @@ fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
     return max(by_map, by_noise);
 }
 
-// Farthest distance up to which a ray is followed through a layer, m.
+// Longest path that a ray is followed through a layer, from its entry, m.
 const CLOUD_FARTHEST: f32 = 60.0e3;
-// Length over which clouds fade out before that distance, m. Without it a cloud would end in a flat face.
+// Length at the end of that path over which clouds fade out, m. Without it a cloud would end in a flat face.
 const CLOUD_FADES: f32 = 15.0e3;
 
-// Share of clouds left at a distance within a layer, 0 to 1.
+// Share of clouds left at a distance from a ray's entry into a layer, m; 0 to 1.
 fn cloud_fades(within: f32) -> f32 {
     return clamp((CLOUD_FARTHEST - within) / CLOUD_FADES, 0.0, 1.0);
 }
 
-// Altitude at a distance along a ray.
+// Altitude at a distance along a ray, m.
 fn cloud_altitude(direction: vec3f, t: f32) -> f32 {
     let r = clouds.radius + cloud_eye();
     let rise = t * (2.0 * direction.z + t / r);
     return cloud_eye() + rise * r / (r + sqrt(max(r * (r + rise), 0.0)));
 }
 
+// Place in a layer at a distance along a ray, m.
 fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     let altitude = cloud_altitude(direction, t);
     // Horizontal distance is measured along the ground.
@@ -173,14 +176,15 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
     return depth;
 }
 
-// Scaled depths of cloud around a place: above, below, horizontally to the nearer side and to the other. `here` is the
-// layer with the local cover of the place.
+// Scaled depths of cloud around a place: above, below, horizontally to the nearer side and to the farther side. `here`
+// is the layer with the local cover of the place.
 fn cloud_box(here: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     let about = cloud_about(here, excess, at.height) * (here.size.w * here.medium.y);
     let edge = max(about.z, 0.02);
     return vec4f(about.xy, edge, max(here.below.w - edge, edge));
 }
 
+// Scaled depths of cloud around a place; `excess` is that with fraying.
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let here = cloud_local(layer, cloud_unleaned(layer, at)).layer;
     let about = cloud_box(here, at, excess);

@@ -48,7 +48,7 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(at.xy, at.z * layer.size.y);
 }
 
-// Position in the box, m.
+// Position in the box, m from its low corner.
 fn box_place(layer: CloudLayer, at: CloudPlace) -> vec3f {
     let sides = box_sides(layer);
     return clamp(vec3f(at.level, at.height * sides.z), vec3f(0.0), sides);

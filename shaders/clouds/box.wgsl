@@ -7,7 +7,7 @@ fn box_sides(layer: CloudLayer) -> vec3f {
     return vec3f(layer.sheets.xy, 1.0 / layer.size.y);
 }
 
-// Distance from a place in a box along a direction to the box's side.
+// Distance from a place in a box along a direction to where the ray leaves the box, m.
 fn box_exit(at: vec3f, sides: vec3f, direction: vec3f) -> f32 {
     let to = select(at, sides - at, direction > vec3f(0.0)) / max(abs(direction), vec3f(1e-9));
     return max(min(min(to.x, to.y), to.z), 0.0);

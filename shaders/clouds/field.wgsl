@@ -3,12 +3,16 @@
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 
-// Two sheets, each with even and cellular noise.
+// Map of where clouds grow: two layers, the sheets, each with even (x) and cellular (y) noise.
 @group(0) @binding(2) var cloud_map: texture_2d_array<f32>;
+// Solid noise that frays the clouds' edges.
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
 
+// Period of the map, in distances from cloud to cloud.
 const MAP_CELLS: f32 = 16.0;
+// Ratio of the second sheet's period to the first's.
 const SECOND_PERIOD: f32 = 1.618034;
+// Cosine and sine of the angle by which the second sheet is turned.
 const SECOND_TURN: vec2f = vec2f(0.62160997, 0.7833269);
 // Mean of the solid noise.
 const SOLID_MEAN: f32 = 0.47;
@@ -16,7 +20,7 @@ const SOLID_MEAN: f32 = 0.47;
 const SOLID_GAIN: f32 = 2.2;
 // Largest amount that the solid noise adds to the excess, in units of the fraying's amplitude.
 const MOST_FRAYED: f32 = 0.8;
-// Slope of the map per cell.
+// Change of the map's number over one distance from cloud to cloud.
 const MAP_SLOPE: f32 = 4.0;
 
 // A place in a layer: m east and north of the camera, and height, 0 at the base to 1 at the top.
@@ -46,7 +50,7 @@ struct CloudBlur {
 
 var<private> cloud_blur: CloudBlur;
 
-// Texels across a cell of the map.
+// Texels of the map in one distance from cloud to cloud.
 const MAP_TEXELS: f32 = 16.0;
 // Texels across the solid noise.
 const SOLID_TEXELS: f32 = 64.0;
@@ -61,9 +65,10 @@ const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);
 // Standard deviation of the solid noise.
 const SOLID_DEVIATION: f32 = 0.107;
 
-// Width up to which clouds are not blurred, cells.
+// Width of a pixel up to which clouds are not blurred, in distances from cloud to cloud.
 const BLUR_FROM: f32 = 0.15;
 
+// Share of the variance that a mean over `width` removes, by one of the laws above.
 fn cloud_lost(width: f32, law: vec2f) -> f32 {
     return 1.0 - exp(-pow(width / law.x, law.y));
 }
@@ -85,12 +90,12 @@ fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
     return blur;
 }
 
-// Horizontal place in the pattern that belongs to a place: the cloud leans with height.
+// Horizontal place in the pattern that belongs to a place, without the cloud's lean; m.
 fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level - layer.lean.xy * (at.height * at.height);
 }
 
-// Horizontal place in the pattern, without lean and without stretch along the wind.
+// Horizontal place in the pattern, without lean and without stretch along the wind; m.
 fn cloud_upright(layer: CloudLayer, at: CloudPlace) -> vec2f {
     let level = cloud_unleaned(layer, at);
     return vec2f(dot(layer.stretch.xy, level), dot(layer.stretch.yz, level));

@@ -9,10 +9,11 @@
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
 
 struct FollowedSquare {
+    // Smallest and largest radiance and transmittance of the squares around this one.
     @location(0) least: vec4f,
     @location(1) most: vec4f,
-    // Offset to its place in the last picture, pixels; LOST if that was outside. z: weight of the marched picture
-    // instead.
+    // Offset to this square's position in the last picture, pixels (x, y); LOST if it was outside. z: weight of the
+    // marched picture in place of the last one.
     @location(2) back: vec4f,
 }
 
@@ -34,6 +35,7 @@ fn smoothness(center: vec2f, near: array<vec2f, 4>, rounding: vec2f) -> f32 {
     return min(each.x, each.y);
 }
 
+// Luminance and transmittance of a texel.
 fn light_and_open(seen: vec4f) -> vec2f {
     return vec2f(dot(seen.rgb, vec3f(1.0 / 3.0)), seen.a);
 }

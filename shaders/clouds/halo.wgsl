@@ -10,11 +10,11 @@ const HALO_MOST: vec3f = vec3f(5.1095, 5.0817, 5.0272);
 const HALO_FALL: f32 = 0.0716;
 // Radius of the disc that blurs the halo's step, rad.
 const HALO_DISC: f32 = 0.0047;
-// Share of the light scattered by ice.
+// Share of the light scattered by ice that goes into the halo.
 const HALO_SHARE: f32 = 0.039;
 
-// Amount that the halo adds to the phase function of a medium, 1/sr, in a direction from the eye; negative away from
-// it.
+// Amount that the halo adds to the phase function of a medium, 1/sr, along a ray of this direction from the eye. It is
+// negative away from the halo.
 fn cloud_halo(medium_index: f32, direction: vec3f) -> vec3f {
     let cosine = dot(direction, clouds.to_sun);
     // Droplets make no halo.

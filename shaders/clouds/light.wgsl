@@ -7,13 +7,18 @@
 @group(0) @binding(4) var cloud_tables: texture_3d<f32>;
 @group(0) @binding(6) var cloud_table_sampler: sampler;
 
+// Number of depths in a row or column of a table.
 const CLOUD_DEPTHS: f32 = 28.0;
+// Number of leak rates.
 const CLOUD_LEAKS: f32 = 16.0;
+// Smallest scaled depth above 0 in a table.
 const CLOUD_THINNEST: f32 = 0.05;
 const CLOUD_PI: f32 = 3.1415927;
+// Steepness with which the beam is divided between top and side of the box.
 const PART_RATE: f32 = 1.0;
 
-// Scaled depths of cloud around a place.
+// Scaled depths of cloud around a place: straight up and down, towards the sun, horizontally to the side where the sun
+// stands and away from it, and across the sun's direction to the nearer and the farther edge.
 struct CloudDepths {
     above: f32,
     below: f32,
@@ -24,12 +29,14 @@ struct CloudDepths {
     right: f32,
 }
 
-// Interval of a ray, and the place whose light counts for all of it.
+// Interval of a ray, and the place on it whose light counts for all of it.
 struct CloudStretch {
     direction: vec3f,
-    // Distance at which it begins (`begun`), its length, and the distance of the place (`at`), m.
+    // Distance at which the interval begins, m.
     begun: f32,
+    // Length of the interval, m.
     length: f32,
+    // Distance of the place, m.
     at: f32,
     // Scaled depth of cloud between the interval and the eye.
     to_eye: f32,
@@ -46,25 +53,25 @@ struct CloudScattered {
     ground: f32,
 }
 
-// Here and in field.wgsl, divisions by constants are written as products with inverses, because software drivers do not
-// make that change themselves.
+// Position of a scaled depth among the depths of a table. Here and in field.wgsl, divisions by constants are written as
+// products with inverses, because software drivers do not make that change themselves.
 fn cloud_depth_place(depth: f32) -> f32 {
     let thin = depth * (1.0 / CLOUD_THINNEST);
     return clamp(select(1.0 + 2.0 * log2(max(thin, 1.0)), thin, thin < 1.0), 0.0, CLOUD_DEPTHS - 1.0);
 }
 
-// Position of a leak rate among the leaks of the tables.
+// Position of a leak rate among the leak rates of a table.
 fn cloud_leak_place(leak: f32) -> f32 {
     return min(4.0 * log(1.0 + sqrt(leak) * (1.0 / 0.03)), CLOUD_LEAKS - 1.0);
 }
 
-// Leak rate through the sides of a box along two axes.
+// Leak rate through the sides of a box with these scaled widths along two axes.
 fn cloud_leak(widths: vec2f, turning: f32) -> f32 {
     let b = CLOUD_PI / (widths + 1.42 / turning);
     return dot(b, b) / (3.0 * turning);
 }
 
-// Looks up a table's source terms.
+// Looks up the source terms of a table: 0 for the beam on the top, 1 for the beam on the side, 2 for the sky.
 fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> vec4f {
     let first = vec3f(table * CLOUD_DEPTHS, medium * CLOUD_DEPTHS, 0.0);
     let at = first + vec3f(cloud_depth_place(above), cloud_depth_place(below), cloud_leak_place(leak)) + 0.5;
@@ -72,11 +79,12 @@ fn cloud_table(table: f32, medium: f32, above: f32, below: f32, leak: f32) -> ve
     return textureSampleLevel(cloud_tables, cloud_table_sampler, at * texel, 0.0);
 }
 
+// Sum of Legendre polynomials with coefficients `terms` at `x`.
 fn cloud_legendre(terms: vec4f, x: f32) -> f32 {
     return dot(terms, vec4f(1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x));
 }
 
-// Extent of a box for diffusing light, from side to side.
+// Extent of a box for diffusing light from side to side, in scaled depth.
 fn cloud_reach(near: f32, far: f32, turning: f32) -> f32 {
     return max(near + far, 1e-3) + 1.42 / turning;
 }

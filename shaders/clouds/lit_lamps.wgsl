@@ -3,9 +3,9 @@
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 
-// Extrapolation length of the diffusion approximation (`DARK_AT`), and depth from which light returns through the face
-// that it fell on (`RETURNS_FROM`), both in units of 1 / (1 - g').
+// Extrapolation length of the diffusion approximation, in units of 1 / (1 - g').
 const DARK_AT: f32 = 0.71;
+// Depth from which light returns through the face that it fell on, in units of 1 / (1 - g').
 const RETURNS_FROM: f32 = 0.5;
 // Shares of the path to a lamp that lie in cloud: up to the first the lamp counts as outside, from the second on as
 // inside, and between them the two are mixed.
@@ -16,12 +16,15 @@ const BEAM_PLACES: u32 = 4u;
 // A lamp as seen from a place. A distance is given as the scaled depth that it would have if all of it lay in cloud as
 // dense as that around the place.
 struct CloudShine {
+    // Unit vector to the lamp.
     toward: vec3f,
+    // Distance of the lamp.
     distance: f32,
+    // Scaled depth of cloud on the path.
     between: f32,
 }
 
-// Creates the shine of a lamp at the offset `to` from a place, m.
+// Creates the shine of a lamp at the offset `to` from a place, m. `scaled` is the scaled depth of cloud per metre.
 fn cloud_shine(layer: CloudLayer, at: CloudPlace, lamp: CloudLamp, to: vec3f, scaled: f32) -> CloudShine {
     let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);
     let d = max(way * scaled, 1e-3);
@@ -87,7 +90,7 @@ fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: C
     let often = max(cloud_legendre(cloud_table(2.0, medium_index, shine.between, behind, leak), x), 0.0) / CLOUD_PI;
     let momentum = exp(-turning * shine.between) - exp(-shine.between);
     let kept = medium.rest.w * 3.0 * (1.0 - turning) / (4.0 * CLOUD_PI) * momentum * x;
-    // Light that returns through the face has first gone some way in.
+    // Light that returns through the face has first gone some depth into the cloud.
     let d = shine.distance - shine.between + max(shine.between, RETURNS_FROM / turning);
     return (often + clamp(kept, -often, often)) / (d * d);
 }

@@ -20,8 +20,9 @@ const CLOUD_THICK_STEP: f32 = 0.7;
 override CLOUD_LEAST: f32 = 0.01;
 
 struct CloudSeen {
-    // Radiance, cd/m^2 times exposure; transmittance for the light behind, which includes light scattered straight on.
+    // Radiance, cd/m^2 times exposure.
     light: vec3f,
+    // Transmittance of the clouds, 0 to 1. Light scattered into the narrow forward peak counts as transmitted.
     transmittance: f32,
     // Distances between which the visible cloud is nearly evenly spread, m.
     reach: vec2f,
@@ -45,6 +46,7 @@ fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
     return vec2f(min(one, other), max(one, other));
 }
 
+// State of a march: what the ray has gathered so far.
 struct CloudMarch {
     light: vec3f,
     transmittance: f32,
@@ -73,9 +75,9 @@ fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
     return sqrt(across * along);
 }
 
-// Splits the transmittance of a ray into the part in gaps (x) and the part in cloud (y). The share of cloud was
-// shares.x at the last place, where `open` held, and is shares.y at this place, `cells` cells farther on. On a steep
-// path cloud stands over cloud; on a level path the ray meets new clouds.
+// Splits the transmittance of a ray into the part in gaps (x) and the part in cloud (y). `open` is that split at the
+// last place, where the share of cloud was shares.x. At this place, `cells` distances from cloud to cloud farther on,
+// the share of cloud is shares.y. On a steep path cloud stands over cloud; on a level path the ray meets new clouds.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
@@ -259,7 +261,7 @@ fn cloud_middle(seen: CloudSeen) -> f32 {
     return 0.5 * (seen.reach.x + seen.reach.y);
 }
 
-// Adds the air in front of the clouds.
+// Adds the air in front of the clouds to what is seen of them.
 fn clouds_behind(air: Veil, seen: CloudSeen) -> CloudSeen {
     let light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
     return CloudSeen(light, seen.transmittance, seen.reach);

@@ -13,9 +13,10 @@
 @group(0) @binding(9) var<uniform> shadows: CloudShadows;
 @group(0) @binding(10) var shadow_map: texture_2d<f32>;
 
-// Whether the air before clouds shows their shadows.
+// Whether the air in front of the clouds shows their shadows.
 override SHAFTS: bool = false;
 
+// Air between the eye and a distance along a ray. `between` places the samples of the shafts (shafts.wgsl).
 fn air_before(ray: ViewRay, distance: f32, between: f32) -> Veil {
     if SHAFTS {
         let differs = cloud_shafts(shadows, shadow_map, cloud_sampler, ray.origin, ray.direction, distance, between);

@@ -28,7 +28,7 @@ fn marched_within(picture: CloudsPicture) -> vec2u {
     return vec2u(picture.place & (picture.side - 1u), picture.place >> side_power(picture));
 }
 
-// Pixel of the picture that a square stands for.
+// Pixel of the picture that a frame marches in a square.
 fn marched_pixel(picture: CloudsPicture, square: vec2u) -> vec2u {
     return min(square * picture.side + marched_within(picture), picture.size - 1u);
 }

@@ -15,12 +15,13 @@ const CLOUD_CLEAR_FROM: f32 = 6.95;
 // A layer with the local cover of a place.
 struct CloudLocal {
     layer: CloudLayer,
-    // Distance within which its threshold stays the same, m, and its change per metre beyond.
+    // Distance within which the layer's threshold stays the same, m, and the largest change of the threshold per metre
+    // beyond.
     steady: f32,
     slope: f32,
 }
 
-// Share by which a place is filled over a rain area, 0 to 1, and its distance from the area's cell, m.
+// Share by which a place is filled over a rain area, 0 to 1, and the place's distance from the area's cell, m.
 fn cloud_filled_over(area: CloudArea, level: vec2f) -> vec2f {
     let away = level - area.place.xy;
     let p = vec2f(dot(away, area.place.zw), dot(away, vec2f(-area.place.w, area.place.z)));

@@ -11,6 +11,8 @@
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
 @group(0) @binding(4) var last: texture_2d_array<f32>;
 @group(0) @binding(5) var linear: sampler;
+// Smallest and largest radiance and transmittance around each square, and the square's offset (FollowedSquare of
+// follow.wgsl).
 @group(0) @binding(6) var least: texture_2d<f32>;
 @group(0) @binding(7) var most: texture_2d<f32>;
 @group(0) @binding(8) var back: texture_2d<f32>;
@@ -20,6 +22,7 @@
 @group(1) @binding(2) var shadow_map: texture_2d<f32>;
 @group(1) @binding(3) var repeating: sampler;
 
+// Whether the last frame's picture may be used.
 override HISTORY: bool = true;
 // Whether there are shadows, and a host's depth to cast them on.
 override SHADOWS: bool = true;

@@ -1,6 +1,6 @@
 // Draws the clouds' shadow map: the share of the direct light that clouds let through to a level plane. Twin of
-// src/clouds/light/shadow.rs. The texels move with the air that carries the clouds, and the map repeats. Each texel
-// stands for the place nearest to the camera.
+// src/clouds/light/shadow.rs. The texels move with the air that carries the clouds, and the map repeats. A texel is
+// drawn for the nearest to the camera of all places that it stands for.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/shadow_map.wgsl"
@@ -10,6 +10,7 @@
 // Side of the map, texels.
 override SHADOW_TEXELS: f32 = 512.0;
 
+// Number of steps along the path through a layer.
 const SHADOW_STEPS: u32 = 12u;
 
 // Optical depth of a layer on the path of light to a place in the plane.

@@ -27,7 +27,7 @@ fn cloud_shadow(shadows: CloudShadows, map: texture_2d<f32>, between: sampler, a
     let height = shadows.eye + at.z;
     let away = (at.xy - shadows.to_light.xy / shadows.to_light.z * height) / shadows.period;
     let here = textureSampleLevel(map, between, shadows.camera + away, 0.0).r;
-    // Far away and within clouds the mean is used.
+    // Far from the camera, and within clouds, the mean is used.
     let far = max(abs(away.x), abs(away.y));
     let told = shadows.told * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((shadows.top - height) / 100.0, 0.0, 1.0);
     return mix(shadows.mean, here, told);

@@ -7,15 +7,15 @@ use crate::plan::{
 };
 
 /// Clouds as a part of the plan, with two rungs: layers drawn as volumes, or the grey deck in their place. The
-/// importance, 0.4, comes from the experiment that `sky::candidates::AIR` names.
+/// importance, 0.4, is that of clouds in the experiment on a simulator that `sky::candidates::AIR` cites.
 pub const CLOUDS: Part =
     Part { name: "clouds", rungs: &["volume", "deck"], importance: 0.4, worth: Worth::Estimated(4) };
 
 /// Work of the volume in a pixel that looks towards clouds. The unit is the work of a pixel with none of the parts.
-/// Measured on a software driver (`cargo bench --bench speed -- clouds`), in copies of the picture: a frame with a
-/// clear sky takes the time of 20 copies, and the volume adds 34.
+/// Measured on a software driver (`cargo bench --bench speed -- clouds`): a frame with a clear sky takes as long as 20
+/// copies of the picture, and the volume adds the time of 34 copies.
 const MARCHED: f64 = 2.0;
-/// Work of the volume in any pixel: the finished clouds are laid over the sky.
+/// Work of the volume in any pixel, in the unit of [`MARCHED`]: composing the finished clouds over the sky.
 const LAID: f64 = 0.3;
 
 /// Returns the work of the step from the volume to the deck in a picture of `pixels` pixels. `share` is the share of
@@ -33,12 +33,12 @@ pub struct CloudMethod {
     pub settings: CloudSettings,
 }
 
-/// Work of a ray: each step reads the map and the noise, and the light where there is cloud.
+/// Work of a marched ray at fineness 1: each step reads the map and the noise, and the light where there is cloud.
 const RAY: Units = Units { samples: 60.0, texels: 120.0, bytes: 0.0 };
 /// Work of a pixel that is reprojected from the frame before and laid over the sky.
 const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
 
-/// Work of a pixel of the deck.
+/// Work of a pixel of the deck, which is computed in closed form.
 const DECK: Units = Units { samples: 0.1, texels: 0.0, bytes: 0.0 };
 
 impl CloudMethod {

@@ -1,5 +1,5 @@
-//! Clouds of a context: the model that draws them, and the noise that they are cut out of, which answers the host's
-//! queries about clouds.
+//! Clouds of a context: the model that draws them, and the noise that gives them their shapes. The host's queries about
+//! clouds read both.
 
 use std::sync::{Arc, OnceLock};
 
@@ -20,20 +20,21 @@ use crate::{
 /// The clouds of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldClouds {
+    /// Model that draws the clouds.
     pub model: CloudModel,
-    /// Noise that clouds are cut out of, created at first use.
+    /// Noise that gives clouds their shapes, created at first use.
     grown: Arc<OnceLock<CloudNoise>>,
 }
 
-/// Keys of the model in a saved state.
+/// Table and key of the model in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "clouds";
 
 impl HeldClouds {
-    /// Takes the clouds' part out of a saved state.
+    /// Takes the model of clouds out of a saved state; the default if the state has none.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] for a value that is no model.
+    /// [`crate::Status::Parse`] for a value that names no model.
     pub fn read(state: &mut toml::Table) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };
@@ -41,12 +42,14 @@ impl HeldClouds {
         Ok(Self { model, ..Self::default() })
     }
 
-    /// Returns the share of the direct light that clouds let through to a scene's place. The light is that of the sun
-    /// or the moon, whichever is brighter. For a volume the share is that along the ray to the light, for a deck the
-    /// mean over all places. `eye` is the place in the host's world.
+    /// Returns the share of the direct light that clouds let through to a scene's place, 0 to 1. The light is that of
+    /// the sun or the moon, whichever is brighter. With a volume it is the share along the ray from the place to the
+    /// light, with a deck the mean over all places. `eye` is the place in the host's world, m; `time_s` is the
+    /// simulation time, s.
     ///
     /// # Errors
-    /// As [`super::field::Solid::new`], and for a time outside the weather.
+    /// Errors of [`super::field::Solid::new`]; [`WeatherOver::check_time`] refuses times for which the weather is not
+    /// known.
     pub fn sun_share(
         &self,
         seed: u64,
@@ -62,14 +65,14 @@ impl HeldClouds {
         Ok(sun_share((0..overhead.all().len()).map(|i| grown.field(&overhead, i)), scene))
     }
 
-    /// Finds the layers of cloud over a scene's place.
+    /// Finds the layers of cloud over a scene's place; `None` without clouds or volumes.
     fn overhead(&self, grown: &CloudNoise, query: &LayersQuery<'_>) -> Result<Option<CloudLayers>> {
         let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let overhead = query.layers(self.model, &mut maps, Shape::of)?;
         Ok(overhead.filter(|o| !o.all().is_empty()))
     }
 
-    /// Returns the noise that clouds are cut out of.
+    /// Returns the noise, created from `seed` at the first call.
     fn grown(&self, seed: u64) -> Result<&CloudNoise> {
         if let Some(grown) = self.grown.get() {
             return Ok(grown);
@@ -79,7 +82,7 @@ impl HeldClouds {
     }
 
     /// Returns the clouds around a scene's place; `None` without clouds, or if the model draws no volume. `eye` is the
-    /// place in the host's world, `radius_m` the radius of the planet.
+    /// place in the host's world, m, and `radius_m` the radius of the planet.
     ///
     /// # Errors
     /// As [`HeldClouds::sun_share`].

@@ -3,10 +3,10 @@
 //! # Model
 //! * [`field`] says where there is cloud. A map fixed to the moving air says how strongly cloud grows at each place,
 //!   and solid noise frays the edges. [`cover`] finds the threshold at which the clouds of the map have the cover that
-//!   is asked for.
 //! * [`light`] computes the light in clouds, with the tables of [`transport`]. Light scattered once keeps the true
-//!   phase function. Light scattered more often is that in a box with the depths of cloud around the place. Ice cloud
-//!   makes a [`halo`]. [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
+//! phase function. Light scattered more than once is computed as if the place stood in a box of even cloud with the
+//! same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
+//! [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
 //! * A picture marches the ray of one pixel in sixteen in each frame and takes the other pixels over from the frame
 //!   before.
 //! * Mirrors and cube maps show clouds from `maps::panorama`, a small map of all directions.
@@ -24,10 +24,10 @@
 //! combine them for a frame, `held` for a host's queries.
 //!
 //! # Error
-//! Drawn light: even slabs within 5 % or 0.01 of discrete ordinates; each face of a cube within 15 % or 0.03 of the
-//! light that falls on the cube (`cargo test --lib clouds::drawn::probe -- --nocapture`). Rays through the field are
-//! compared with photons by `lab photons`; the error is largest under a low sun. Cover as seen: 3 percentage points
-//! ([`cover`]).
+//! Drawn light of even slabs: within 5 % or 0.01 of discrete ordinates, whichever is more. Drawn light that leaves each
+//! face of a cube: within 15 % or 0.03 of the light that falls on the cube (`cargo test --lib clouds::drawn::probe --
+//! --nocapture`). `lab photons` compares rays through the field with photons; the error is largest under a low sun.
+//! Cover as seen from the ground: within 3 percentage points ([`cover`]).
 
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;

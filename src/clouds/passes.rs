@@ -1,6 +1,6 @@
 //! Passes of a picture's clouds: march the rays of some pixels, reproject each square of pixels from the last frame,
-//! and resolve the whole picture from both. The panorama of clouds in all directions is drawn too where something shows
-//! it.
+//! and resolve the whole picture from both. The panorama of clouds in all directions is drawn too where a mirror or a
+//! cube map shows it.
 
 use std::sync::Arc;
 
@@ -30,29 +30,41 @@ use crate::{
 /// Passes of a view, with their resources.
 pub(super) struct CloudPasses {
     pub tables: CloudTables,
+    /// Allocator of the uniform blocks.
     pages: Blocks,
+    /// Block with [`CloudsUniform`].
     block: UniformBlock,
+    /// Block with [`PictureUniform`].
     picture_block: UniformBlock,
+    /// Pipelines, created at the first draw.
     pipelines: Option<Pipelines>,
+    /// Textures of the picture, of its present size.
     picture: Option<Picture>,
     /// Key and bind group of the march. The key is the bind group of the sky's tables and whether the shadow map is
     /// bound.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
     shadows: Option<ShadowMap>,
+    /// Panorama of clouds in all directions.
     round: Option<CloudPanorama>,
-    /// Key and bind group of the shadows. The key is the host's depth texture and its layer.
+    /// Key and bind group of the pass that applies shadows. The key is the host's depth texture and its layer.
     shaded: Option<(Option<(wgpu::Texture, u32)>, wgpu::BindGroup)>,
+    /// Placeholder texture for inputs that a frame lacks.
     none: wgpu::TextureView,
+    /// Placeholder for a texture of several layers.
     no_layers: wgpu::TextureView,
+    /// Placeholder block where there is no shadow map.
     no_block: UniformBlock,
+    /// Block with [`LampsUniform`].
     lamps_block: UniformBlock,
     /// Whether some clouds have local cover ([`super::field::placed`]).
     is_placed: bool,
 }
 
-/// Projection of the shadows, and the depth of the surfaces that they fall on.
+/// Inputs of the pass that applies shadows: the shadow map's placement, and the depth of the surfaces.
 pub(super) struct Shaded<'a> {
+    /// Placement of the shadow map.
     pub lie: ShadowProjection,
+    /// The host's depth.
     pub depth: Layer<'a>,
 }
 
@@ -61,7 +73,9 @@ pub(super) struct Shaded<'a> {
 pub(super) struct Wanted {
     /// Whether an earlier call has begun the frame.
     pub is_begun: bool,
+    /// Whether to march rays.
     pub march: bool,
+    /// Whether to resolve the whole picture.
     pub resolve: bool,
     /// Whether to draw the panorama (`round`), and whether the picture shows it (`shows_round`).
     pub round: bool,
@@ -72,14 +86,16 @@ pub(super) struct Wanted {
 pub(super) struct CloudFrame<'a> {
     pub wanted: Wanted,
     pub clouds: CloudsUniform,
+    /// Reprojection, and the pixels that this frame marches.
     pub picture: PictureUniform,
-    /// Uniform block of the frame, and the sky's tables with their layout.
+    /// Uniform block of the frame.
     pub frame: &'a BlockView,
+    /// The sky's tables: layout and bind group.
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
     /// Texture of the light behind the sky's own light: stars and the glow between them.
     pub behind: Option<&'a wgpu::Texture>,
     pub shaded: Option<Shaded<'a>>,
-    /// Whether the air in front of the surfaces is shaded too.
+    /// Whether shafts of light are drawn: the air in front of the surfaces is shaded too.
     pub has_shafts: bool,
     /// Lamps and flashes that light the clouds.
     pub lamps: Option<LampsUniform>,
@@ -87,7 +103,9 @@ pub(super) struct CloudFrame<'a> {
     pub around: PanoramaInputs,
     /// Fineness of the march ([`super::CloudSettings`]).
     pub fineness: f64,
+    /// Whether some clouds are blurred (`CloudLayers::is_coarse`).
     pub is_coarse: bool,
+    /// Use that the frame makes of earlier frames.
     pub past: HistoryUse,
     /// Whether the host's depth has several samples a pixel, and which kinds of depth there are (`depth_kinds`).
     pub is_multisampled: bool,
@@ -116,7 +134,7 @@ impl CloudPasses {
         })
     }
 
-    /// Rebuilds bindings when the cloud maps have changed.
+    /// Writes the hosts' cover maps into the tables, and drops bindings that depend on them if they have changed.
     pub fn place(&mut self, device: &Device, overhead: &CloudLayers) -> Result<()> {
         let is_other = self.tables.place(device, overhead.maps.iter().flatten());
         if !is_other && self.is_placed == overhead.is_placed() {
@@ -135,7 +153,8 @@ impl CloudPasses {
         ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), texture)
     }
 
-    /// Creates textures for a picture of this size. Returns whether the earlier ones are kept.
+    /// Creates textures for a picture of `size` pixels, in squares of `side` x `side` pixels. Returns whether the
+    /// earlier textures are kept.
     pub fn hold(&mut self, device: &Device, size: (u32, u32), side: u32) -> bool {
         if self.picture.as_ref().is_some_and(|p| p.of == (size, side)) {
             return true;
@@ -255,8 +274,8 @@ impl CloudPasses {
         Ok(())
     }
 
-    /// Updates the shadow map for the frame. Returns the bind group of the map and of the depth that shadows fall on,
-    /// with placeholders where there are no shadows, and the number of passes.
+    /// Updates the shadow map for the frame. Returns a bind group, and the number of passes. The bind group has the map
+    /// and the depth of the surfaces that shadows fall on, or placeholders where there are no shadows.
     fn shade(
         &mut self,
         device: &Device,
@@ -355,8 +374,8 @@ impl CloudPasses {
         Ok(passes + of_shadows)
     }
 
-    /// Marches a frame's pixels and resolves its picture. Returns the number of passes, and that of the shadow map's
-    /// passes.
+    /// Marches a frame's pixels and resolves its picture. Returns two numbers of passes: of the picture, and of the
+    /// shadow map.
     fn draw_picture(
         &mut self,
         device: &Device,

@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 
 use crate::{chance::RandomStream, light::phase::PhaseLobes};
 
-/// Draws the cosine of a scattering angle of Henyey and Greenstein's phase function.
+/// Draws the cosine of a scattering angle from the phase function of Henyey and Greenstein with asymmetry `g`.
 fn lobe_cosine(g: f64, chance: &mut RandomStream) -> f64 {
     let u = chance.even();
     if g.abs() < 1e-6 {
@@ -21,13 +21,14 @@ fn lobe_cosine(g: f64, chance: &mut RandomStream) -> f64 {
     ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
 }
 
-/// Draws a photon's direction after a droplet with this phase function has scattered it.
+/// Draws a photon's direction after a droplet with this phase function has scattered it from `direction`.
 pub fn scattered(lobes: &PhaseLobes, direction: DVec3, chance: &mut RandomStream) -> DVec3 {
     turned(lobes, direction, chance).0
 }
 
-/// Draws the direction after scattering, and returns whether the Draine lobe was used. The angle in that lobe is drawn
-/// by rejection from Henyey and Greenstein's lobe of the same g.
+/// Draws the direction after scattering, and returns whether the Draine lobe was used. The cosine c in that lobe is
+/// drawn from the lobe of Henyey and Greenstein with the same g, and accepted with probability (1 + alpha c^2) / (1 +
+/// alpha).
 pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut RandomStream) -> (DVec3, bool) {
     let by_draine = chance.even() < lobes.w_draine;
     let cosine = if by_draine {
@@ -46,13 +47,13 @@ pub(super) fn turned(lobes: &PhaseLobes, direction: DVec3, chance: &mut RandomSt
     (way.normalize(), by_draine)
 }
 
-/// Cloud within a box from the origin to `sides`.
+/// Cloud within a box from the origin to `sides`, in any unit of length.
 pub struct Box<'a> {
     /// Far corner; a side may be infinite.
     pub sides: DVec3,
-    /// Extinction at a place, 1/m if `sides` is in metres.
+    /// Extinction at a place, per unit of length.
     pub extinction: &'a dyn Fn(DVec3) -> f64,
-    /// Largest extinction in the box.
+    /// Largest extinction in the box, per unit of length.
     pub most: f64,
     /// Phase function of the droplets.
     pub lobes: PhaseLobes,
@@ -61,8 +62,8 @@ pub struct Box<'a> {
 }
 
 impl Box<'_> {
-    /// Traces a photon from a place along `direction`. Returns the face through which it leaves (low and high x, y, z),
-    /// or `None` if it is absorbed.
+    /// Traces a photon from a place along `direction`. Returns the index of the face through which it leaves (0 low x,
+    /// 1 high x, 2 low y, 3 high y, 4 base, 5 top), or `None` if it is absorbed.
     pub fn leaves_by(&self, mut position: DVec3, mut direction: DVec3, chance: &mut RandomStream) -> Option<usize> {
         loop {
             let mut exit = (f64::INFINITY, 0);
@@ -88,8 +89,8 @@ impl Box<'_> {
         }
     }
 
-    /// Returns the shares of the sunlight on the box that leave through each face. The sun stands on the side of low x,
-    /// and `cosine` is that of its zenith angle. High z is the top.
+    /// Returns the shares of the sunlight on the box that leave through each face, in the order of [`Self::leaves_by`].
+    /// The sun stands on the side of low x; `cosine` is the cosine of its zenith angle. High z is the top.
     pub fn fluxes(&self, cosine: f64, photons: u32, seed: u64) -> [f64; 6] {
         let sine = (1.0 - cosine * cosine).sqrt();
         let is_slab = self.sides.x.is_infinite();
@@ -104,7 +105,7 @@ impl Box<'_> {
                 DVec3::new(0.0, y, self.sides.z * chance.even())
             };
             let way = DVec3::new(sine, 0.0, -cosine);
-            // A slab has no sides to leave through.
+            // Photons start so far inside an infinite slab that none leaves through a side.
             let at = if is_slab { at.with_x(1e150).with_y(1e150) } else { at };
             if let Some(face) = self.leaves_by(at, way, &mut chance) {
                 out[face] += 1.0 / f64::from(photons);

@@ -29,26 +29,31 @@ use crate::{
     wind::LayerDrifts,
 };
 
-/// Order in which the pixels of a square are marched. Each is far from those before it.
+/// Order in which the pixels of a square are marched, each far from those before it: indices row by row in squares of 4
+/// x 4. Smaller squares use each index modulo their number of pixels.
 const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
 /// Stages whose draws show clouds directly.
 const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
 
-/// Camera and clouds of the last frame.
+/// Camera and clouds of the last frame whose clouds were marched.
 #[derive(Clone, Copy)]
 struct Before {
+    /// Matrix from a place relative to the camera (east, north, up), m, to clip space.
     clip: DMat4,
+    /// Position of the camera in the host's world, m.
     eye: DVec3,
+    /// Displacements of the layers by the wind.
     drifts: LayerDrifts,
     exposure: f64,
 }
 
-/// Parts of a frame that its calls have drawn so far.
+/// Progress of a frame: the parts that its calls have drawn so far.
 #[derive(Clone, Copy)]
 struct FrameProgress {
     frame_id: u64,
     is_marched: bool,
     is_shaded: bool,
+    /// Whether the panorama is up to date.
     is_round: bool,
     /// Reprojection from the last frame to this frame's picture.
     picture: PictureUniform,
@@ -58,11 +63,13 @@ struct FrameProgress {
 #[derive(Default)]
 pub(crate) struct CloudsView {
     pub settings: CloudSettings,
+    /// Layers over the camera in this frame; `None` without clouds or volumes.
     overhead: Option<CloudLayers>,
     /// Shapes of the layers; most frames have the same ones as the last.
     shapes: LruCache<CloudSlab, Shape, MAX_CLOUD_LAYERS>,
-    /// Cache of layers under a host's map.
+    /// Cache of the layers that follow a host's cover map.
     maps: LayerMaps,
+    /// Passes, created when clouds are first drawn.
     passes: Option<Box<CloudPasses>>,
     before: Option<Before>,
     made: Option<FrameProgress>,
@@ -70,16 +77,17 @@ pub(crate) struct CloudsView {
     wanted: Option<Wanted>,
     /// Lamps and flashes that light the clouds in that draw.
     lamps: Option<LampsUniform>,
-    /// Whether the picture holds the last frame's clouds.
+    /// Whether the picture's textures hold the last frame's clouds.
     kept: bool,
-    /// Shadow map, from when a host's own materials read it.
+    /// Shadow map that a host's own materials read, from their first request on.
     handed: Option<HostShadowTexture>,
-    /// Layer of stars, which is seen between the clouds.
+    /// Layer of stars, which stands behind the clouds.
     behind: Option<wgpu::Texture>,
 }
 
 impl CloudsView {
-    /// Whether some clouds cast shadows and others leave gaps, and the host drew surfaces for shadows to fall on.
+    /// Whether Welkin applies cloud shadows in a draw of these stages. The sun or moon must be high enough, the clouds
+    /// broken, and the host must have drawn surfaces and not read the shadow map itself.
     fn casts_shadows(&self, context: &DrawContext<'_>, stages: Stages) -> bool {
         let light_is_up = context.now.scene.brighter().direction.z > LOWEST;
         // A host that reads the shadow map applies it itself.
@@ -90,7 +98,7 @@ impl CloudsView {
             && self.overhead.as_ref().is_some_and(CloudLayers::is_broken)
     }
 
-    /// Returns the share of a picture's rays that lead towards clouds.
+    /// Returns the share of a picture's rays that lead towards clouds, from 8 x 8 rays spread over it.
     fn share_of_rays(&self, context: &DrawContext<'_>) -> f64 {
         const SIDE: u32 = 8;
         let Some(overhead) = &self.overhead else { return 0.0 };
@@ -102,7 +110,7 @@ impl CloudsView {
         count.count() as f64 / f64::from(SIDE * SIDE)
     }
 
-    /// Returns the parts that earlier calls of a frame have drawn.
+    /// Returns the progress of this frame; `None` if no call has drawn a part yet.
     fn made_of(&self, frame: &Frame<'_>) -> Option<FrameProgress> {
         self.made.filter(|made| made.frame_id == frame.frame_id)
     }
@@ -127,8 +135,8 @@ impl CloudsView {
     }
 }
 
-/// Returns the ratio of the direct light without clouds to the mean of all light on level ground, for each channel. w
-/// is the mean share of the direct light that clouds let through.
+/// Returns for each channel the ratio of the direct light without clouds to the mean of all light, both on level
+/// ground. w is the mean share of the direct light that clouds let through.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
     let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));
@@ -150,6 +158,7 @@ impl CloudsView {
         handed.shadows.clone()
     }
 
+    /// Places the host's shadow map for this frame; `None` if no clouds cast shadows.
     fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
         if let Some(handed) = &mut self.handed {
             handed.lay(now, lie);

@@ -37,13 +37,13 @@ const STEP_ANGLE: f64 = 0.002;
 const STEP_RISE: f64 = 0.04;
 /// Transmittance at which a ray ends.
 const LEAST: f64 = 0.001;
-/// Farthest distance that a ray is followed through a layer, m.
+/// Longest path that a ray is followed through a layer, from its entry, m.
 const FARTHEST_M: f64 = 60e3;
-/// Length over which clouds fade out before that distance, m. Without it a cloud would end in a flat face.
+/// Length at the end of that path over which clouds fade out, m. Without it a cloud would end in a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the intervals of the path to the sun, in distances from cloud to cloud. Only in the first `SUN_FRAYED`
-/// intervals does solid noise fray the clouds' edges.
+/// Ends of the intervals of the path to the sun, in distances from cloud to cloud.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
+/// Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: usize = 3;
 /// Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
 /// and of the solid noise, per side of its cube (`SOLID_SKIP`).
@@ -53,14 +53,15 @@ const SOLID_SKIP: f64 = 12.0;
 /// Threshold above which there is no cloud: just below [`CLEAR`].
 const CLEAR_FROM: f64 = CLEAR - 0.05;
 
-/// Clouds along a ray.
+/// Light of the clouds along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CloudsSeen {
     /// Radiance, cd/m^2 for each channel.
     pub light: DVec3,
-    /// Transmittance for the light behind, which includes light that is scattered straight on.
+    /// Transmittance of the clouds, 0 to 1. Light that droplets scatter into the narrow forward peak counts as
+    /// transmitted.
     pub transmittance: f64,
-    /// Mean distance of the visible cloud, m.
+    /// Mean distance of the visible cloud from the eye, m.
     pub distance_m: f64,
 }
 
@@ -72,7 +73,8 @@ struct MarchedLayer<'a> {
     light: LayerLight,
     /// Index of the medium: 0 for droplets, [`ICE`] for ice.
     medium: usize,
-    /// Ratio of scaled extinction to extinction.
+    /// Ratio of scaled extinction to extinction. Scaled extinction leaves out what droplets scatter into the narrow
+    /// forward peak ([`crate::clouds::transport::Scattering::scale`]).
     scale: f64,
 }
 
@@ -89,10 +91,11 @@ pub(crate) struct CloudRays<'a> {
     longer: [f64; 2],
 }
 
-/// Tables of the light within clouds, for each medium.
+/// Tables of the light within clouds, for droplets and for ice.
 enum LightWithin<'a> {
+    /// Tables of the only medium.
     Given(Arc<Sources>),
-    /// Computed when a ray first meets cloud of a medium; most rays meet none.
+    /// Tables computed when a ray first meets cloud of a medium; most rays meet none.
     Asked {
         grown: &'a CloudNoise,
         media: [Arc<Transport>; 2],
@@ -112,11 +115,13 @@ impl LightWithin<'_> {
     }
 }
 
-/// State of a march: the light along the ray so far.
+/// State of a march: what the ray has gathered so far.
 #[derive(Clone, Copy)]
 struct MarchState {
+    /// Radiance, cd/m^2 for each channel.
     light: DVec3,
     transmittance: f64,
+    /// Sum of distance times lost transmittance, m.
     distance: f64,
 }
 
@@ -125,10 +130,11 @@ struct AtPlace<'a> {
     layer: &'a MarchedLayer<'a>,
     /// The layer's field with the local cover of this place.
     field: Field<'a>,
+    /// Position, m east and north of the world's origin, and m above the sea.
     position_m: DVec3,
     /// Height in the layer, 0 at its base to 1 at its top.
     height: f64,
-    /// Excess over the threshold, with fraying.
+    /// Excess of the map's number over the threshold, with fraying and before the dome.
     excess: f64,
 }
 
@@ -174,7 +180,8 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    /// Returns the distances at which a ray crosses a height above the sea, in order. Both are the same if it does not.
+    /// Returns the distances at which a ray of direction `d` crosses a height above the sea, nearer one first, m. Both
+    /// are equal if it does not. `d` is a unit vector (east, north, up), as in all functions here.
     fn crossings(&self, d: DVec3, height_m: f64) -> [f64; 2] {
         let (r, rise) = (self.radius_m + self.place_m.z, height_m - self.place_m.z);
         let b = r * d.z;
@@ -187,7 +194,7 @@ impl<'a> CloudRays<'a> {
         [q.min(other), q.max(other)]
     }
 
-    /// Returns the place at a distance along a ray.
+    /// Returns the position at a distance `t` along a ray, m. The planet is a sphere.
     fn at(&self, d: DVec3, t: f64) -> DVec3 {
         let r = self.radius_m + self.place_m.z;
         let rise = t * (2.0 * d.z + t / r);
@@ -195,7 +202,8 @@ impl<'a> CloudRays<'a> {
         (self.place_m.truncate() + d.truncate() * t * (self.radius_m / (self.radius_m + altitude_m))).extend(altitude_m)
     }
 
-    /// Returns the intervals of a ray in its layers, in the order in which it meets them.
+    /// Returns the intervals of a ray in the layers as (index of the layer, distances of its ends, m), in the order in
+    /// which the ray meets them. First come those on its way down, then those on its way up.
     fn stretches(&self, d: DVec3, range_m: f64) -> Vec<(usize, [f64; 2])> {
         let lowest = -(self.radius_m + self.place_m.z) * d.z;
         let ground = self.crossings(d, 0.0);
@@ -222,7 +230,7 @@ impl<'a> CloudRays<'a> {
         all
     }
 
-    /// Returns the clouds in a direction up to a range, m.
+    /// Returns the clouds along a ray of direction `d` within `range_m`.
     pub fn seen(&self, d: DVec3, range_m: f64) -> CloudsSeen {
         let mut seen = MarchState { light: DVec3::ZERO, transmittance: 1.0, distance: 0.0 };
         for (k, stretch) in self.stretches(d, range_m) {
@@ -242,6 +250,7 @@ impl<'a> CloudRays<'a> {
         }
     }
 
+    /// Marches the interval from `first` to `last` of a ray in one layer, m. Adds its light to `seen`.
     fn layer(&self, layer: &MarchedLayer<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: MarchState) -> MarchState {
         let s = &layer.field.shape;
         let scaled = s.extinction_per_m * layer.scale;
@@ -274,7 +283,8 @@ impl<'a> CloudRays<'a> {
         seen
     }
 
-    /// Returns the light that a place scatters along a direction per unit of its scaled depth, cd/m^2.
+    /// Returns the light that a place scatters into a direction per unit of scaled depth, cd/m^2. `transmittance` is
+    /// that from the eye to the place.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
         let sources = self.light.of(place.layer.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());
@@ -286,8 +296,8 @@ impl<'a> CloudRays<'a> {
             + DVec3::from_array(light.below) * s.ground
     }
 
-    /// Returns the optical depth of the clouds over `offset` metres (east, north, up); all scattering counts as loss. A
-    /// layer that a picture shows as a deck counts as the cloud that the deck replaces.
+    /// Returns the optical depth of the clouds between the place and a point `offset` away, m (east, north, up); all
+    /// scattering counts as loss. A layer that a picture shows as a deck counts as the cloud that the deck replaces.
     pub fn depth(&self, offset: DVec3) -> f64 {
         let range_m = offset.length();
         let d = offset / range_m;
@@ -331,7 +341,7 @@ pub(crate) fn skip(
 }
 
 impl AtPlace<'_> {
-    /// Returns the length of cloud at full extinction towards the sun, m: `cloud_sun_way` of the shader.
+    /// Returns the length of cloud at full extinction from the place towards the sun, m: `cloud_sun_way` of the shader.
     fn sun_way(&self, to_sun: DVec3) -> f64 {
         let s = &self.field.shape;
         let z = if to_sun.z >= 0.0 { to_sun.z.max(1e-3) } else { to_sun.z.min(-1e-3) };

@@ -1,5 +1,5 @@
-//! Noise that clouds are cut out of, for the host's queries, with caches of the light in clouds and of layers under
-//! maps.
+//! Noise that gives clouds their shapes, for the host's queries, with caches of the light in clouds and of layers under
+//! cover maps.
 
 use std::sync::{Arc, Mutex};
 
@@ -13,12 +13,15 @@ use crate::{
     error::Result,
 };
 
-/// Noise that clouds are cut out of, with the light that was last asked for.
+/// Noise that gives clouds their shapes, and caches.
 pub(crate) struct CloudNoise {
+    /// Map of where clouds grow.
     pub map: Map,
+    /// Solid noise that frays their edges.
     pub solid: Solid,
-    /// Light for each medium.
+    /// Light that was last computed for droplets, and for ice.
     lit: [Mutex<Option<LitMedium>>; 2],
+    /// Layers under cover maps that were last used.
     pub maps: Mutex<LayerMaps>,
 }
 
@@ -37,13 +40,14 @@ impl CloudNoise {
         Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
     }
 
-    /// Returns the clouds of the layer with an index in [`CloudLayers::all`].
+    /// Returns the clouds of the layer with index `layer` in [`CloudLayers::all`].
     pub fn field(&self, overhead: &CloudLayers, layer: usize) -> Field<'_> {
         let placed = overhead.placed(layer);
         Field { shape: overhead.all()[layer].shape, map: &self.map, solid: &self.solid, placed }
     }
 
-    /// Returns the tables of light in one of the two media under a sun.
+    /// Returns the tables of light in a medium (0 droplets, 1 ice) under a sun in the direction `to_sun` (east, north,
+    /// up).
     pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
         // The light stays valid after a panic in another thread.
         let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -5,7 +5,8 @@ use crate::gpu::{Device, Layer, bind, flat_texture};
 
 /// Format of radiance and transmittance.
 pub(crate) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Format of a pair of numbers.
+/// Format of the marched pixels' reach: log2 of the nearest and farthest distance of the visible cloud, m, times its
+/// cover.
 pub(crate) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Format of the depth that marks the pixels on which the host drew.
 pub(crate) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
@@ -16,8 +17,8 @@ pub(crate) const LAYERS: u32 = 3;
 /// Index of the layer of stars and glow, which stand behind the sky's own light.
 pub(crate) const BEHIND: u32 = 2;
 
-/// Side of the panorama, texels. A texel is 1.5 degrees, which is fine enough for broken clouds in a mirror of still
-/// water.
+/// Side of the panorama, texels. A texel of this octahedral map spans 1.2 to 2.4 degrees (2 / 96 to 4 / 96 rad), which
+/// is fine enough for broken clouds in a mirror of still water.
 pub(crate) const PANORAMA_SIDE: u32 = 96;
 
 /// Whether shadows get their own draw. A software driver evaluates both sides of a branch, so in a single draw it would
@@ -47,7 +48,7 @@ fn with_round((width, height): (u32, u32)) -> (u32, u32) {
     (width.max(PANORAMA_SIDE), height + PANORAMA_SIDE)
 }
 
-/// Whole picture after a frame.
+/// Textures of a whole picture, as one frame leaves them.
 pub(crate) struct Whole {
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
@@ -71,17 +72,19 @@ pub(crate) struct Picture {
     pub of: ((u32, u32), u32),
     /// Radiance and transmittance of the marched pixels, and their reach.
     pub marched: [wgpu::TextureView; 2],
-    /// Smallest and largest value around each square, and its movement since the last frame with its smoothness.
+    /// Values for each square of pixels: smallest and largest radiance and transmittance of the squares around it, and
+    /// its offset in the last picture with the smoothness of the clouds there (`shaders/clouds/follow.wgsl`).
     pub followed: [wgpu::TextureView; 3],
+    /// Whole pictures of this frame and of the last, which swap roles.
     pub whole: [Whole; 2],
     /// Depth that marks the pixels on which the host drew, if shadows have their own draw.
     pub kinds: Option<wgpu::TextureView>,
     /// Index in `whole` of the last frame.
     pub newest: usize,
-    /// Bind groups of the passes after the march.
+    /// Bind groups of the passes after the march: of the reprojection, and of the resolving into each of `whole`.
     pub groups: Option<[wgpu::BindGroup; 3]>,
-    /// `marched` and the bind group of the pass after it, for a first frame. Its squares have [`BEGUN_SIDE`] pixels on
-    /// a side.
+    /// Marched pixels of a picture's first frame, in place of `marched`, and the bind group that resolves from them.
+    /// Its squares have [`BEGUN_SIDE`] pixels on a side.
     pub begun: Option<([wgpu::TextureView; 2], wgpu::BindGroup)>,
 }
 
@@ -114,8 +117,8 @@ impl Picture {
         }
     }
 
-    /// Returns the index in `whole` that the next draw writes: the newest again if that is of the same frame, else the
-    /// other.
+    /// Returns the index in `whole` that the next draw writes. `is_begun` says that an earlier call of the frame has
+    /// written the newest; the draw then writes the newest again, else the other.
     pub fn to_make(&self, is_begun: bool) -> usize {
         if is_begun { self.newest } else { 1 - self.newest }
     }

@@ -19,7 +19,7 @@ use crate::{
 /// Key of a pipeline that marches rays.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct March {
-    /// See [`crate::clouds::CloudSettings`].
+    /// Fineness of the march ([`crate::clouds::CloudSettings::fineness`]).
     pub fineness: f64,
     /// Whether clouds have local cover ([`crate::clouds::field::placed`]).
     pub is_placed: bool,
@@ -37,6 +37,7 @@ pub(crate) struct Resolve {
     pub has_shafts: bool,
     /// Whether the host's depth has several samples a pixel.
     pub is_multisampled: bool,
+    /// Kinds of depth that the host's depth texture may hold (`Rays::depth_kinds`).
     pub depth_kinds: f64,
     /// Whether a second draw applies the shadows, only to the pixels on which the host drew.
     pub shades_apart: bool,
@@ -200,7 +201,7 @@ fn attachment(
     })
 }
 
-/// Part of a pass's targets.
+/// Part of a pass's targets: rows from `first_row` on, and the viewport's size, pixels.
 #[derive(Clone, Copy)]
 pub(crate) struct TargetPart {
     pub first_row: u32,
@@ -213,7 +214,7 @@ pub(crate) struct PassTargets<'a> {
     pub colors: &'a [&'a wgpu::TextureView],
     /// Depth that selects the pixels of each draw of the pass.
     pub kinds: Option<&'a wgpu::TextureView>,
-    /// Part that is drawn; the rest keeps its content. `None` clears the targets and draws all of them.
+    /// Part that is drawn, and the rest keeps its content; `None` clears the targets and draws all of them.
     pub part: Option<TargetPart>,
 }
 

@@ -29,7 +29,7 @@ use crate::{
     scene::LightUniform,
 };
 
-/// Rays for each face, along each side of its tile.
+/// Number of rays for each face, along each side of its tile of the target.
 const SIDE: u32 = 64;
 /// Thickness of the box, m.
 const THICKNESS_M: f64 = 10.0;
@@ -109,8 +109,8 @@ pub fn fluxes(device: &Device, cloud: &EvenCloud) -> Result<[f64; 6]> {
     Ok(out)
 }
 
-/// Returns the light of a beam on a box that leaves straight through the far side and through the base, per unit of its
-/// depth along y.
+/// Returns the unscattered light of a beam on a box that leaves through the far side (high x), and through the base,
+/// per unit of the box's depth along y. Lengths are optical depths.
 fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     let steps = 4096;
     let (mut far, mut base) = (0.0, 0.0);
@@ -126,8 +126,9 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
     (far, base)
 }
 
-/// Returns the scattered light that leaves each face of a box, per unit of area, for a lamp of 1 cd to all sides. The
-/// unit of length is optical depth 1. `position` counts from the box's low corner. Faces are ordered as in [`fluxes`].
+/// Returns the scattered light that leaves each face of a box, per unit of area, for a lamp that sends 1 cd in all
+/// directions. The unit of length is optical depth 1. `position` is measured from the box's low corner. Faces are
+/// ordered as in [`fluxes`].
 ///
 /// # Errors
 /// As [`fluxes`].
@@ -153,7 +154,7 @@ pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Resul
     draw(device, cloud, &of, Some(&lamps))
 }
 
-/// Returns the light that leaves each face, per unit of area.
+/// Draws the box and returns the light that leaves each face, per unit of area.
 fn draw(device: &Device, cloud: &EvenCloud, scattering: &Scattering, lamps: Option<&LampsUniform>) -> Result<[f64; 6]> {
     let gpu = &device.device;
     let target = flat_texture(

@@ -21,11 +21,12 @@ use crate::{
     noise::NoiseTexture,
 };
 
-/// Formats of the tables of light and of hosts' maps (`FORMAT`), and of the map's sheets (`SHEET`).
+/// Format of the tables of light and of hosts' cover maps.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of the map's sheets.
 const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-/// Counts of the work on these tables, and of its time.
+/// Counters of the work on these tables: number of updates, and their time.
 const COUNTED: [DeviceWork; 2] = [DeviceWork::CloudTables, DeviceWork::CloudTableTime];
 
 fn texture(
@@ -65,8 +66,9 @@ fn write_halves(
     );
 }
 
-/// Creates the texture of the map. Each layer has one sheet with its even and its cellular noise, because one look-up
-/// needs only these two.
+/// Creates the texture of the map. It has two layers, one for each sheet that
+/// [`crate::clouds::field::extinction::Field`] reads. A texel has the even and the cellular noise of its sheet, all
+/// that one look-up needs.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     let levels = map.levels();
     let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
@@ -78,7 +80,7 @@ fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     bind::as_layers(&made)
 }
 
-/// Creates the texture that holds the hosts' maps of layers, one below the other.
+/// Creates the texture that holds the hosts' cover maps, one below the other.
 fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::TextureView {
     texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
 }
@@ -100,7 +102,7 @@ pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
 pub(crate) struct LightTables {
     texture: wgpu::Texture,
     pub media: [Arc<Transport>; 2],
-    /// Cosine of the sun's zenith angle for which they hold.
+    /// Cosine of the sun's zenith angle for which the tables hold; `None` before the first update.
     under: Option<f64>,
 }
 
@@ -115,13 +117,13 @@ impl LightTables {
         self.texture.create_view(&Default::default())
     }
 
-    /// Replaces a medium. All tables are computed again.
+    /// Replaces the medium with index `which` (0 droplets, 1 ice). The next update computes all tables again.
     fn replace(&mut self, which: usize, medium: Arc<Transport>) {
         self.media[which] = medium;
         self.under = None;
     }
 
-    /// Updates the tables for a sun.
+    /// Updates the tables for a sun with this cosine of its zenith angle, if it has moved enough.
     pub fn update(&mut self, device: &Device, cosine: f64) {
         let cosine = cosine.clamp(-1.0, 1.0);
         if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
@@ -147,14 +149,20 @@ impl LightTables {
 
 /// Look-up tables of clouds: map, solid noise, and light.
 pub(crate) struct CloudTables {
+    /// Map of where clouds grow.
     pub map: wgpu::TextureView,
+    /// Solid noise that frays their edges.
     pub solid: NoiseTexture,
     pub light: LightTables,
+    /// Linear sampler that repeats.
     pub repeating: wgpu::Sampler,
+    /// Linear sampler that clamps to the edge.
     pub clamping: wgpu::Sampler,
+    /// Diameter of the droplets for which `light` holds, um.
     liquid_um: f64,
-    /// Texture with the hosts' maps of layers, one below the other, and the maps that it holds (`in_placed`).
+    /// Texture with the hosts' cover maps, one below the other.
     pub placed: wgpu::TextureView,
+    /// Maps that `placed` holds, from top to bottom.
     in_placed: Vec<Arc<LayerMap>>,
 }
 
@@ -177,9 +185,10 @@ impl CloudTables {
         Ok(tables)
     }
 
-    /// Draws the solid noise if it is missing, and updates the tables for the sun and for droplets of this diameter.
+    /// Draws the solid noise if it is missing. Updates the tables for a sun with this cosine of its zenith angle and
+    /// for droplets of this diameter, um.
     pub fn update(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder, cosine: f64, liquid_um: f64) {
-        // All of the noise at once: clouds whose edges fray later would jump.
+        // Draws all of the noise at once: if clouds' edges frayed only later, the clouds would jump.
         self.solid.step(encoder, u32::MAX);
         if liquid_um != self.liquid_um {
             let begun = Instant::now();
@@ -190,8 +199,8 @@ impl CloudTables {
         self.light.update(device, cosine);
     }
 
-    /// Writes maps of layers into the texture if it does not hold them yet. Returns whether the texture was created
-    /// again.
+    /// Writes hosts' cover maps into the texture if it does not hold them yet. Returns whether the texture had to be
+    /// created again.
     pub fn place<'a>(&mut self, device: &Device, maps: impl Iterator<Item = &'a Arc<LayerMap>> + Clone) -> bool {
         let is_same = |(a, b): (&Arc<LayerMap>, &Arc<LayerMap>)| Arc::ptr_eq(a, b);
         if maps.clone().count() == self.in_placed.len() && maps.clone().zip(&self.in_placed).all(is_same) {

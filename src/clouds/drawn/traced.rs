@@ -1,5 +1,5 @@
-//! Radiance of a layer of cloud along a ray, by photons that are traced back from the eye through the drawn field: the
-//! reference for the march and the light.
+//! Radiance of a layer of cloud along a ray, from photons that are traced back from the eye through the drawn field. It
+//! is the reference for the march and the light.
 //!
 //! # Model
 //! Free paths are sampled by null collisions in f64, without steps or scaled depths. The sun is a beam. At each
@@ -7,10 +7,9 @@
 //! radiance above, those that leave through the base the radiance below. These are the inputs of the drawn light.
 //! Nothing is absorbed. The layer is level and infinite.
 //!
-//! # Error
-//! Noise, whose standard error is in each answer. After a scattering through a wide angle, the narrow lobe of the phase
-//! function is widened where the sun is sampled. Otherwise a few rare photons would contribute most of the radiance.
-//! The reflectance of even slabs stays the same within the test's noise.
+//! The only error is the photons' noise; each answer includes its standard error. After a scattering through a wide
+//! angle, the narrow lobe of the phase function is widened where the sun is sampled. Otherwise a few rare photons would
+//! contribute most of the radiance. The widening changes the reflectance of even slabs by less than the test's noise.
 
 use std::sync::Arc;
 
@@ -40,13 +39,15 @@ use crate::{
 const SKIPPED: f64 = 0.5;
 /// Distance within which the threshold stays the same, m, and its slope beyond: the field has no local cover.
 const UNMAPPED: [f64; 2] = [f64::INFINITY, 0.0];
-/// Limit on the narrow lobe's asymmetry where the sun is sampled: after n scatterings through wide angles it is at most
-/// 1 - `WIDER` n. n counts no further than `WIDER_TURNS`.
+/// Rate at which the narrow lobe is widened where the sun is sampled: after n scatterings through wide angles its
+/// asymmetry is at most 1 - `WIDER` n.
 const WIDER: f64 = 0.03;
+/// Largest n in the limit of [`WIDER`].
 const WIDER_TURNS: u32 = 3;
-/// Ratio of the phase function towards the sun to isotropic scattering above which the sun is always sampled
-/// (`ASKED_FROM`), and the smallest probability of sampling it (`ASKED_LEAST`).
+/// Ratio of the phase function towards the sun to isotropic scattering, 1 / (4 pi), above which the sun is always
+/// sampled.
 const ASKED_FROM: f64 = 2.0;
+/// Smallest probability of sampling the sun.
 const ASKED_LEAST: f64 = 0.1;
 
 /// Light that falls on a layer, in any unit of radiance.
@@ -63,21 +64,21 @@ pub struct GivenLight {
 }
 
 impl GivenLight {
-    /// Creates the light of a sun of irradiance 1 under a sky of this radiance, over ground of this albedo.
+    /// Creates the light of a sun of irradiance 1 under a sky of radiance `sky`, over ground of this albedo.
     pub fn over_ground(to_sun: DVec3, sky: f64, albedo: f64) -> Self {
         let falls = to_sun.z.max(0.0) + std::f64::consts::PI * sky;
         Self { to_sun, sun: 1.0, above: sky, below: albedo / std::f64::consts::PI * falls }
     }
 }
 
-/// Light of sun, sky and ground along a ray.
+/// Light of sun, sky and ground along a ray, in the unit of [`GivenLight`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// Radiance, including the light from behind the cloud.
     pub all: f64,
-    /// Part of each source: sun, above, below.
+    /// Parts of `all` by source: sun, above, below.
     pub by: [f64; 3],
-    /// Transmittance of the cloud.
+    /// Transmittance of the cloud, 0 to 1.
     pub through: f64,
     /// Standard error of `all`; 0 for the model.
     pub error: f64,
@@ -122,7 +123,8 @@ impl LitLayer {
         Seen { all: by.iter().sum(), by, through: transmittance, error: 0.0 }
     }
 
-    /// Returns the light that `count` photons find along a ray from `eye` (east, north, up), m.
+    /// Returns the light that `count` photons find along a ray from `eye` (east, north, up), m. `seed` sets their
+    /// random numbers.
     pub fn photons(&self, eye: DVec3, direction: DVec3, count: u32, seed: u64) -> Seen {
         let (mut chance, field) = (RandomStream::new(seed, 1), self.field());
         let s = &self.shape;
@@ -153,7 +155,7 @@ struct Photon<'a> {
 }
 
 impl Photon<'_> {
-    /// Returns the extinction at a place, and the distance along a direction in which there is no cloud.
+    /// Returns the extinction at a place, 1/m, and a distance along a direction in which there is no cloud, m.
     fn look(&self, position: DVec3, direction: DVec3) -> [f64; 2] {
         let s = &self.field.shape;
         let height = (position.z - s.base_m) / s.thickness_m;
@@ -186,7 +188,7 @@ impl Photon<'_> {
         }
     }
 
-    /// Returns the radiance of one photon by source, and whether it was scattered.
+    /// Returns the radiance of one photon by source (sun, above, below), and whether it was scattered.
     fn follow(&self, mut position: DVec3, mut direction: DVec3, chance: &mut RandomStream) -> ([f64; 3], bool) {
         let light = &self.layer.light;
         let (mut by, mut met, mut turns) = ([0.0; 3], false, 0);
@@ -224,7 +226,7 @@ pub struct Case {
     pub cover: f64,
     /// Base, m.
     pub base_m: f64,
-    /// Height of the eye, m.
+    /// Height of the eye above the sea, m.
     pub height_m: f64,
     /// The sun's elevation, degrees.
     pub sun_deg: f64,
@@ -265,13 +267,13 @@ const MOST_THROUGH: f64 = 0.7;
 pub struct Compared {
     /// Median of the relative error over rays.
     pub p50: f64,
-    /// Its 95th percentile.
+    /// 95th percentile of the relative error over rays.
     pub p95: f64,
     /// Relative error of the mean radiance.
     pub bias: f64,
     /// Error of the mean radiance from each source (sun, above, below), relative to the whole mean radiance.
     pub parts: [f64; 3],
-    /// Standard error of the photons relative to their radiance: for the median ray, and for the mean.
+    /// Standard error of the photons relative to their radiance: for the median ray, and for the mean over rays.
     pub chance: [f64; 2],
     /// 95th percentile of the relative difference from 64 times as many steps: with the model's steps, with its steps
     /// by depth only, and with its steps by angle only.

@@ -2,13 +2,15 @@
 //! where they stand, what they are made of, and how much of the sky they cover over a place.
 //!
 //! # Model
-//! A cell is an ellipse; for a polygon it is the ellipse through the corners of the bounding rectangle. The base is
-//! that of the weather's lowest layer from which rain may fall, if that is no higher than the top of the area's rain;
-//! otherwise it is the top of the area's rain. Under a closed layer there are no cells, because it hides the sky.
+//! A cell is an ellipse; for a polygon it is the ellipse through the corners of the bounding rectangle. Its base is
+//! that of the weather's lowest layer from which rain may fall, if that is at most `SAME_BASE_M` above the lowest top
+//! of an area's rain. Otherwise the base is that top. Under a closed layer there are no cells, because it hides the
+//! sky.
 //!
-//! The light at a place is that under one layer of the cells' cloud. The cover of this layer is the share of the sky
-//! that the cells take up. A cell takes up the view factor of a level disc of equal area from level ground (Hamilton
-//! and Morgan 1952). The horizontal offset of the disc, in its radii, equals that of the cell in half widths.
+//! The light at a place is that under one layer of the cells' cloud, whose cover is the share of the sky that the cells
+//! take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from level
+//! ground (Hamilton and Morgan 1952). The disc's horizontal distance, in its radii, is that of the cell in its half
+//! widths.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
@@ -27,10 +29,10 @@ use crate::{
 };
 
 /// Change of the threshold across a cell's edge, per distance from cloud to cloud. It is less than the map's steepest
-/// slopes, so that the field shapes the cell's faces.
+/// slopes, so that the noise of the map shapes the cell's sides.
 const EDGE_SLOPE: f64 = 3.0;
-/// Position of the area's border in the edge, as a share of the edge's width from outside. One place in a hundred is
-/// open there.
+/// Position of the rain area's border in the cell's edge: distance from the edge's outer end as a share of the edge's
+/// width. At the border, 1 % of the places have no cloud.
 const BORDER: f64 = 0.85;
 /// Ratio of the distance from cloud to cloud in a cell to the area's half width.
 const SPACING: f64 = 0.4;
@@ -40,7 +42,7 @@ const LEAST_SPACING_M: f64 = 600.0;
 const DEEPEST: f64 = 2.0;
 /// Least thickness of a cell, m, unless its kind of cloud is thinner.
 const MOST_FLAT_M: f64 = 800.0;
-/// Height of a layer's base above the top of an area's rain up to which the rain may come from that layer, m.
+/// Height above the lowest top of an area's rain up to which a layer's base may lie for the rain to come from it, m.
 const SAME_BASE_M: f64 = 300.0;
 /// Rate above which showers fall from cumulonimbus, mm/h.
 const HEAVY_MM_H: f64 = 10.0;
@@ -52,27 +54,29 @@ const LEAST_MM_H: f64 = 0.05;
 pub struct AreaCell {
     /// Middle of the cell, m east and north of the world's origin.
     pub(crate) center_m: DVec2,
-    /// Unit vector to the cell's right.
+    /// Unit vector to the cell's right (east, north).
     pub(crate) right: DVec2,
-    /// Half extents to the right and ahead, m, with the whole edge.
+    /// Half extents to the right and ahead, m, including the whole edge.
     pub(crate) semi_m: DVec2,
     /// Width of the edge, m, measured inwards from the ellipse.
     pub(crate) rim_m: f64,
 }
 
 impl AreaCell {
-    /// Returns how far a place is inside the cell's edge, 0 to 1, and its distance from the cell, m.
+    /// Returns how far a place is inside the cell's edge (0 at the ellipse or outside, 1 where the edge ends), and its
+    /// distance from the ellipse if it is outside, m.
     pub(crate) fn at(&self, place_m: DVec2) -> (f64, f64) {
         let away = place_m - self.center_m;
         let p = DVec2::new(away.dot(self.right), away.dot(self.right.perp()));
         let k = p / self.semi_m;
         let [k1, k2] = [k.length(), (k / self.semi_m).length()];
-        // The depth inside is right to first order, as for the area's own border.
+        // To first order this is the distance to the ellipse, as for the area's own border.
         let depth = (1.0 - k1) * if k1 < 1e-4 { self.semi_m.min_element() } else { k1 / k2 };
         ((depth / self.rim_m).clamp(0.0, 1.0), (k1 - 1.0).max(0.0) * self.semi_m.min_element())
     }
 
-    /// Creates the cell over an area from its shaft of rain. The cell's edge is the area's own border.
+    /// Creates the cell over an area from its shaft of rain, with an edge of width 0. `center_m` is the area's middle
+    /// at the rain's top, m east and north.
     fn over(shaft: &Shaft, shape: &AreaShape, center_m: DVec2) -> Self {
         let (middle, semi) = match shape {
             AreaShape::Ellipse(semi) => (DVec2::ZERO, DVec2::from(*semi)),
@@ -102,16 +106,17 @@ pub(crate) struct AreaClouds {
     lowest_m: f64,
     /// Half the width of the narrowest area, m.
     half_m: f64,
-    /// Kind of cloud that the strongest rain falls from.
+    /// Slab of the cloud that the strongest rain falls from.
     brings: &'static CloudSlab,
 }
 
 impl AreaClouds {
-    /// Creates the clouds around a place with these axes, at `eye` in the host's world and `place_m` on the ground.
-    /// `None` if no rain falls in any area.
+    /// Creates the clouds around a place at `eye` in the host's world, m, and `place_m`, m east and north of the
+    /// world's origin. `to_enu` rotates the host's axes to (east, north, up) there. Returns `None` if no rain falls in
+    /// any area.
     ///
     /// # Errors
-    /// For a time outside the weather.
+    /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
     pub fn new(
         weather: &WeatherOver<'_>,
         conditions: &Conditions,
@@ -142,8 +147,8 @@ impl AreaClouds {
         Ok(strongest.map(|(_, brings)| Self { cells, count, lowest_m, half_m, brings }))
     }
 
-    /// Returns the slab that the cells are made of, with cover 0. `others` are the other layers: slab, and whether a
-    /// map places it. `None` if one of them hides the sky.
+    /// Returns the slab that the cells are made of, with cover 0. `others` are the other layers, each with whether a
+    /// cover map places its clouds. Returns `None` if one of them hides the sky.
     pub fn slab<'a>(&self, others: impl Iterator<Item = (&'a CloudSlab, bool)> + Clone) -> Option<CloudSlab> {
         let closes =
             |(slab, is_placed): (&CloudSlab, bool)| slab.cover >= 1.0 && slab.optical_depth > 5.0 && !is_placed;
@@ -165,13 +170,13 @@ impl AreaClouds {
     }
 }
 
-/// Returns the width of the edge of a cell of such clouds, m.
+/// Returns the width of the edge of a cell made of this slab, m.
 pub(crate) fn edge_m(slab: &CloudSlab) -> f64 {
     (CLEAR - FILLED) / EDGE_SLOPE * slab.scale_m
 }
 
 /// Returns the view factor of a level disc from level ground that lies `height_m` below it and `aside_m` to the side of
-/// its middle (Hamilton and Morgan 1952).
+/// its middle, 0 to 1 (Hamilton and Morgan 1952).
 fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
     let [r2, h2, d2] = [radius_m, height_m, aside_m].map(|v| v * v);
     let sum = h2 + d2 + r2;
@@ -182,7 +187,7 @@ fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
 /// there. `None` without cells. The place is `eye` in the host's world.
 ///
 /// # Errors
-/// For a time outside the weather.
+/// [`WeatherOver::check_time`] refuses times for which the weather is not known.
 pub(crate) fn over_place(
     weather: &WeatherOver<'_>,
     conditions: &Conditions,
@@ -211,8 +216,7 @@ pub(crate) fn over_place(
     Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
 }
 
-/// Returns the kind of cloud for an area's rain where the weather has no layer that could make it. Base and cover are
-/// not set.
+/// Returns a slab of the kind of cloud from which an area's rain falls. Its base and cover are meaningless.
 fn brought(shaft: &Shaft, rain: AreaRain) -> &'static CloudSlab {
     static KINDS: LazyLock<[CloudSlab; 4]> = LazyLock::new(|| {
         let kinds = [CloudKind::Stratus, CloudKind::Nimbostratus, CloudKind::ToweringCumulus, CloudKind::Cumulonimbus];

@@ -25,7 +25,7 @@ const STEPS: usize = 48;
 /// Slant optical depths that hide the sky: for droplets, for ice.
 const HIDES: [f64; 2] = [0.1, 0.03];
 
-/// Returns the cover seen from one place, m east and north.
+/// Returns the cover seen from one place, m east and north. `hides` is the slant optical depth that hides the sky.
 fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
     let s = &field.shape;
     let rim = RIM_DEG.to_radians().cos();
@@ -38,7 +38,7 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
         let mut depth = 0.0;
         (0..STEPS).any(|k| {
             let rise = (k as f64 + 0.5) * step_m;
-            // The layer is seen from so far below that only the point where the ray meets the base counts.
+            // Rays start one thickness below the base. Over many places the mean does not depend on this distance.
             let at = (place_m + level * (s.thickness_m + rise)).extend(s.base_m + rise);
             depth += field.extinction_per_m(at) * step_m / up;
             depth > hides
@@ -57,7 +57,8 @@ pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
     (0..places).map(|i| seen_from(field, place(i), hides)).sum::<f64>() / places as f64
 }
 
-/// Finds the thresholds of a kind over several seeds: one line of `thresholds.in`.
+/// Finds the thresholds of a kind for covers of 1 to 7 oktas, as the mean over several seeds: one line of
+/// `thresholds.in`.
 ///
 /// # Errors
 /// As [`Solid::new`].
@@ -77,7 +78,7 @@ pub fn find_thresholds(kind: CloudKind, seeds: &[(Map, Solid)], places: usize) -
     Ok(row)
 }
 
-/// Whether a layer hides the sky at the smaller optical depth of ice.
+/// Whether a layer is of ice crystals, which hide the sky at the smaller optical depth of `HIDES`.
 pub fn is_ice(slab: &CloudSlab) -> bool {
     slab.fibre > 0.5
 }

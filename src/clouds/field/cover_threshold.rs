@@ -1,4 +1,4 @@
-//! Threshold, dome and extinction (see the folder's `mod.rs`) that give a part of a layer its own cover.
+//! Threshold, dome and extinction that give a part of a layer its own cover. The folder's `mod.rs` defines them.
 
 use super::{
     shape::Shape,
@@ -13,17 +13,19 @@ const SHAPED_FROM: f64 = 0.02;
 /// Threshold, dome and extinction at one place of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoverThreshold {
+    /// Number of the map above which cloud grows.
     pub threshold: f64,
     pub dome: f64,
     pub extinction_per_m: f64,
 }
 
 impl CoverThreshold {
+    /// Returns the values of a layer's shape.
     pub(super) fn of(shape: &Shape) -> Self {
         Self { threshold: shape.threshold, dome: shape.dome, extinction_per_m: shape.extinction_per_m }
     }
 
-    /// Creates the threshold of a layer with this cover.
+    /// Creates the values with which a layer like `slab` has this cover, 0 to 1.
     pub(crate) fn with_cover(slab: &CloudSlab, cover: f64) -> Self {
         let at = |cover: f64| threshold(&CloudSlab { cover, ..*slab });
         let own = at(cover.max(LEAST));
@@ -32,6 +34,7 @@ impl CoverThreshold {
         Self { threshold, ..Self::of(&shaped) }
     }
 
+    /// Interpolates between two sets of values; `t` is the weight of `other`, 0 to 1.
     pub(crate) fn mix(self, other: &Self, t: f64) -> Self {
         let between = |a: f64, b: f64| a + (b - a) * t;
         Self {
@@ -41,6 +44,7 @@ impl CoverThreshold {
         }
     }
 
+    /// Writes the values into a shape. The product of `held` and the square of the dome stays the same.
     pub(super) fn put(&self, shape: &mut Shape) {
         let piled = shape.held * shape.dome * shape.dome;
         (shape.threshold, shape.dome, shape.extinction_per_m) = (self.threshold, self.dome, self.extinction_per_m);

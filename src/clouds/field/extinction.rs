@@ -14,7 +14,7 @@ const SOLID_MEAN: f64 = 0.47;
 /// Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f64 = 2.2;
 
-/// Amount, in units of `rough`, that the solid noise adds to the excess at most; only rare peaks exceed it.
+/// Largest amount that the solid noise adds to the excess, in units of `rough`; only rare peaks exceed it.
 pub(crate) const MOST_FRAYED: f64 = 0.8;
 
 /// Clouds of a layer.
@@ -30,7 +30,8 @@ pub struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Returns the map's number at a place, m east and north of the world's origin.
+    /// Returns the map's number at a place, m east and north of the world's origin. Cloud grows where it is above the
+    /// threshold.
     pub fn strength(&self, place_m: DVec2) -> f64 {
         let s = &self.shape;
         let cell = s.stretch * (place_m - s.drift_m) / s.scale_m;
@@ -42,8 +43,8 @@ impl Field<'_> {
         ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
-    /// Returns the field with the local cover of a place, the distance within which it holds, m, and how much the
-    /// threshold changes per metre beyond.
+    /// Returns the field with the local cover of a position. Also returns the distance within which this cover holds,
+    /// m, and the largest change of the threshold per metre beyond it.
     pub(crate) fn here(&self, position_m: DVec3) -> (Self, [f64; 2]) {
         let mut shape = self.shape;
         let steady = self.placed.shape_at(self.upright(position_m), &mut shape);
@@ -57,7 +58,7 @@ impl Field<'_> {
         position_m.truncate() - s.lean_m * (height * height)
     }
 
-    /// Returns the excess over the threshold at a place, before dome and fraying.
+    /// Returns the excess of the map's number over the threshold at a position, before dome and fraying.
     pub(crate) fn over(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
         self.strength(self.upright(position_m)) - s.threshold
@@ -71,7 +72,7 @@ impl Field<'_> {
         s.rough * smooth(s, (position_m.z - s.base_m) / s.thickness_m) * SOLID_GAIN * (self.solid.at(at) - SOLID_MEAN)
     }
 
-    /// Returns the extinction, 1/m, for an excess over threshold and dome, with fraying.
+    /// Returns the extinction, 1/m, for an excess from which the dome is subtracted and to which fraying is added.
     pub(crate) fn dense(&self, excess: f64) -> f64 {
         self.shape.extinction_per_m * (excess / self.shape.soft).clamp(0.0, 1.0)
     }

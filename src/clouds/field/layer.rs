@@ -9,6 +9,7 @@ pub(crate) const ICE: usize = 1;
 /// A layer of cloud over a place. `share` of it is drawn as a volume, the rest as a deck.
 #[derive(Clone, Copy)]
 pub(crate) struct OverheadLayer {
+    /// Shape of the clouds, from `slab` and the air.
     pub shape: Shape,
     pub slab: CloudSlab,
     /// Slot of the layer in `Conditions::clouds`.

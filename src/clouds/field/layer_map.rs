@@ -73,7 +73,7 @@ impl LayerMap {
     }
 }
 
-/// Returns the largest change of thresholds from cell to cell, per metre.
+/// Returns the largest change of the threshold from cell to cell, per metre.
 fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
     let columns = map.cells[0] as usize;
     let change = |(i, t): (usize, &[f32; 4])| {
@@ -115,6 +115,7 @@ fn steady_m(map: &CloudMap) -> Vec<f64> {
 pub(crate) struct LayerMaps(Vec<Arc<LayerMap>>);
 
 impl LayerMaps {
+    /// Returns the layer of `slab` under `map`, computed if the cache lacks it.
     pub(crate) fn get(&mut self, slab: &CloudSlab, map: &Arc<CloudMap>) -> Arc<LayerMap> {
         if let Some(made) = self.0.iter().find(|made| made.is_of(slab, map)) {
             return made.clone();

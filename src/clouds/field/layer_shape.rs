@@ -23,9 +23,9 @@ const HIGHEST: f64 = 2.2;
 /// there.
 const HIGHEST_OF_TOWERS: f64 = 1.2;
 
-/// Side of the cube of solid noise, in distances from cloud to cloud: for fibrous clouds (`SOLID_CELLS_OF_FIBRES`), and
-/// for all others.
+/// Side of the cube of solid noise, in distances from cloud to cloud.
 const SOLID_CELLS: f64 = 1.5;
+/// Side of the cube of solid noise for fibrous clouds, in distances from cloud to cloud.
 const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
 /// Distance from cloud to cloud up to which the heads (bulges of a cloud) are proportional to it, m.
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
@@ -67,14 +67,15 @@ impl Shape {
 
     /// Creates the shape of a layer in still air for a threshold of the map, with its base measured from sea level.
     pub(crate) fn still(slab: &CloudSlab, threshold: f64) -> Self {
+        // 0 for sheets, 1 for heaps.
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);
         // 0 for fair-weather cumulus, 1 for cumulonimbus.
         let tall = (2.0 * slab.convection - 1.0).max(0.0);
         let sheet = mix(mix(0.35, 1.4, slab.cellular), mix(1.5, 0.2, tall), heaps);
         let dome = mix(sheet, 0.4, slab.fibre).max(mix(HIGHEST, HIGHEST_OF_TOWERS, tall) - threshold);
-        // Sheets whose cells are only slightly convective keep their tops.
+        // Sheets, even those whose cells are slightly convective (heaps up to 0.3), keep their tops.
         let piled = ((heaps - 0.3) / 0.7).max(0.0);
-        // The heads of towers exceed those of small cumulus by less than the towers do.
+        // Above `HEADS_AS_CLOUDS_M`, heads of heaps grow only as the distance from cloud to cloud to the power 0.4.
         let finer = (slab.scale_m / HEADS_AS_CLOUDS_M).max(1.0).powf(-0.6 * piled);
         let shape = Self {
             base_m: slab.base_m,

@@ -39,7 +39,7 @@ pub(crate) struct CloudLayers {
     pub liquid_um: f64,
     /// How far the wind has carried the layers.
     pub drifts: LayerDrifts,
-    /// Maps of cover, for layers on which the host lays one ([`super::placed`]).
+    /// Cover maps of the layers that the host gives one ([`super::placed`]).
     pub maps: [Option<Arc<LayerMap>>; MAX_CLOUD_LAYERS],
     /// Cells over rain areas.
     pub areas: Option<AreaCells>,
@@ -64,7 +64,7 @@ pub(crate) const BLUR_FROM: f64 = 0.15;
 
 impl CloudLayers {
     /// Whether one pixel spans several clouds of a layer below the camera, at any distance up to the horizon. `pixel`
-    /// is its angle in radians.
+    /// is the angle of a pixel, rad.
     pub fn is_coarse(&self, scene: &Scene, radius_m: f64, pixel: f64) -> bool {
         let coarse = |layer: &OverheadLayer| {
             let over_m = (scene.place.altitude_m - layer.shape.base_m).max(0.0);

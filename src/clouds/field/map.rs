@@ -9,9 +9,9 @@ use crate::{
 
 /// Texels along a side of the map.
 pub const MAP_SIZE: usize = 256;
-/// Largest number in the map.
+/// Largest absolute number in the map.
 pub const MAP_REACH: f64 = 4.0;
-/// Cells of cloud along the map's side.
+/// Number of clouds along the map's side, on average: the map's period in distances from cloud to cloud.
 pub const MAP_CELLS: f64 = 16.0;
 /// Ratio of the second sheet's period to the first's. The periods have no common multiple.
 pub(crate) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
@@ -29,7 +29,7 @@ const CELLULAR_OCTAVES: u32 = 3;
 /// Texels of the map: two sheets of gradient noise (the even sheets), and two of cellular noise.
 pub struct Map(pub Vec<[f32; 4]>);
 
-/// Returns the value of a sheet before its ranks are taken.
+/// Returns the value of a sheet at a place, in periods, before its ranks are taken.
 fn raw(sheet: u32, place: DVec2, seed: u32) -> f64 {
     let cells = MAP_CELLS as u32;
     let octaves = |count: u32, first: u32, persistence: f64, noise: &dyn Fn(DVec2, UVec2, u32) -> f64| {
@@ -47,6 +47,7 @@ fn raw(sheet: u32, place: DVec2, seed: u32) -> f64 {
     }
 }
 
+/// Returns the indices of the two texels around `x`, in periods of `size` texels, and the weight of the second.
 pub(super) fn wrapped(x: f64, size: usize) -> (usize, usize, f64) {
     let x = (x * size as f64 - 0.5).rem_euclid(size as f64);
     let i = (x as usize).min(size - 1);

@@ -7,8 +7,8 @@
 //! between.
 //!
 //! Cells over rain areas ([`super::cells`]) are a separate layer with cloud nowhere else. Over an area the layer is
-//! overcast. Beyond the area's border its cover falls to 0 across a strip slightly wider than its clouds, so that the
-//! field gives the edge its shape.
+//! overcast. Beyond the area's border its cover falls to 0 across the cell's edge, which is several clouds wide, so
+//! that the field gives the edge its shape.
 
 use std::sync::Arc;
 
@@ -30,6 +30,7 @@ pub struct AreaCells {
     pub(crate) count: usize,
     /// Index of the layer that has the cells.
     pub(crate) layer: usize,
+    /// Threshold, dome and extinction inside the cells.
     pub(crate) filled: CoverThreshold,
 }
 

@@ -85,8 +85,8 @@ pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
     (shape.dome_over(excess) * height * height + 0.25 * edge).min(anvil_needs(shape, height))
 }
 
-/// Slope of the map: change of its number across a cell. A place's distance from its cloud's edge, in cells, is taken
-/// as its excess divided by this slope.
+/// Slope of the map: change of its number over one distance from cloud to cloud. A place's distance from its cloud's
+/// edge, in this unit, is taken as its excess divided by the slope.
 const MAP_SLOPE: f64 = 4.0;
 
 /// Amount of cloud above, below and beside a place, as metres of cloud at full extinction.
@@ -126,5 +126,5 @@ pub fn about(shape: &Shape, excess: f64, height: f64) -> CloudAround {
     }
 }
 
-/// Width of a cloud from side to side, in cells.
+/// Width of a cloud from side to side, in distances from cloud to cloud.
 pub(crate) const WIDTH_CELLS: f64 = 0.6;

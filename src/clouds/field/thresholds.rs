@@ -26,7 +26,7 @@ pub fn typical(kind: CloudKind, cover: f64) -> Result<CloudSlab> {
     Ok(*conditions.cloud_slabs().next().unwrap_or(&CloudSlab::NONE))
 }
 
-/// Returns the threshold of one kind.
+/// Returns the threshold of one kind at this cover, interpolated in its row of the table.
 fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
     // Thresholds are nearly linear in the normal quantile of the cover.
     let quantile = |cover: f64| normal_quantile(cover.clamp(1e-9, 1.0 - 1e-9));
@@ -61,6 +61,7 @@ fn traits_of(slab: &CloudSlab) -> [f64; 4] {
     [slab.convection, slab.cellular, slab.fibre, slab.ice_fraction]
 }
 
+/// Returns the numbers of [`traits_of`] for the kinds of [`THRESHOLDS`].
 fn traits() -> &'static [[f64; 4]; 11] {
     static TRAITS: std::sync::OnceLock<[[f64; 4]; 11]> = std::sync::OnceLock::new();
     TRAITS.get_or_init(|| THRESHOLDS.map(|(kind, _)| typical(kind, 0.5).map_or([0.0; 4], |slab| traits_of(&slab))))

@@ -21,7 +21,7 @@ const REFLECTS: f64 = 0.7;
 /// Distance at which a lamp inside a cloud is taken to light it, m.
 const NEAREST_M: f64 = 5.0;
 
-/// A lamp or a flash.
+/// A lamp or a flash: `CloudLamp` of `shaders/clouds/lamps.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CloudLampUniform {
@@ -32,7 +32,7 @@ pub(crate) struct CloudLampUniform {
     pub pad: f32,
 }
 
-/// All lamps and flashes, and the place of their glow in its target.
+/// All lamps and flashes: `CloudLamps` of `shaders/clouds/lamps.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LampsUniform {
@@ -56,8 +56,8 @@ fn even_share(lamp: &HostLight) -> f64 {
     0.5 * (1.0 - inner + 0.5 * (inner - outer))
 }
 
-/// Returns an upper bound of the luminance of the clouds that a lamp lights, cd/m^2. `height_m` is the lamp's height
-/// above the sea. Cloud above the beam's steepest ray stays dark.
+/// Returns an upper bound of the luminance of the clouds that a lamp lights, cd/m^2. `rise` is the sine of the beam's
+/// elevation, and `height_m` the lamp's height above the sea. Cloud above the beam's steepest ray stays dark.
 fn most_on(overhead: &CloudLayers, lamp: &HostLight, rise: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
     let steepest = |rise: f64| {
@@ -83,10 +83,10 @@ impl CloudLampUniform {
         Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }
     }
 
-    /// Creates the lamp of a flash. All of its light goes to all sides.
+    /// Creates the lamp of a flash. It sends its light equally to all sides.
     fn flash(flash: &FlashLamp, exposure: f64) -> Self {
         Self {
-            // The light as without a cloud around it.
+            // Without the cloud around the flash: the clouds' shaders treat that cloud themselves.
             light: FlashLamp { down_share: None, ..*flash }.uniform(exposure),
             radius: flash.radius_m.max(10.0) as f32,
             even: 1.0,

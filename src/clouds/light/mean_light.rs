@@ -22,7 +22,8 @@ fn grown() -> Vec<(Map, Solid)> {
     (1..=3).map(|seed| (Map::new(seed), Solid::new(seed).unwrap())).collect()
 }
 
-/// Returns the mean share of the direct light that comes to places at a height.
+/// Returns the mean share of the direct light that comes to places at a height. `mu` is the sine of the light's
+/// elevation.
 fn mean(c: &Conditions, grown: &[(Map, Solid)], height_m: f64, mu: f64) -> f64 {
     let spacing_m = c.cloud_slabs().map(|slab| slab.scale_m).fold(0.0, f64::max);
     let to_light = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
@@ -42,8 +43,8 @@ fn under(layers: &[CloudLayer]) -> Conditions {
     derive(&Weather { clouds: layers.to_vec(), ..Weather::default() }).unwrap()
 }
 
-/// Returns the error of the given light against the mean, at these heights and all lights: root mean square, and
-/// largest.
+/// Compares the share of direct light that the weather's formula gives with the mean over places, at these heights and
+/// for all of [`LIGHTS`]. Returns the root mean square of the differences, and the largest with its description.
 fn off(c: &Conditions, grown: &[(Map, Solid)], heights_m: &[f64]) -> (f64, (f64, String)) {
     let (mut squares, mut most) = (0.0, (0.0, String::new()));
     for height_m in heights_m {

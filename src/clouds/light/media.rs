@@ -32,7 +32,7 @@ fn ice() -> Arc<Transport> {
     MADE.get_or_init(|| medium(Phase::HenyeyGreenstein { g: ICE_ASYMMETRY })).clone()
 }
 
-/// Returns the media of clouds: droplets of a diameter, and ice.
+/// Returns the media of clouds: droplets of a diameter (index 0), and ice (index 1).
 pub(crate) fn media(liquid_um: f64) -> [Arc<Transport>; 2] {
     [droplets(liquid_um), ice()]
 }

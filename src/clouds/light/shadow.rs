@@ -3,7 +3,7 @@
 //!
 //! # Model
 //! The light goes straight through each layer above the place and is attenuated by the cloud on its path (Beer's law).
-//! The ground counts as level as far as a ray through the clouds reaches.
+//! Over the length of a ray through the clouds the planet counts as flat.
 //!
 //! # Error
 //! The map of pictures is compared with this function by `cargo test --test clouds shadow -- --nocapture`.
@@ -34,7 +34,8 @@ pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
     (0..STEPS).map(at).sum::<f64>() * step / to_light.z
 }
 
-/// Returns the share of the direct light of the brighter of sun and moon that clouds let through to a scene's place.
+/// Returns the share of the direct light of the brighter of sun and moon that clouds let through to a scene's place, 0
+/// to 1.
 pub fn sun_share<'a>(fields: impl Iterator<Item = Field<'a>>, scene: &Scene) -> f64 {
     let place_m = DVec3::new(scene.map_m[0], scene.map_m[1], scene.place.altitude_m);
     let to_light = scene.brighter().direction;

@@ -50,7 +50,7 @@ pub struct Sources {
 pub struct Scattered {
     /// Share of the sun's irradiance on a surface facing it, 1/sr, with all orders of scattering.
     pub sun: f64,
-    /// Share of that irradiance that is scattered for the first time. Multiply it by the phase function for the light
+    /// Share of the sun's irradiance that is scattered for the first time. Times a phase function, 1/sr, it is light
     /// that is scattered once.
     pub once: f64,
     /// Share of the sky's radiance.
@@ -59,12 +59,13 @@ pub struct Scattered {
     pub ground: f64,
 }
 
+/// Returns the sum of Legendre polynomials with coefficients `terms` at `x`.
 fn legendre_sum(terms: [f64; 4], x: f64) -> f64 {
     terms[0] + x * terms[1] + (1.5 * x * x - 0.5) * terms[2] + (2.5 * x * x - 1.5) * x * terms[3]
 }
 
-/// Extent of a box for diffusing light, in scaled depth: its width, and beyond each side the distance at which the
-/// extrapolated light would be 0.
+/// Returns the extent of a box for diffusing light, in scaled depth: its width, and beyond each side the distance 0.71
+/// / `turning` at which the extrapolated light would be 0.
 fn reach(near_depth: f64, far_depth: f64, turning: f64) -> f64 {
     (near_depth + far_depth).max(1e-3) + 1.42 / turning
 }

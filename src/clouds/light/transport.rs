@@ -46,9 +46,10 @@ pub const DEPTHS: usize = 28;
 /// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The light falls off
 /// with the root of the rate; the roots are 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
-/// Factor of those roots.
+/// Factor in the roots of the leak rates.
 const LEAK_ROOT: f64 = 0.03;
 
+/// Returns the leak rate of ladder `k`.
 fn leak_of(k: usize) -> f64 {
     (LEAK_ROOT * (0.25 * k as f64).exp_m1()).powi(2)
 }
@@ -64,6 +65,7 @@ fn angles() -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
+/// Returns the Legendre polynomial of degree `l` at `x`.
 fn legendre(l: usize, x: f64) -> f64 {
     [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x][l]
 }
@@ -79,7 +81,7 @@ pub struct Scattering {
     pub forward: f64,
     /// Value at which the phase function is cut off, 1/sr.
     pub cap: f64,
-    /// Legendre moments of the rest.
+    /// First four Legendre moments of the phase function without the peak.
     pub moments: [f64; 4],
 }
 
@@ -159,9 +161,11 @@ pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
     (one(widths[0]) + one(widths[1])) / (3.0 * turning)
 }
 
-/// Reflection and transmission of a slab, from direction to direction.
+/// Reflection and transmission of a slab: matrices from the radiance in the directions of [`NODES`] to the radiance
+/// that leaves it.
 #[derive(Clone, Copy)]
 struct ScatterSlab {
+    /// Scaled depth.
     depth: f64,
     reflects: DMat4,
     passes: DMat4,
@@ -190,6 +194,7 @@ impl ScatterSlab {
         Self { depth, reflects: turned.up * scattered, passes: straight + turned.down * scattered }
     }
 
+    /// Returns the slab that two such slabs make, one on the other.
     fn doubled(&self) -> Self {
         let (r, t) = (self.reflects, self.passes);
         let between = back_and_forth(r, r);
@@ -236,13 +241,15 @@ struct SlabLadder {
     /// Doublings from each of two thinnest slabs up to the deepest slab of the ladder, each with [`back_and_forth`]
     /// between two such slabs.
     doublings: [Vec<(ScatterSlab, DMat4)>; 2],
+    /// Slabs of the ladder, the one of depth 0 first.
     slabs: Vec<ScatterSlab>,
     /// [`back_and_forth`] between the slabs above and below, by their depths.
     between: Vec<DMat4>,
+    /// Leak rate.
     leak: f64,
 }
 
-/// Number of doublings from a slab so thin that nothing is scattered twice to the thinnest of the ladder.
+/// Number of doublings from a slab so thin that nothing is scattered twice to the ladder's thinnest slab.
 const DOUBLINGS: i32 = 10;
 
 impl SlabLadder {
@@ -264,6 +271,8 @@ impl SlabLadder {
         Self { doublings, slabs, between, leak }
     }
 
+    /// Returns for each slab of the ladder the light that leaves it under a beam from above at this cosine. `down` and
+    /// `up` are the light of [`Scattering::sent_by_beam`].
     fn under_beam(&self, (down, up): (DVec4, DVec4), cosine: f64) -> Vec<UnderBeam> {
         // The light that the beam scatters leaks through the sides at the same rate.
         let kept = 1.0 / (1.0 + self.leak);
@@ -404,6 +413,7 @@ pub fn leak_place(leak: f64) -> f64 {
     (4.0 * (leak.sqrt() / LEAK_ROOT).ln_1p()).min((LEAKS - 1) as f64)
 }
 
+/// Splits a position among `count` nodes into the index of the node before it and the weight of the next.
 fn cell(x: f64, count: usize) -> (usize, f64) {
     let i = (x as usize).min(count - 2);
     (i, x - i as f64)

@@ -9,8 +9,8 @@ use crate::moment::SceneMoment;
 /// Shadow map of the clouds for a host's own materials. The texture is valid until the view is destroyed. The other
 /// fields change with each frame; get them again after it.
 ///
-/// The map lies in a level plane at the station's height and moves with the air that carries the clouds. It repeats
-/// every 20 km.
+/// The map lies in a level plane at the altitude of the weather's station and moves with the air that carries the
+/// clouds. It repeats every 20 km.
 #[derive(Clone, Debug)]
 pub struct CloudShadows {
     /// Share of the direct light that clouds let through, of the sun or the moon, whichever is brighter. One channel of
@@ -19,7 +19,8 @@ pub struct CloudShadows {
     /// Vectors whose dot products with (x, y, z, 1) of a place in the host's world, m, are its u and v. The mapping
     /// projects the place along the light onto the plane.
     pub uv_from_world: [DVec4; 2],
-    /// Vector whose dot product with (x, y, z, 1) of a place in the host's world, m, is its height above the plane, m.
+    /// Vector whose dot product with (x, y, z, 1) of a place in the host's world, m, is the place's height above the
+    /// plane, m.
     pub height_from_world: DVec4,
     /// u and v of the point of the plane below the last frame's camera.
     pub camera_uv: [f64; 2],
@@ -33,9 +34,9 @@ pub struct CloudShadows {
     pub top_m: f64,
 }
 
-/// WGSL text of the sampling function; see [`CloudShadows`].
+/// WGSL text of the function that samples [`CloudShadows`].
 pub const SHADOW_SNIPPET_WGSL: &str = include_str!("../../../shaders/snippets/welkin_cloud_shadow.wgsl");
-/// GLSL 3.30 text of the sampling function.
+/// GLSL 3.30 text of the function that samples [`CloudShadows`].
 pub const SHADOW_SNIPPET_GLSL: &str = include_str!("../../../shaders/snippets/welkin_cloud_shadow.glsl");
 
 /// Texture that a host has asked for, with the mapping of the last frame.

@@ -21,15 +21,18 @@ const ROWS: u32 = 12;
 /// Changes that make the whole panorama old: distance that the camera or the clouds move, m, which turns a cloud 500 m
 /// up by one texel; factor by which it ages faster than the shadow map; change of the exposure (logarithm).
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
-/// Changes after which nothing of it holds: distance that the camera moves between two frames, m; change of the
-/// exposure (logarithm).
+/// Changes after which the whole panorama is out of date: distance that the camera moves between two frames, m; change
+/// of the exposure (logarithm).
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
 /// Inputs of the panorama, to detect changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct PanoramaInputs {
+    /// Inputs that the panorama has in common with the shadow map.
     pub standing: ShadowInputs,
+    /// Altitude of the camera, m.
     pub altitude_m: f64,
+    /// Factor from radiance to display values.
     pub exposure: f64,
 }
 
@@ -38,6 +41,7 @@ pub(crate) struct CloudPanorama {
     pub texture: wgpu::Texture,
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
+    /// Inputs of the last frame.
     around: Option<PanoramaInputs>,
     rows: MapRows,
 }
@@ -103,6 +107,7 @@ impl CloudPanorama {
 }
 
 impl PanoramaInputs {
+    /// Whether a panorama drawn from `earlier` is wholly out of date.
     fn leaps_from(&self, earlier: &Self) -> bool {
         let (way_m, exposed) = LEAPS;
         self.standing.leaps_from(&earlier.standing)

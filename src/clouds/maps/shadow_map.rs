@@ -1,6 +1,6 @@
-//! Shadow map of the clouds that pictures read: a window around the camera in a plane at the station's height. It moves
-//! with the air that carries the clouds, so a frame has to refresh only some of its rows. A new map begins coarse,
-//! because a whole fine map would cost as much as ten frames.
+//! Shadow map of the clouds that pictures read: a window around the camera in a level plane at the altitude of the
+//! weather's station. It moves with the air that carries the clouds, so a frame has to refresh only some of its rows. A
+//! new map begins coarse, because a whole fine map would cost as much as ten frames.
 
 use super::shadow_projection::{HistoryUse, ShadowInputs, ShadowProjection, TEXELS};
 use crate::{
@@ -22,17 +22,19 @@ use crate::{
 
 /// Side of the coarse map, texels. It has as many texels as the rows that a frame refreshes.
 const COARSE: u32 = 64;
-/// Rows refreshed in a frame. A frame refreshes them once as many are old, or while some of the map is coarse. Sixteen
-/// frames refresh all rows.
+/// Rows refreshed in a frame. A frame refreshes them once as many rows are old, or while some of the map is coarse.
+/// Sixteen frames refresh all rows.
 const ROWS: u32 = 32;
 /// Shadow map with the passes that draw it.
 pub(crate) struct ShadowMap {
     pub view: wgpu::TextureView,
+    /// Block with [`ShadowUniform`].
     pub block: UniformBlock,
     pipeline: wgpu::RenderPipeline,
     /// Bind group of the clouds, for both the map and the coarse map.
     clouds: wgpu::BindGroup,
     coarse: Coarse,
+    /// Inputs of the last frame.
     standing: Option<ShadowInputs>,
     rows: MapRows,
     /// Number of rows that still come from the coarse map.
@@ -156,9 +158,9 @@ impl ShadowMap {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = TEXELS as u64 * TEXELS as u64 + COARSE as u64 * COARSE as u64;
 
-    /// Refreshes some rows once enough of them are old. If the whole map is out of date, or the picture is cut, the
-    /// whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows. Returns the
-    /// number of passes.
+    /// Refreshes some rows once enough of them are old. If the whole map is out of date, or the host cuts to another
+    /// picture, the whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows.
+    /// Returns the number of passes.
     pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
         let here = lie.standing;
         self.block.write(bytemuck::bytes_of(&lie.uniform()));

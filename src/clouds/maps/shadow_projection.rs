@@ -13,8 +13,8 @@ use crate::{
 pub(super) const TEXELS: u32 = 512;
 /// Size of a texel, m.
 const TEXEL_M: f64 = 40.0;
-/// Height above the lowest base over which shadows blend to the mean share, m; at that height one is in the clouds.
-/// Shaders and snippets have the same number.
+/// Height above the base of the lowest clouds over which shadows blend to the mean share, m; a place at that height is
+/// in the clouds. Shaders and snippets have the same number.
 const ENDS_M: f64 = 100.0;
 /// Sines of the light's elevation between which shadows fade in.
 const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
@@ -36,6 +36,7 @@ const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 /// History that a frame may take over from earlier frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HistoryUse {
+    /// History of earlier frames, if the view has it.
     Kept,
     /// No history; later frames may take over from this one.
     Cut,
@@ -53,14 +54,18 @@ impl HistoryUse {
     }
 }
 
-/// Inputs of the map, to detect changes.
+/// Inputs of the map in a frame, to detect changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct ShadowInputs {
+    /// Simulation time, s.
     pub time_s: f64,
+    /// Unit vector towards the light (east, north, up).
     pub to_light: DVec3,
+    /// Sum over the layers of threshold and base, km.
     pub threshold_sum: f64,
-    /// Distance that the layer with which the map moves has drifted, m.
+    /// Distance that the layer with which the map moves has drifted, m east and north.
     pub drift_m: DVec2,
+    /// Position of the camera, m east and north of the world's origin.
     pub camera_m: DVec2,
     /// Fingerprint of the local cover (`field::placed`): a hash of the cells over areas, and a number that differs for
     /// another map.
@@ -73,15 +78,19 @@ pub(crate) struct ShadowProjection {
     pub standing: ShadowInputs,
     /// Unit vector towards the light, never level.
     pub to_light: DVec3,
+    /// Altitude of the map's plane, m.
     plane_m: f64,
-    /// Position of the camera in the map, in periods (`camera`), and its height above the plane, m (`eye_m`).
+    /// Position of the camera in the map, in periods.
     pub camera: DVec2,
+    /// Height of the camera above the plane, m.
     pub eye_m: f64,
+    /// Period of the map, m.
     pub period_m: f64,
+    /// Mean share of the direct light over all places, 0 to 1.
     mean: f64,
-    /// Weight of the map against the mean share (`told`), and height above the plane from which on the mean holds, m
-    /// (`top_m`).
+    /// Weight of the map against the mean share, 0 to 1.
     pub told: f64,
+    /// Height above the plane from which on the mean share holds, m.
     pub top_m: f64,
     /// Extinction of the air at the camera's height, 1/m, and its scale height, m.
     haze: [f64; 2],
@@ -100,7 +109,7 @@ fn haze(scene: &Scene) -> [f64; 2] {
 }
 
 impl ShadowProjection {
-    /// Creates the projection of a moment's clouds.
+    /// Creates the projection for a moment's camera, light and clouds.
     pub fn new(now: &SceneMoment<'_>, overhead: &CloudLayers) -> Self {
         let shapes = overhead.layers().iter().map(|layer| &layer.shape);
         let scene = &now.scene;
