@@ -30,6 +30,7 @@ pub(super) struct Carrier<'a> {
     /// Offset to the next value along each axis; 0 along a flat one.
     next: [usize; 3],
     is_flat: [bool; 3],
+    /// Reciprocal size of a cell along each axis, 1/m.
     per_cell: [f32; 3],
 }
 
@@ -82,7 +83,7 @@ impl<'a> Carrier<'a> {
         Self { lattice, wind, range, next, is_flat, per_cell: lattice.h.map(|h| 1.0 / h) }
     }
 
-    /// Returns the place at `far` times `way`, m, from another, clamped to the range of places.
+    /// Returns `place`, in cells, moved by `far` times `way`, m, and clamped to the range of places.
     #[inline]
     fn moved(&self, mut place: [f32; 3], way: [f32; 3], far: f32) -> [f32; 3] {
         for (a, along) in place.iter_mut().enumerate() {
@@ -102,6 +103,7 @@ impl<'a> Carrier<'a> {
         place
     }
 
+    /// Finds the values around a place, which is in cells from the box's lowest corner.
     #[inline]
     fn between(&self, place: [f32; 3]) -> StaggeredPlace {
         let mut between = StaggeredPlace { faces: [(0, 0.0); 3], middles: [(0, 0.0); 3] };
@@ -143,7 +145,7 @@ impl<'a> Carrier<'a> {
         layers[0] + (layers[1] - layers[0]) * fz
     }
 
-    /// Returns the least and the largest of the eight values.
+    /// Returns the least and the largest of the eight values around a place.
     fn bounds(&self, values: &[f32], taps: &Taps) -> [f32; 2] {
         let [dx, dy, dz] = self.next;
         let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);

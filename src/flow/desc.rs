@@ -8,8 +8,8 @@ use crate::error::{Error, Result, check_range};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindFieldMode {
     /// Mean wind around terrain and boxes. It is solved for in the first moments after the wind or an obstacle has
-    /// changed; then the field rests at no cost. The ratio of gusts to the weather's gusts is that of the mean winds at
-    /// the place.
+    /// changed; then the field rests at no cost. Gusts at a place are the weather's, times the ratio of the field's
+    /// mean wind there to the weather's.
     #[default]
     Steady,
     /// Wind with gusts, the eddies of the inflow, and those that obstacles shed. It is stepped all the time.

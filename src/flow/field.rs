@@ -18,14 +18,18 @@ use crate::error::{Error, Result};
 /// Velocity of the air on a staggered grid, advanced through time.
 #[derive(Clone, Debug)]
 pub struct FlowField {
+    /// Settings with which the field was created.
     pub(super) settings: FlowSettings,
     pub(super) lattice: Lattice,
+    /// Present roles of the sides.
     pub(super) roles: Roles,
+    /// Outer wind on and beyond the sides, m/s.
     pub(super) outer: Faces,
     pub(super) openings: Openings,
     pub(super) walls: Walls,
     pub(super) mixing: GroundMixing,
     pub(super) pressure: Pressure,
+    /// Velocity of the air, m/s.
     pub(super) velocity: Faces,
     /// Scratch memory of steps. The first entry keeps the velocity in the middle of the previous step.
     pub(super) scratch: [Faces; 3],
@@ -33,11 +37,15 @@ pub struct FlowField {
     pub(super) last_dt: f64,
     /// Largest change of a velocity in the last step, m/s.
     pub(super) last_change_m_s: f32,
+    /// Scratch memory of MacCormack's scheme: range of the values that each value was carried from.
     pub(super) bounds: [Vec<[f32; 2]>; 3],
-    /// Potentials of the first and the second projection of a step, with which those of the next step begin.
+    /// Potentials of the first and the second projection of a step, from which those of the next step begin.
     pub(super) potentials: [Vec<f32>; 2],
+    /// Divergence of each cell, 1/s; scratch memory of steps.
     pub(super) divergence: Vec<f32>,
+    /// Change of the potential in a projection; scratch memory.
     pub(super) correction: Vec<f32>,
+    /// Cost and error of the last projection.
     pub(super) solved: Solved,
 }
 
@@ -91,6 +99,7 @@ impl FlowField {
         self.velocity = v;
     }
 
+    /// Fills the values beyond the sides and inside obstacles of `v`.
     pub(super) fn fill_all(&self, v: &mut Faces) {
         for c in self.lattice.axes() {
             self.openings.fill_inside(&self.lattice, self.settings.is_slip, c, &mut v[c]);
@@ -101,19 +110,21 @@ impl FlowField {
     /// Replaces the obstacles; the air flows on around the new ones.
     ///
     /// # Errors
-    /// As for [`FlowField::new`]; the field then stays unchanged.
+    /// Errors of [`FlowField::new`]; the field then stays unchanged.
     pub fn set_obstacles(&mut self, obstacles: &FlowObstacles) -> Result<()> {
         self.take_shares(obstacles.shares(&self.lattice)?);
         self.begin();
         Ok(())
     }
 
+    /// Replaces the open shares of the faces, and all that follows from them.
     pub(super) fn take_shares(&mut self, shares: Shares) {
         self.openings = Openings::new(&self.lattice, &self.roles, shares);
         self.pressure = Pressure::new(self.openings.level(&self.lattice, &self.roles));
         self.find_walls();
     }
 
+    /// Finds the faces beside rough walls.
     pub(super) fn find_walls(&mut self) {
         let floor = self.roles[2][0] == Role::Slip;
         self.walls.find(&self.lattice, &self.openings, self.settings.roughness_m, floor);

@@ -25,8 +25,9 @@ const KEY: &str = "wind_field";
 pub(crate) struct HeldFlow {
     /// Changes in order of time. The first one is in force once its time has come.
     pub(super) changes: Vec<FieldChange>,
+    /// Present field; `None` until the first change has come.
     pub(super) live: Option<Box<Live>>,
-    /// Whether the world has the field's present wind.
+    /// Whether the wind that the world reads is the field's present wind.
     is_shown: bool,
 }
 
@@ -127,6 +128,7 @@ impl HeldFlow {
         }
     }
 
+    /// Does the next piece of work on a field. A change of the description may move, restart or end the field.
     fn advance_live(&mut self, live: &mut Live, world: &World, until_s: f64) -> Result<StepOutcome> {
         let changed = |is_over: bool| if is_over { StepOutcome::Changed } else { StepOutcome::Unchanged };
         if live.start.is_some() {

@@ -59,7 +59,9 @@ pub(super) const LEAP_S: f64 = 60.0;
 /// Origin and axes from which the cells of a field are counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Anchor {
+    /// Origin in the host's world, m.
     pub origin: DVec3,
+    /// Rotation from the host's axes to (east, north, up) at the origin.
     pub to_enu: DMat3,
     /// Altitude of the origin, m.
     pub altitude_m: f64,
@@ -73,24 +75,27 @@ impl Anchor {
         Self { origin, to_enu: local.world_to_enu, altitude_m: local.place.altitude_m }
     }
 
-    /// Returns the lowest corner of a field, cells.
+    /// Returns the lowest corner of a field, cells east, north and up of the origin.
     pub fn corner(&self, desc: &WindFieldDesc) -> [i64; 3] {
         let half = DVec3::new(f64::from(desc.cells[0]) / 2.0, f64::from(desc.cells[1]) / 2.0, 0.0);
         let cells = self.to_enu * (desc.floor_center - self.origin) / desc.cell_m - half;
         [cells.x.round() as i64, cells.y.round() as i64, cells.z.floor() as i64]
     }
 
+    /// Whether the anchor must be renewed for a field around `center`.
     fn is_far(&self, world: &World, center: DVec3) -> bool {
         world.frame.kind != WorldKind::Flat && (center - self.origin).length() > ANCHORED_M
     }
 }
 
-/// Inflow: the wind that comes in.
+/// Wind that flows into a field over its sides, and its profile with height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inflow {
     /// Wind at 10 m: mean, wander and gusts, and the displacement of the air by them.
     pub blowing: Blowing,
+    /// Profile of the weather's mean wind with height.
     pub profile: WindProfile,
+    /// Whether only the mean wind flows in, without gusts and eddies.
     pub is_steady: bool,
 }
 
@@ -108,7 +113,7 @@ impl Inflow {
         Self { blowing, profile, is_steady: true }
     }
 
-    /// Returns the wind at a height above the ground, m/s.
+    /// Returns the wind at a height above the ground, m/s (east, north, up).
     fn at(&self, height_m: f64) -> DVec3 {
         let wind = self.blowing.at_height(&self.profile, height_m);
         let v = if self.is_steady { wind.mean_m_s } else { wind.velocity_m_s };
@@ -133,12 +138,17 @@ impl Inflow {
 struct Scenery<'a> {
     world: &'a World,
     anchor: Anchor,
+    /// Lowest corner of the field, cells from the anchor.
     corner: [i64; 3],
+    /// Lowest corner of the field, m from the anchor (east, north, up).
     corner_m: DVec3,
+    /// Size of the field, m.
     size_m: DVec3,
     /// Time from the world's present, to which the positions of the host's boxes belong, to the time of the scenery, s.
     since_s: f64,
+    /// Heights of the host's terrain grid.
     terrain: Option<&'a Arc<TerrainHeights>>,
+    /// Tiles of the host's terrain, used if there is no grid.
     tiles: Option<&'a Arc<Terrain>>,
     /// Vector from the terrain's origin to the field's corner, m.
     from_terrain: DVec3,
@@ -187,6 +197,7 @@ impl<'a> Scenery<'a> {
         self.world.set.shelters.iter().map(flow_box).filter(is_in)
     }
 
+    /// Returns the height of the ground at a place, m above the field's lowest corner.
     fn ground_m(&self, place: DVec2) -> f64 {
         let at = place + self.from_terrain.truncate();
         let height_m = match (self.terrain, self.tiles) {
@@ -229,7 +240,7 @@ impl<'a> Scenery<'a> {
 /// Progress of a start, which finds the steady field of the mean wind at one time, on coarser grids first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Start {
-    /// Level: the number of times that the cell size is doubled; 0 for the field's own.
+    /// Level of the present grid: the number of times that the cell size is doubled; 0 for the field's own grid.
     level: u32,
     /// Time left at this level, s.
     left_s: f64,
@@ -241,9 +252,12 @@ pub(super) struct Start {
 pub(super) struct Live {
     pub desc: WindFieldDesc,
     pub anchor: Anchor,
+    /// Lowest corner, cells from the anchor.
     pub corner: [i64; 3],
     pub field: FlowField,
+    /// Simulation time of the velocities, s.
     pub time_s: f64,
+    /// Simulation time at which the field last started, s.
     pub begun_s: f64,
     /// Progress of the start; `None` once the field has started.
     pub start: Option<Start>,

@@ -64,10 +64,12 @@ impl FlowField {
         self.last_dt = dt;
     }
 
-    /// Advances the field until it is steady: until no velocity changes by more than `rest` times the largest while the
-    /// fastest air crosses the box's longest side. In a step the fastest air passes `cfl` cells.
+    /// Advances the field until it is steady. It is steady once no velocity changes by more than `rest` times the
+    /// largest speed while the fastest air crosses the box's longest side. In a step the fastest air passes `cfl`
+    /// cells.
     ///
-    /// Returns whether the field is steady. Air that sheds vortices never is; after `most` such times this gives up.
+    /// Returns whether the field is steady. Air that sheds vortices never is, so the function gives up after `most`
+    /// crossings.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for `cfl` outside \[0.01, 64\] and `rest` outside \[1e-6, 1\].
@@ -127,6 +129,8 @@ impl FlowField {
         self.fill_all(target);
     }
 
+    /// Returns the range of places at which wind may be looked up along each axis, in cells; `None` along a periodic
+    /// axis.
     pub(super) fn range(&self) -> [Option<[f32; 2]>; 3] {
         [0, 1, 2].map(|a| {
             let beyond = |role| if matches!(role, Role::In | Role::Out) { 0.5 } else { 0.0 };

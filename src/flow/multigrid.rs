@@ -20,15 +20,20 @@ const LONGER: f32 = 1.5;
 /// right-hand side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridLevel {
+    /// Number of cells along each axis.
     pub n: [usize; 3],
+    /// Size of a cell along each axis, m.
     h: [f32; 3],
     /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row connects
     /// the two ends of the row.
     pub lower: [Vec<f32>; 3],
     /// Sum of the coefficients of a cell's faces; 0 for a cell without air.
     pub sum: Vec<f32>,
+    /// Unknown: the potential.
     x: Vec<f32>,
+    /// Right-hand side.
     b: Vec<f32>,
+    /// Residual.
     r: Vec<f32>,
     /// Number of cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
@@ -36,10 +41,10 @@ pub(super) struct GridLevel {
     taps: Vec<CoarseTaps>,
 }
 
-/// Coarse cells from which a correction comes along an axis, with their weights.
+/// Two coarse cells along an axis from which a correction comes, as index and weight.
 type CoarseTaps = [(usize, f32); 2];
 
-/// Neighbours of a row of cells: the starts of the row itself and of the four rows beside it.
+/// Neighbours of a row of cells: start of the row itself, and of the rows before, after, below and above it.
 struct RowNeighbours {
     own: usize,
     beside: [usize; 4],
@@ -66,6 +71,7 @@ impl GridLevel {
         level
     }
 
+    /// Calls `f` for every row along x with its neighbours and its colour's parity.
     fn each_row(&self, mut f: impl FnMut(&RowNeighbours, usize)) {
         let [nx, ny, nz] = self.n;
         for k in 0..nz {
@@ -263,6 +269,7 @@ impl Levels {
     }
 }
 
+/// Runs one V-cycle from zero on the grids of `levels`, finest first.
 fn v_cycle(levels: &mut [GridLevel]) {
     let Some((fine, coarser)) = levels.split_first_mut() else { return };
     let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));

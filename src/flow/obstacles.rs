@@ -80,7 +80,9 @@ pub(super) type ColumnRange = [[usize; 2]; 2];
 struct SolidBox {
     /// Outward unit normals, and distances of the planes along them from the field's corner, m.
     planes: Vec<(DVec3, f64)>,
+    /// Lowest corner of the box's extent, m east and north of the field's corner.
     low: DVec2,
+    /// Highest corner of the box's extent, m east and north of the field's corner.
     high: DVec2,
     velocity: DVec3,
 }
@@ -230,6 +232,7 @@ impl FlowObstacles<'_> {
 
 /// Solid spans above a place.
 struct SpanColumn {
+    /// Height of a cell, m.
     h: f64,
     /// Lower and upper height of each span, lowest first, without overlap.
     spans: Vec<[f64; 2]>,
@@ -238,6 +241,7 @@ struct SpanColumn {
 }
 
 impl SpanColumn {
+    /// Finds the spans above a place.
     fn find(&mut self, terrain: Option<Heights>, solids: &[SolidBox], place: DVec2) -> Result<()> {
         self.spans.clear();
         self.moving.clear();
@@ -274,6 +278,8 @@ impl SpanColumn {
         sum.min(1.0)
     }
 
+    /// Returns the share of a cell's height that a span takes up, or for the vertical component whether it holds the
+    /// face.
     fn within(&self, span: &[f64; 2], component: usize, cell: usize) -> f64 {
         let (low, high) = (cell as f64 * self.h, (cell + 1) as f64 * self.h);
         if component == 2 {

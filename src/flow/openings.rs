@@ -24,13 +24,15 @@ pub(super) struct Openings {
     pub open: Faces,
     /// Velocity of moving obstacles times the share of the face that they close, m/s; empty where nothing moves.
     pub pushed: Faces,
-    /// Faces of open sides that were closed because the air behind them could not leave, and their open shares.
+    /// Faces of open sides that were closed because the air behind them could not leave: component, position in the
+    /// list, open share.
     dead: Vec<(usize, usize, f32)>,
     /// Body of air to which each cell belongs.
     bodies: Vec<u32>,
     body_count: usize,
     /// Closed faces of each component by layer, from the air inwards.
     inside: [Vec<Vec<usize>>; 3],
+    /// Layer number of each face of each component; 0 for a face with air.
     layers: [Vec<u8>; 3],
     /// Scratch space of [`Openings::balance`].
     passing: Vec<Passing>,
@@ -47,7 +49,7 @@ struct SideFace {
     is_out: bool,
 }
 
-/// Air of one body that leaves through the sides, m3/s, and the area through which it can leave, m2.
+/// Flux of the air of one body through the sides, outwards, m3/s, and the area through which it can leave, m2.
 #[derive(Clone, Copy, Debug, Default)]
 struct Passing {
     outward: f64,
@@ -221,6 +223,7 @@ impl Openings {
         }
     }
 
+    /// Finds the layers of closed faces, from the air inwards.
     fn find_layers(&mut self, lattice: &Lattice) {
         self.inside = Default::default();
         for c in lattice.axes() {
@@ -250,7 +253,8 @@ impl Openings {
         }
     }
 
-    /// Gives closed faces a velocity: 0 or, if air slides along obstacles, that of the air beside them, layer by layer.
+    /// Gives closed faces a velocity: that of the air beside them, layer by layer, if air slides along obstacles;
+    /// otherwise 0.
     pub(super) fn fill_inside(&self, lattice: &Lattice, slides: bool, component: usize, values: &mut [f32]) {
         let layers = &self.layers[component];
         for (depth, faces) in (1..).zip(&self.inside[component]) {

@@ -68,23 +68,29 @@ pub struct Solved {
 }
 
 impl Solved {
-    /// Adds the cost of `next`, a further solution, and takes its residual.
+    /// Returns the sum of the costs of both solutions, with the residual of `next`, the later one.
     pub(super) fn then(self, next: Self) -> Self {
         Self { iterations: self.iterations + next.iterations, work: self.work + next.work, residual: next.residual }
     }
 }
 
-/// Equation of a grid, and scratch space to solve it.
+/// Pressure equation on all grids, and vectors of its solvers.
 #[derive(Clone, Debug)]
 pub(super) struct Pressure {
     levels: Levels,
+    /// Residual.
     r: Vec<f32>,
+    /// Residual of the iteration before.
     before: Vec<f32>,
+    /// Residual preconditioned by a V-cycle.
     z: Vec<f32>,
+    /// Direction of search.
     p: Vec<f32>,
+    /// Left-hand side of the equation for the direction of search.
     q: Vec<f32>,
 }
 
+/// Returns the largest absolute value.
 fn largest(v: &[f32]) -> f32 {
     v.iter().fold(0.0, |most, r| most.max(r.abs()))
 }
@@ -93,6 +99,7 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
 }
 
+/// Adds `a` times `y` to `x`.
 fn add(x: &mut [f32], a: f64, y: &[f32]) {
     let a = a as f32;
     x.iter_mut().zip(y).for_each(|(x, y)| *x += a * y);

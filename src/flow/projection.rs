@@ -11,7 +11,8 @@ use super::{
 };
 
 impl FlowField {
-    /// Makes a velocity field, whose ghosts are filled, free of divergence, and fills the ghosts again.
+    /// Makes a velocity field, whose ghosts are filled, free of divergence, and fills the ghosts again. `which` is the
+    /// index of the projection in its step, 0 or 1.
     ///
     /// The gradient of the previous step's potential is subtracted first, and only the rest is solved for: the
     /// correction is small, and so are its rounding errors. A second solution removes the divergence that rounding
@@ -39,6 +40,7 @@ impl FlowField {
         self.fill_all(v);
     }
 
+    /// Subtracts the gradient of a potential from the velocities of open faces.
     fn subtract_gradient(&self, v: &mut Faces, potential: &[f32]) {
         let lattice = &self.lattice;
         let [nx, ny, _] = lattice.n;

@@ -54,7 +54,8 @@ pub(super) struct SavedField {
     rests: bool,
     last_dt_s: f64,
     last_change_m_s: f32,
-    /// Absent in states saved before this existed; these are shown over the wind of the moment.
+    /// Profile as in [`Live::shown_over`]. States of older versions lack it; their fields are compared with the present
+    /// wind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shown_over: Option<WindProfile>,
     desc: SavedDesc,

@@ -24,7 +24,9 @@ pub(super) enum Role {
     Periodic,
     Slip,
     NoSlip([f32; 3]),
+    /// Inflow: air has the velocity of the outer wind.
     In,
+    /// Outflow: air leaves with the velocity that advection gives it.
     Out,
 }
 
@@ -78,6 +80,7 @@ pub(super) fn fastest(lattice: &Lattice, faces: &Faces) -> f64 {
     most.into()
 }
 
+/// Returns the mean velocity through a side along its axis, m/s; `end` is 0 for the low side, 1 for the high one.
 fn mean_through(lattice: &Lattice, outer: &Faces, axis: usize, end: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     let face = if end == 0 { 0 } else { lattice.n[axis] };

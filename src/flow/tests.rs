@@ -38,7 +38,7 @@ const CAVITY: [[f64; 3]; 13] = [
     [0.0547, -0.03717, -0.1812881],
 ];
 
-/// Returns the largest difference of the velocities from [`CAVITY`], in speeds of the lid.
+/// Returns the largest difference of the horizontal velocity on the centre line from [`CAVITY`], in speeds of the lid.
 fn cavity_error(re: f64, n: u32) -> f64 {
     let field = cavity(re, n).expect("a cavity");
     let column = if re < 500.0 { 1 } else { 2 };
@@ -276,8 +276,8 @@ fn relaxation_takes_as_many_iterations_as_published() {
     }
 }
 
-/// Returns the work to make a wind round a box free of divergence, and the V-cycles or iterations per decade of the
-/// residual.
+/// Makes a wind around a box free of divergence. Returns the work for this, and the number of V-cycles or iterations
+/// that reduce the residual to a tenth.
 fn work(pressure: PressureMethod, n: u32, tolerance: f64) -> (Solved, f64) {
     let settings = FlowSettings { cells: [n, n, 1], cell_m: DVec3::ONE, pressure, tolerance, ..Default::default() };
     let settings = FlowSettings { sides: [[Side::Open; 2], [Side::Slip; 2], [Side::Slip; 2]], ..settings };
@@ -373,8 +373,8 @@ fn a_field_rests_or_says_that_it_does_not() {
     assert_eq!(behind.settle(1.0, 1e-6, 1), Ok(false));
 }
 
-/// Checks that a field depends on the numbers of its air alone: the arrays that a step exchanges have padding, which
-/// must stay 0.
+/// Checks that a field depends only on the numbers of its air. The arrays that a step exchanges also have unused
+/// entries, which must stay 0.
 #[test]
 fn a_field_has_the_numbers_of_its_air_alone() {
     let mut moved = town(Scheme::Reflection);
@@ -383,7 +383,7 @@ fn a_field_has_the_numbers_of_its_air_alone() {
     let mut led = town(Scheme::Reflection);
     led.step(0.4).expect("a step");
     for field in [&mut moved, &mut led] {
-        // A restored field has the same numbers and unused padding.
+        // A restored field has the same numbers, and its own unused entries.
         let mut read = town(Scheme::Reflection);
         let (numbers, last_dt, _) = read.numbers_mut();
         numbers.zip(field.numbers()).for_each(|(to, from)| to.clone_from(from));

@@ -33,8 +33,8 @@ struct Wave {
     cosine: DVec3,
 }
 
-/// Turbulence of a seed. All wavelengths together would have a variance of 1 in each component; these waves are those
-/// that a field can carry, and have their share of it.
+/// Turbulence of a seed: the waves that a field can carry, with their share of the whole variance. Waves of all lengths
+/// together would have a variance of 1 in each component.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turbulence([Wave; WAVES]);
 
@@ -55,7 +55,7 @@ impl Turbulence {
         if longest <= shortest {
             return None;
         }
-        // Separate random numbers, as gusts have.
+        // A stream of random numbers of its own, which no other effect uses.
         let mut stream = RandomStream::seeded(seed ^ 0x7768_6972_6c73_2069);
         let mut random = || stream.unit();
         let x_of = |length_m: f64| 1.339 * integral_m * TAU / length_m;
@@ -97,6 +97,7 @@ pub(super) struct Whirls {
     turbulence: Option<Turbulence>,
     /// Axes as columns: along the mean wind, across it, up.
     axes: DMat3,
+    /// Standard deviation of eddies of all lengths along each of the axes, m/s.
     deviation_m_s: DVec3,
     /// Height below which the eddies fade towards the ground, m.
     least_m: f64,

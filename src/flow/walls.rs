@@ -25,7 +25,7 @@ struct Rubbed {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Walls([Vec<Rubbed>; 3]);
 
-/// Returns (u*/u)^2, with the speed u in the middle of an open width, m.
+/// Returns (u*/u)^2 for the speed u in the middle of an open width, m. u* is the friction velocity.
 fn friction(open_m: f64, roughness_m: f64) -> f64 {
     let ratio = KAPPA / libm::log(1.0 + 0.5 * open_m / roughness_m);
     (ratio * ratio).min(1.0)

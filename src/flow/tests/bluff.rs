@@ -1,11 +1,11 @@
-//! Tests of the air round blocks with sharp edges, by the default scheme with eddies below a cell, against measurements
-//! in wind tunnels.
+//! Tests of the air around blocks with sharp edges against measurements in wind tunnels, by the default scheme with
+//! eddies smaller than a cell.
 
 use glam::{DVec3, dvec3};
 
 use super::{turbulence::Turbulence, *};
 
-/// Creates a field round a cube with edges of 1 m and `n` cells along an edge.
+/// Creates a field around a cube with edges of 1 m and `n` cells along an edge.
 fn round_cube(cells: [u32; 3], n: u32, center: DVec3, roughness_m: f64, wind: impl Fn(DVec3) -> DVec3) -> FlowField {
     let settings = FlowSettings {
         cells,
