@@ -22,14 +22,18 @@ pub(super) struct Asked {
     pub milliseconds: Option<f64>,
     /// Importance of each part.
     pub importance: [f64; MOST_PARTS],
-    /// Steps of the pinned parts, which the choice leaves as they are: all of them, and those that are taken.
+    /// Steps of the pinned parts, which the choice does not change: all of their steps, and those of them that are
+    /// taken.
     pub pinned: (Set, Set),
 }
 
 /// Findings of one gauge, valid until the next.
 pub(super) struct Choices {
+    /// Steps of all parts.
     pub ladder: Ladder,
+    /// Changes at the gauged pixels, from which errors are estimated.
     pub estimator: Estimator,
+    /// Buffers of the search.
     search: Search,
     /// Work of the picture with everything.
     pub all: WorkAmount,

@@ -1,4 +1,4 @@
-//! Measure of error: the difference in luminance of two pictures. The whole crate uses this one.
+//! Measure of error: the difference in luminance of two pictures. Every error that the crate states is of this kind.
 
 use crate::error::{Error, Result};
 

@@ -42,8 +42,9 @@ pub(super) struct Estimator {
     changes: Vec<[f32; MOST_STEPS]>,
     /// Errors of the pixels in one estimate.
     scratch: Vec<f32>,
-    /// Cached estimates; `next` counts them.
+    /// Cached estimates, each with the set of steps that it is for.
     kept: [(Set, Estimate); KEPT],
+    /// Number of estimates cached so far; modulo [`KEPT`] it is the index of the next one.
     next: usize,
 }
 
@@ -60,13 +61,13 @@ impl Estimator {
         self.scratch.reserve(pixels);
     }
 
-    /// Begins another picture.
+    /// Begins another picture: forgets all pixels and estimates.
     pub fn clear(&mut self) {
         self.changes.clear();
         self.kept.fill((0, Estimate::default()));
     }
 
-    /// Adds a pixel that is not masked.
+    /// Adds a pixel that is not masked, with its relative change due to each step.
     pub fn see(&mut self, changes: [f32; MOST_STEPS]) {
         self.changes.push(changes);
     }
@@ -101,6 +102,7 @@ impl Estimator {
     }
 }
 
+/// Returns the 95th percentile of errors with its confidence bound, and the largest error. Reorders `errors`.
 fn percentile(errors: &mut [f32]) -> Estimate {
     let n = errors.len();
     // Rank above which 5 % of the population lie with a confidence of 95 % (normal approximation of the binomial).

@@ -25,10 +25,13 @@ pub const GRID: (u32, u32) = (64, 36);
 /// Frames from one gauge to the next.
 pub const EVERY: u32 = 8;
 
-/// Format of the target: each channel packs the upper halves of two numbers.
+/// Format of the target: each channel packs two numbers, each as the upper half of its 32-bit float.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// Size of a row in the staging buffer, bytes.
 const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
+/// States of a readback, in the order in which it passes them: no readback, pass recorded, buffer being mapped, buffer
+/// ready. `FAILED`: the mapping failed.
 const IDLE: u32 = 0;
 const RECORDED: u32 = 1;
 const MAPPING: u32 = 2;
@@ -38,7 +41,7 @@ const FAILED: u32 = 4;
 /// Names and values of `override` constants.
 type OverrideValues = Vec<(&'static str, f64)>;
 
-/// Most channels; each holds the change due to one part.
+/// Largest number of channels; each holds the change due to one part.
 pub const CHANNELS: usize = 5;
 
 /// Result of the gauge at one pixel.
@@ -57,12 +60,16 @@ pub(crate) struct GaugeSample {
 
 /// Target, staging buffer and pipeline of a view's gauge.
 pub(crate) struct Gauge {
+    /// Texture with one texel for each gauged pixel.
     target: wgpu::Texture,
     view: wgpu::TextureView,
+    /// Staging buffer that the CPU reads.
     buffer: wgpu::Buffer,
+    /// State of the readback: [`IDLE`] and the constants after it.
     state: Arc<AtomicU32>,
     /// Pipeline, with the number of samples (one or several) and the `override` constants that it was created for.
     pipeline: Option<(&'static str, OverrideValues, wgpu::RenderPipeline)>,
+    /// Samples of the last readback.
     samples: Vec<GaugeSample>,
 }
 

@@ -79,11 +79,13 @@ const HALF_BELIEVED: f64 = 0.1;
 pub(super) struct Governor {
     /// Recent times for a unit of work, ms.
     recent: [f64; SEEN],
+    /// Number of times recorded so far.
     reports: usize,
     /// Ratios of the work that steps save on this machine to the work that the constants give.
     ratios: [f64; MOST_STEPS],
-    /// Steps taken at the last report, and the number of reports since they changed.
+    /// Steps that were taken at the last report.
     absent: Set,
+    /// Number of reports since `absent` changed.
     since: u32,
     /// Steps taken before parts came or went, and the time for a unit of work then.
     before: Option<(Set, f64)>,

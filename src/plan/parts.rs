@@ -74,7 +74,7 @@ impl Reason {
     }
 }
 
-/// Work of one step of a part in a picture, in pixels without any parts.
+/// Work of one step of a part in a picture, in units of the work of a pixel in which no part is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWork {
     /// Work for each pixel in which the host drew something.
@@ -91,6 +91,7 @@ pub(super) type Set = u32;
 /// Steps of all parts, in the order of the list.
 #[derive(Clone, Debug)]
 pub(super) struct Ladder {
+    /// List of the parts.
     pub parts: &'static [Part],
     /// Index of each part's first step, and last the number of all steps.
     first: Vec<usize>,

@@ -94,7 +94,7 @@ impl Plan {
     }
 }
 
-/// Prediction for a frame, to be compared with the measured values.
+/// Prediction for a frame, to be compared with measured values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prediction {
     /// Predicted time of the weather in this frame, ms; `None` before the first gauge, and before the first reported
@@ -102,7 +102,7 @@ pub struct Prediction {
     pub milliseconds: Option<f64>,
     /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// Predicted error bound and measured error of the newest gauged picture.
+    /// Predicted bound of the error, and measured error, of the newest gauged picture.
     pub checked: Option<[f64; 2]>,
 }
 
@@ -120,8 +120,9 @@ pub(crate) struct PartNow {
 pub(crate) struct Presence {
     /// Number of pixels of the picture.
     pub pixels: u64,
+    /// Presence of each part, in the order of the list.
     pub parts: [PartNow; MOST_PARTS],
-    /// Two parts that cost extra work if both are drawn, and that work.
+    /// Indices of two parts that cost extra work if both are drawn, and that work.
     pub together: ([usize; 2], StepWork),
 }
 
@@ -177,38 +178,46 @@ impl Situation {
     }
 }
 
-/// A gauge under way: the situation of its picture, the steps taken in it, and the predicted bound for its error.
+/// Gauge under way.
 struct Gauging<U> {
+    /// Situation of the gauged picture.
     there: Situation,
+    /// Steps that were taken in the gauged picture.
     absent: Set,
+    /// Predicted bound of the error of the gauged picture.
     bound: Option<f64>,
     /// Closed form of the changes that the gauge cannot see, if a part has any.
     unseen: Option<U>,
 }
 
-/// Shares of a build of the sky's tables (default settings) that one frame does: the least one, because finer strips
-/// are not cut, and the usual one where there is time.
+/// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share, because
+/// tables are not built in finer strips. The second is the usual share, for frames with time to spare.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Work on the tables in a frame, as a share of the picture's own work; it applies where it is more than the usual
-/// share of a build. No frame then takes more than 1.5 times as long.
+/// Largest work on the sky's tables in a frame, as a share of the picture's own work, where this is more than the usual
+/// share of a build. It keeps a frame with such work below 1.5 times the time of a frame without.
 const SLICE: f64 = 0.3;
 
-/// Largest change of a pixel in one frame while a part fades. `FADE_FRAMES` has the fewest and the most frames of a
-/// fade.
+/// Largest relative change of a pixel in one frame while a part fades.
 const FADE_STEP: f64 = 0.005;
+/// Fewest and most frames of a fade.
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
 /// Planner of a view's pictures. `U` gives the changes that the gauge cannot see.
 pub(crate) struct Planner<U> {
+    /// Limits and wishes of the host.
     budget: Budget,
+    /// Demands on a picture that follow from `budget`.
     asked: Asked,
     /// Work of building the sky's default tables, in pixels without any parts.
     pub rebuild: f64,
     /// Work of the last picture with everything, in the same units; 0 before the first.
     work: f64,
+    /// Gauge, created once a budget needs one.
     gauge: Option<Gauge>,
+    /// Findings of the last gauge.
     choices: Choices,
     governor: Governor,
+    /// Gauge whose samples have not arrived yet.
     gauging: Option<Gauging<U>>,
     /// Situation of the gauge on which the present choice is based.
     planned: Option<Situation>,
@@ -218,7 +227,9 @@ pub(crate) struct Planner<U> {
     left_out: Set,
     /// Number of frames since the last gauge.
     frames: u32,
+    /// Plan that the host can read.
     plan: Plan,
+    /// Prediction for the last frame.
     prediction: Prediction,
 }
 
@@ -246,6 +257,7 @@ impl<U: Unseen> Planner<U> {
         planner
     }
 
+    /// Replaces the budget. A different budget begins a new plan.
     pub fn set_budget(&mut self, device: &Device, budget: Budget) -> Result<()> {
         budget.validate(self.choices.ladder.parts)?;
         if budget.gauges() && self.gauge.is_none() {
@@ -260,6 +272,7 @@ impl<U: Unseen> Planner<U> {
         Ok(())
     }
 
+    /// Returns the demands on a picture by a budget.
     fn asked_by(&self, budget: &Budget) -> Asked {
         let Budget { tolerance, milliseconds, .. } = *budget;
         let mut asked = Asked { tolerance, milliseconds, ..Asked::default() };
@@ -373,6 +386,7 @@ impl<U: Unseen> Planner<U> {
         }
     }
 
+    /// Moves each part that is not pinned one frame further to its rung; `pure` shows all of it at once.
     fn fade(&mut self, present: &Presence, pure: bool) {
         let ladder = &self.choices.ladder;
         let planned = |i: &usize| self.asked.pinned.0 & ladder.whole(*i) == 0;

@@ -10,10 +10,11 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::parts::{Ladder, Set};
 
-/// Number of sets up to which all are tried. `TRIALS`: trials in order of increasing work, for each pair of steps.
+/// Number of sets up to which all are tried.
 const WHOLE: usize = 64;
+/// Number of trials in order of increasing work, for each pair of steps.
 const TRIALS: usize = 3;
-/// Number of sets by each criterion to which further steps are added.
+/// Number of sets by each of the two criteria to which further steps are added.
 const FRONT: usize = 3;
 /// Strain above which other parts are not expected to compensate.
 const MOST_STRAIN: f64 = 3.0;
@@ -23,6 +24,7 @@ const LEAST_STRAIN: f64 = 0.1;
 /// Steps that the search may take, beside those of the pinned parts.
 #[derive(Clone, Copy)]
 pub(super) struct Free<'a> {
+    /// Steps of all parts.
     pub ladder: &'a Ladder,
     /// Steps that may be taken: for each part all of its steps, or none.
     pub steps: Set,
@@ -60,7 +62,7 @@ impl Free<'_> {
         (rung < self.ladder.steps(part).len()).then(|| self.ladder.with(set, part, rung + 1))
     }
 
-    /// Returns the set with every step that may be taken.
+    /// Returns the set with every step that may be taken, and those of the pinned parts.
     fn all(&self) -> Set {
         self.pinned | self.steps
     }
@@ -76,8 +78,11 @@ type Tried = (Set, f64, f64);
 /// Buffers of the search, reused between calls.
 #[derive(Default)]
 pub(super) struct Search {
+    /// Sets to try next, those of least work first.
     next: BinaryHeap<Next>,
+    /// Sets to which a further step is added.
     front: Vec<Tried>,
+    /// Sets tried with one further step.
     tried: Vec<Tried>,
 }
 
@@ -210,7 +215,7 @@ fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mu
     best
 }
 
-/// Finds the set that fits with the least loss, or the one of least work if none fits.
+/// Finds the set with the least loss that fits, or the one of least work if none fits. Returns it, and whether it fits.
 pub(super) fn least_missed(
     free: Free<'_>,
     work: impl Fn(Set) -> f64,
@@ -307,6 +312,7 @@ mod tests {
         (estimator, (0..steps).map(|_| 0.02 + random.unit()).collect())
     }
 
+    /// Finds the best set by trying all.
     fn whole(free: Free<'_>, work: impl Fn(Set) -> f64, mut strain: impl FnMut(Set) -> f64) -> Set {
         let mut best = (work(free.pinned), free.pinned);
         free.each(|set| {
