@@ -1,5 +1,6 @@
-// Effect of fog on a pixel, in closed form: no loop, no texture. The f64 twin and the derivations are in
-// src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on the CPU) and src/fog/phase.rs.
+// Effect of fog on a pixel, in closed form: no texture, and no loop except over the waves of patterns.wgsl. The f64
+// twin and the derivations are in src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on
+// the CPU) and src/fog/phase.rs.
 //
 // Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective
 // over its full distance:
@@ -28,15 +29,17 @@ override FOG_NEUTRAL: bool = false;
 // Whether the slab has a lower edge above the ground.
 override FOG_LIFTED: bool = true;
 
+// Kinds of fog, the values of FogUniform.kind.
 const FOG_CLEAR: u32 = 0u;
 const FOG_SLAB: u32 = 1u;
 const FOG_EXPONENTIAL: u32 = 2u;
 const FOG_LINEAR_LAW: u32 = 3u;
 const FOG_EXPONENTIAL_LAW: u32 = 4u;
-// 5: exponential-squared law.
+// Kind 5, the exponential-squared law, needs no constant: it is drawn where no other law is.
 // Height of the sky band, rad, from which on it covers all of the sky.
 const FOG_WHOLE_SKY: f32 = 3.13845;
 
+// Whether this pipeline can draw a kind of fog.
 fn fog_can(kind: u32) -> bool {
     return (FOG_KINDS & (1u << kind)) != 0u;
 }
@@ -58,6 +61,8 @@ struct Fog {
     once: vec3f,
 }
 
+// Path of a ray through a medium: its optical depth at 550 nm, and the distances at which the ray enters and leaves the
+// medium, m.
 struct LayerPath {
     depth: f32,
     first: f32,
@@ -104,21 +109,25 @@ fn fog_phase_after(u: FogUniform, slant: f32, versine: f32) -> vec2f {
     return vec2f(even, share * (mix(draine, lobe.x, e.z) - even));
 }
 
+// Returns the rise of a ray above its start after `t` metres, m.
 fn layer_rise(curvature: f32, mu: f32, t: f32) -> f32 {
     let q = t * (2.0 * mu + curvature * t);
     return q / (1.0 + sqrt(max(1.0 + curvature * q, 0.0)));
 }
 
+// Returns the extinction of an exponential layer at the altitude `h`, 1/m.
 fn layer_density(u: FogUniform, h: f32) -> f32 {
     return u.extinction * exp(min((u.knots.x - h) / u.knots.y, 60.0));
 }
 
+// Returns the optical depth at 550 nm of the precipitation above the altitude `h`.
 fn falling_depth_above(u: FogUniform, h: f32) -> f32 {
     let f = u.falling;
     let in_top = f.z - clamp(h, f.y, f.z);
     return f.x * (in_top * in_top * 0.5 * f.w + f.y - min(h, f.y));
 }
 
+// Returns the optical depth at 550 nm of the layer and the precipitation above the altitude `h`.
 fn layer_depth_above(u: FogUniform, h: f32) -> f32 {
     if !FOG_FALLING {
         return own_depth_above(u, h);
@@ -129,6 +138,7 @@ fn layer_depth_above(u: FogUniform, h: f32) -> f32 {
     return own_depth_above(u, h) + falling_depth_above(u, h);
 }
 
+// Returns the optical depth at 550 nm of the layer alone above the altitude `h`.
 fn own_depth_above(u: FogUniform, h: f32) -> f32 {
     if fog_can(FOG_EXPONENTIAL) && u.kind == FOG_EXPONENTIAL {
         return layer_density(u, h) * u.knots.y;
@@ -187,12 +197,15 @@ fn scaled_erfc(z: f32) -> f32 {
     return t * exp(-1.26551223 + t * p);
 }
 
+// Returns the optical depth of an upward path through an exponential layer, divided by the extinction at its start, m:
+// twin of exponential_up in src/fog/path.rs.
 fn exponential_up(k: f32, scale: f32, mu: f32, rise: f32) -> f32 {
     let z = mu / sqrt(2.0 * k * scale);
     let x = rise / scale;
     return sqrt(1.57079633 * scale / k) * (scaled_erfc(z) - exp(-x) * scaled_erfc(sqrt(max(z * z + x, 0.0))));
 }
 
+// Returns the optical depth at 550 nm of a ray through an exponential layer.
 fn exponential_path(u: FogUniform, h0: f32, mu: f32, t: f32, end_altitude: f32, end_mu: f32) -> f32 {
     let k = max(u.curvature, 1e-15);
     let scale = u.knots.y;
@@ -216,6 +229,7 @@ fn exponential_path(u: FogUniform, h0: f32, mu: f32, t: f32, end_altitude: f32, 
         * (exponential_up(k, scale, 0.0, h0 - low) + exponential_up(k, scale, 0.0, end_altitude - low));
 }
 
+// Returns the course of a ray that starts at altitude `h0` with cosine `mu` and is `t` metres long.
 fn ray_course(u: FogUniform, h0: f32, mu: f32, t: f32) -> RayCourse {
     let k = u.curvature;
     let end_rise = layer_rise(k, mu, t);
@@ -252,6 +266,7 @@ fn falling_part(u: FogUniform, bend: f32, top: vec2f, length: f32, low: f32, hig
     return t.x + upper.x * (1.0 - upper.y);
 }
 
+// Returns the path of a ray through the precipitation.
 fn falling_path(u: FogUniform, c: RayCourse, t: f32) -> LayerPath {
     let top = layer_reach(u.curvature, c.low_mu, u.falling.yz - c.low);
     let length = falling_part(u, c.bend, top, c.before, c.low, max(c.high, c.low))
@@ -260,6 +275,7 @@ fn falling_path(u: FogUniform, c: RayCourse, t: f32) -> LayerPath {
     return LayerPath(u.falling.x * length, ends.x, ends.y);
 }
 
+// Returns the path of a ray through the layer.
 fn layer_path(u: FogUniform, c: RayCourse, h0: f32, mu: f32, t: f32) -> LayerPath {
     if fog_can(FOG_EXPONENTIAL) && u.kind == FOG_EXPONENTIAL {
         let depth = exponential_path(u, h0, mu, t, c.end_altitude, c.end_mu);
@@ -290,7 +306,7 @@ fn filled_by(x: vec3f, through: vec3f) -> vec3f {
     return select(1.0 - through, x * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667))), x < vec3f(0.03));
 }
 
-// Returns one value for each channel, or one for all.
+// Returns `v`, or its first component for all channels if they are equal.
 fn fog_channels(v: vec3f) -> vec3f {
     if FOG_NEUTRAL {
         return vec3f(v.x);
@@ -298,6 +314,7 @@ fn fog_channels(v: vec3f) -> vec3f {
     return v;
 }
 
+// Returns the exponential of each channel.
 fn fog_exp(v: vec3f) -> vec3f {
     if FOG_NEUTRAL {
         return vec3f(exp(v.x));
@@ -305,6 +322,7 @@ fn fog_exp(v: vec3f) -> vec3f {
     return exp(v);
 }
 
+// Integral of first e^(-rate s) ds over [0, path], where `last` = first e^(-rate path).
 fn attenuated(rate: vec3f, first: vec3f, last: vec3f, path: vec3f) -> vec3f {
     if FOG_NEUTRAL {
         let x = rate.x * path.x;
@@ -326,10 +344,12 @@ fn mean_place(r: f32) -> f32 {
     return select(mean, 1.0 - mean, r < 0.0);
 }
 
+// Returns the source term c(mu) = c[0] + mu c[1].
 fn fog_term(c: array<vec4f, 2>, mu: f32) -> vec3f {
     return c[0].xyz + mu * c[1].xyz;
 }
 
+// Source of scattered light at the scaled depth `a` below the top, for a ray whose cosine with the vertical is `mu`.
 fn source_at(u: FogUniform, mu: f32, beam: vec3f, a: vec3f) -> vec3f {
     var j = fog_term(u.constant, mu) + fog_term(u.slope, mu) * a + beam * fog_exp(-a * u.inverse_mu0);
     if FOG_ABSORBING && u.absorbing != 0u {
@@ -360,7 +380,8 @@ fn source_along(
     return l;
 }
 
-// Returns the light in a ray near the level: see src/fog/reference.rs.
+// Returns the light in a ray near the level, whose forward lobe reaches above and below the horizon;
+// src/fog/reference.rs describes the model.
 fn grazing_light(
     u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: f32, path: vec3f, left: vec3f,
 ) -> vec3f {
@@ -379,12 +400,15 @@ fn grazing_light(
     return source_along(u, mu, beam, a0, a1, s, path, left) + (1.0 - unforward) * edges;
 }
 
+// Light scattered into a ray.
 struct LayerLight {
     radiance: vec3f,
-    // See Fog.once.
+    // Light scattered exactly once, divided by the phase function (Fog.once).
     once: vec3f,
 }
 
+// Returns the light that is scattered into a ray: twin of layer_radiance in src/fog/reference.rs, which describes the
+// parameters.
 fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec2f, depth: f32) -> LayerLight {
     let above = select(ends, max(2.0 * u.depth_total - ends, vec2f(0.5 * u.depth_total)), ends > vec2f(u.depth_total));
     let scaling = fog_channels(u.scaling);
@@ -427,6 +451,7 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return LayerLight(max(l + aureole, vec3f(0.0)), u.first * share_unscattered(u.scattering.z, sunlight) * met);
 }
 
+// Returns the effect of the layer and the precipitation, which are lit as one medium.
 fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden: f32) -> Fog {
     let mu = clamp(direction.z, -1.0, 1.0);
     let lift = origin.z;
@@ -469,6 +494,7 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden:
     return fog;
 }
 
+// Returns the effect of a fog law of older simulators.
 fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fog {
     let d = select(range, plane, u.plane_distance != 0u);
     var v: f32;

@@ -11,6 +11,7 @@ const DETOUR_PARTS: u32 = 8u;
 // Distance at which curtains of rain begin, m.
 const CURTAIN_START: f32 = 30.0;
 
+// Returns sin(x) / x.
 fn wave_sinc(x: f32) -> f32 {
     let near = abs(x) < 1e-2;
     return select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
@@ -25,13 +26,14 @@ fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f3
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
 
+// Returns the lag of the air at a node of the map, m east and north.
 fn detour_node(x: u32, y: u32) -> vec2f {
     let node = y * DETOUR_SIDE + x;
     let two = low_air.lags[node / 2u];
     return select(two.zw, two.xy, node % 2u == 0u);
 }
 
-// Returns the lag of the air at a place relative to the camera, m.
+// Returns the lag of the air behind the wind at a place relative to the camera, m east and north.
 fn detour_lag(place: vec3f) -> vec2f {
     let last = f32(DETOUR_SIDE - 1u);
     let at = clamp(low_air.detour_camera + place.xy * low_air.detour_scale, vec2f(0.0), vec2f(last));

@@ -1,6 +1,7 @@
 // Fog of a frame in the layout of shaders: FogUniform of src/fog/uniforms.rs.
 
 struct FogUniform {
+    // Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     to_sun: vec3f,
     // Altitude of the camera, m.
     altitude: f32,
@@ -28,22 +29,29 @@ struct FogUniform {
     curvature: f32,
     // Altitude at which rays without an object end, m.
     ground: f32,
+    // 1/cosine of the sun's zenith angle.
     inverse_mu0: f32,
-    // Diffusion exponent of absorbing layers.
+    // Diffusion exponent per channel of absorbing layers.
     k: vec3f,
+    // 1 if the exponential terms `rise` and `fall` are used.
     absorbing: u32,
-    // First scattering; colour of the compatibility laws.
+    // First scattering, to be multiplied by the phase function and e^(-depth/mu0); colour of the compatibility laws.
     first: vec3f,
+    // Strength of the patches, 0 to 1.
     patch_amount: f32,
+    // Mean radiance of the sky above the layer.
     sky_radiance: vec3f,
+    // Kind of the fog (FogKind of src/fog/model.rs).
     kind: u32,
+    // Radiance of the ground below the layer.
     ground_radiance: vec3f,
     // Spread of the forward lobe in elevation, rad.
     spread: f32,
     // ln(1 - weight of Draine); sign of the Henyey-Greenstein g; share of scattering that counts as forward; asymmetry
     // of the rest.
     scattering: vec4f,
-    // Source terms c(mu) = [0] + mu [1].
+    // Source terms c(mu) = [0] + mu [1] of scattered light at a scaled depth below the top: constant; per unit of
+    // depth; times e^(-depth/mu0); times e^(-k depth); times e^(-k (total - depth)).
     constant: array<vec4f, 2>,
     slope: array<vec4f, 2>,
     beam: array<vec4f, 2>,
@@ -63,12 +71,14 @@ struct FogUniform {
     waves: vec2u,
 }
 
+// Nodes along a side of the map of detours.
 const DETOUR_SIDE: u32 = 24u;
 
 // Fog and the detours of its patches round obstacles (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
 struct LowAir {
     fog: FogUniform,
-    // Cells of the map per metre, and the camera's position in cells: east, north.
+    // Nodes of the map per metre, and the camera's position in the map, in nodes from its south-west corner: east,
+    // north.
     detour_scale: vec2f,
     detour_camera: vec2f,
     // Altitude of the map's floor relative to the camera, m; 1/height above it at which detours end, 1/m.

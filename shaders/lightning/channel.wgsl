@@ -8,6 +8,7 @@
 struct ChannelUniform {
     // Matrix from camera-relative (east, north, up), m, to clip space.
     clip: mat4x4f,
+    // Colour of the light in linear Rec. 709, with luminance 1.
     color: vec3f,
     // Solid angle of a pixel divided by the cube of the clip w of a unit direction, sr; 0 for parallel rays.
     pixel_sr: f32,
@@ -22,6 +23,7 @@ struct ChannelUniform {
 @group(0) @binding(1) var host_depth: HostDepth;
 @group(0) @binding(7) var<uniform> channel: ChannelUniform;
 
+// Whether the host gives depth.
 override HAS_DEPTH: bool = true;
 
 // Standard deviation of a line's light across the line, pixels.
@@ -44,6 +46,7 @@ struct ChannelVarying {
     @location(3) @interpolate(flat) light: vec2f,
 }
 
+// Position of a place in clip space, pixels from the target's upper left corner.
 fn pixel_of(clip: vec4f) -> vec2f {
     let ndc = clip.xy / clip.w * vec2f(1.0, frame.y_sign);
     return (0.5 + 0.5 * ndc * vec2f(1.0, -1.0)) * channel.size;

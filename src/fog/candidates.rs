@@ -8,11 +8,12 @@ use super::{
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Fog, mist, dust and precipitation, as one part. Its importance is that of the air (`sky::candidates::AIR`).
+/// Fog, mist, dust and precipitation, as one part of the plan. Its importance, 0.9, is that of the air
+/// (`sky::candidates::AIR`).
 pub const FOG: Part = Part { name: "fog", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(1) };
 
-/// Work of the layer in units of a pixel with none of the parts. Measured on a software driver (`cargo bench --
-/// parts`).
+/// Work of the layer, in units of the work of a pixel in which no part is drawn. Measured on a software driver (`cargo
+/// bench -- parts`).
 pub(crate) const FOG_WORK: StepWork = StepWork { object: 0.26, sky: 0.26, fixed: 0.0 };
 
 /// Curve of older simulators, used instead of a layer.
@@ -49,7 +50,7 @@ impl FogMethod {
     /// Returns the law with which this method draws `layer`.
     pub fn law(self, layer: &FogLayer) -> Law {
         let sigma = layer.extinction_per_m;
-        // Distance at which the contrast of the visibility is left.
+        // Visibility, m: distance at which the share `CONTRAST_THRESHOLD` of the contrast is left.
         let visibility = -CONTRAST_THRESHOLD.ln() / sigma.max(1e-12);
         let curve = match self {
             Self::Even => return Law::Layer(FogLayer { patches: None, ..*layer }),

@@ -53,7 +53,8 @@ impl Curtains {
     }
 }
 
-/// Returns the mean of a wave's cosine along a ray, and the amplitude of this mean.
+/// Returns the mean of a wave's cosine along a ray between the distances `middle` - `half` and `middle` + `half`, m.
+/// Also returns the amplitude of this mean.
 pub(super) fn wave_mean(
     (wave, phase): (DVec3, f64),
     origin: DVec3,

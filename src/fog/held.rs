@@ -9,6 +9,7 @@ use crate::{
 /// Fog of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldFog {
+    /// Law that replaces the weather's fog; `None` draws the weather's fog.
     pub law: Option<Law>,
 }
 

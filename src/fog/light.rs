@@ -109,6 +109,7 @@ impl Slab {
         }
     }
 
+    /// Solves the equations of a medium that does not absorb, with q = w F / (4 pi).
     fn conservative(self, q: f64, g: f64) -> Solution {
         let Self { depth, mu0, .. } = self;
         let beam = [3.0 * mu0 * mu0 * q, 3.0 * mu0 * q];
@@ -132,6 +133,7 @@ impl Slab {
     }
 }
 
+/// Solves two linear equations with the rows `m` and the right-hand sides `r`.
 fn solve2(m: [[f64; 2]; 2], r: [f64; 2]) -> [f64; 2] {
     let det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
     [(r[0] * m[1][1] - m[0][1] * r[1]) / det, (m[0][0] * r[1] - r[0] * m[1][0]) / det]

@@ -38,10 +38,11 @@
 //!   most 1.4 % of the layer's mean density (`cargo test --lib tests::detour -- --nocapture`).
 //!
 //! # Cost
-//! Fog is one function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`), with no loop,
-//! texture or table. It takes about 12 exponentials and 12 square roots a pixel, fewer where all channels have the same
-//! extinction and albedo. On a software driver a frame in patches costs as much as 25 full-screen copies of the
-//! picture, and 38 where the patches flow round obstacles (`cargo bench --bench speed -- copies`).
+//! Fog is one function call in the full-screen composition (`shaders/fog/lookup.wgsl`, `fog_along`). It reads no
+//! texture and no table; its only loops are over the waves of patches and curtains. It takes about 12 exponentials and
+//! 12 square roots a pixel, fewer where all channels have the same extinction and albedo. On a software driver a frame
+//! in patches costs as much as 25 full-screen copies of the picture, and 38 where the patches flow round obstacles
+//! (`cargo bench --bench speed -- copies`).
 //!
 //! # Axes
 //! Rays and directions are (east, north, up) at the camera, as in all of a frame.

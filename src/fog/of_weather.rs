@@ -69,6 +69,7 @@ impl LowAir {
 /// Smallest strength of patches that is visible.
 const LEAST_PATCHES: f64 = 0.002;
 
+/// Returns the weather's low layer of fog, mist or dust as a fog layer; `None` if it has no extinction.
 fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer> {
     let f = &c.fog;
     if f.extinction_per_m <= 0.0 {
@@ -118,6 +119,7 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     })
 }
 
+/// Returns the viewpoint of a place. Its ground lies at the station's altitude, or at the place if that is lower.
 fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f64) -> Viewpoint {
     let ground_m = c.air.station_altitude_m.min(place.altitude_m);
     Viewpoint { altitude_m: place.altitude_m, map_m, planet_radius_m, ground_m }

@@ -112,6 +112,7 @@ struct RayCourse {
     bend: f64,
 }
 
+/// Returns the course of a ray that starts at altitude `h0` with cosine `mu` and is `t` metres long.
 fn ray_course(m: &FogModel, h0: f64, mu: f64, t: f64) -> RayCourse {
     let k = m.curvature;
     let end_altitude = h0 + layer_rise(k, mu, t);
@@ -212,6 +213,7 @@ fn exponential_up(k: f64, scale: f64, mu: f64, rise: f64) -> f64 {
         * (scaled_erfc(z) - (-x).exp() * scaled_erfc((z * z + x).max(0.0).sqrt()))
 }
 
+/// Returns the optical depth at 550 nm of a ray through an exponential layer.
 fn exponential_path(m: &FogModel, h0: f64, mu: f64, t: f64, end_altitude: f64, end_mu: f64) -> f64 {
     let k = m.curvature.max(1e-15);
     let scale = m.knots[1];

@@ -106,6 +106,7 @@ impl FogModel {
         Ok(m)
     }
 
+    /// Returns a model without fog, with everything that does not depend on the law.
     fn clear(light: &FogLight, view: &Viewpoint) -> Self {
         Self {
             kind: FogKind::Clear,
@@ -151,7 +152,7 @@ impl FogModel {
     /// whose scattering is their mean.
     ///
     /// # Errors
-    /// As [`FogModel::new`].
+    /// Errors of [`FogModel::new`].
     pub fn of_weather(
         layer: Option<&FogLayer>,
         falling: &FallingLayer,
@@ -179,6 +180,7 @@ impl FogModel {
         Ok(m)
     }
 
+    /// Sets the precipitation.
     fn set_falling(&mut self, falling: &FallingLayer) -> Result<()> {
         check_range("falling.liquid_per_m", falling.liquid_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
         check_range("falling.solid_per_m", falling.solid_per_m, 0.0, MAX_EXTINCTION_PER_M, "1/m")?;
@@ -193,6 +195,7 @@ impl FogModel {
         Ok(())
     }
 
+    /// Sets the whole layer: its shape, its light and its patches.
     fn set_layer(&mut self, layer: &FogLayer, light: &FogLight, view: &Viewpoint) {
         self.set_shape(layer);
         self.set_light(&FogScattering::of(layer), light, view);
@@ -201,6 +204,7 @@ impl FogModel {
         }
     }
 
+    /// Sets the extinction of the layer and its change with altitude.
     fn set_shape(&mut self, layer: &FogLayer) {
         self.extinction = layer.extinction_per_m;
         (self.kind, self.knots) = match layer.profile {
@@ -219,6 +223,7 @@ impl FogModel {
         }
     }
 
+    /// Sets the light in the layer and the precipitation, which are lit as one medium with this scattering.
     fn set_light(&mut self, scattering: &FogScattering, light: &FogLight, view: &Viewpoint) {
         self.depth_total = layer_depth_above(self, view.ground_m);
         self.lobes = PhaseLobes::new(&scattering.phase);

@@ -1,4 +1,4 @@
-//! Queries of visibility, answered in f64 without a device (queries of class A).
+//! Queries of visibility, answered in f64 without a device.
 
 use glam::DVec3;
 
@@ -31,7 +31,8 @@ const NO_LIGHT: FogLight =
     FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
 
 /// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset`
-/// metres away, in the host's axes. Multiply it by those of air, haze and precipitation.
+/// metres away, in the host's axes. The whole transmittance is this one times the transmittances of air, haze and
+/// precipitation.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -142,7 +143,7 @@ pub fn lights_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2
 /// meteorological optical range (by day), as in ICAO Doc 9328.
 ///
 /// # Errors
-/// As [`lights_range_m`].
+/// Errors of [`lights_range_m`].
 pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, background_cd_m2: f64) -> Result<f64> {
     let lights = lights_range_m(intensity_cd, extinction_per_m, background_cd_m2)?;
     Ok(lights.max(koschmieder_visibility_m(extinction_per_m)))
@@ -151,7 +152,7 @@ pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, backgroun
 /// Returns the extinction, 1/m, for a reported runway visual range: the inverse of [`runway_visual_range_m`].
 ///
 /// # Errors
-/// As [`lights_range_m`].
+/// Errors of [`lights_range_m`].
 pub fn extinction_of_rvr_per_m(rvr_m: f64, intensity_cd: f64, background_cd_m2: f64) -> Result<f64> {
     check_range("rvr_m", rvr_m, 1.0, 1e6, "m")?;
     check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;

@@ -81,6 +81,7 @@ fn mean_place(r: f64) -> f64 {
     if r < 0.0 { 1.0 - mean } else { mean }
 }
 
+/// Returns the exponential of each component.
 fn exp3(v: DVec3) -> DVec3 {
     DVec3::new(v.x.exp(), v.y.exp(), v.z.exp())
 }
@@ -263,6 +264,7 @@ fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: 
     FogSample { radiance, transmittance, distance, shade: 1.0 - (1.0 - m.lit) * inside, once }
 }
 
+/// Returns the effect of a fog law of older simulators.
 fn fog_compatible(m: &FogModel, direction: DVec3, range: f64, plane: f64) -> FogSample {
     let d = if m.distance == DistanceKind::Plane { plane } else { range };
     let mut v = match m.kind {

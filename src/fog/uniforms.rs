@@ -136,10 +136,12 @@ impl FogVariant {
     }
 }
 
+/// Returns a wave as shaders read it: wave vector, 1/m, and phase, rad.
 fn wave((k, phase): (DVec3, f64)) -> [f32; 4] {
     [k.x as f32, k.y as f32, k.z as f32, phase as f32]
 }
 
+/// Returns a source term as shaders read it: `even`, then `odd`.
 fn term(t: &Term) -> [[f32; 4]; 2] {
     [t.even, t.odd].map(|v| [v.x as f32, v.y as f32, v.z as f32, 0.0])
 }

@@ -20,10 +20,13 @@ use crate::{
 
 /// Fog of a view.
 pub(crate) struct FogView {
+    /// Block with [`LowAirUniform`].
     block: UniformBlock,
+    /// Content of the block.
     uniform: Box<LowAirUniform>,
+    /// Fog of the frame.
     model: Option<FogModel>,
-    /// Features that shaders need to draw it, if there is any.
+    /// Features that shaders need to draw the fog; `None` if there is no fog.
     variant: Option<FogVariant>,
     /// Whether the driver is a software driver, which executes both sides of every branch.
     software: bool,

@@ -195,6 +195,7 @@ const FAINTER: f64 = 0.35;
 /// Least height of a branch's end above the end of the main path, m.
 const CLEAR_M: f64 = 30.0;
 
+/// Creates the branches of a ground flash along its main path.
 fn branches(chance: &mut RandomStream, main: &[DVec3]) -> Vec<Branch> {
     let end = main[main.len() - 1];
     let count = (BRANCHES.0 + BRANCHES.1 * chance.even()) as usize;

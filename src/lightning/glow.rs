@@ -8,7 +8,7 @@ use super::sources::LightSource;
 
 /// Reflectance of the clouds' base for light of a flash below it.
 const BASE_REFLECTS: f64 = 0.8;
-/// `FLASH_ASYMMETRY` of the shader.
+/// Asymmetry of the phase function of air and rain: `FLASH_ASYMMETRY` of `shaders/between/flash.wgsl`.
 #[cfg(test)]
 const ASYMMETRY: f64 = 0.75;
 
@@ -31,7 +31,8 @@ fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
 }
 
 /// Returns the light that air with `scattering_per_m` before `range` scatters once towards the eye. The source of 1 cd
-/// lies `along` the ray and `h` beside it. `steps` is the number of samples of the angle.
+/// lies at the distance `along` in the ray's direction and `h` beside the ray, m. `steps` is the number of samples of
+/// the angle.
 #[cfg(test)]
 fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32) -> f64 {
     let phase = |c: f64| {

@@ -19,7 +19,9 @@ const KEPT_S: f64 = 120.0;
 /// Lightning of a context.
 #[derive(Clone, Default)]
 pub(crate) struct HeldLightning {
+    /// Settings of the host.
     pub settings: LightningSettings,
+    /// Flashes that the host triggered, until [`KEPT_S`] after each.
     pub triggered: Vec<FlashTrigger>,
     /// Revision of settings and triggered flashes.
     pub revision: u64,
@@ -54,12 +56,12 @@ struct Saved {
     triggered: Vec<SavedTrigger>,
 }
 
-/// Keys of the lightning in a saved state.
+/// Table and key of the lightning in a saved state.
 const TABLE: &str = "settings";
 const KEY: &str = "lightning";
 
 impl HeldLightning {
-    /// Takes the lightning's part out of a saved state.
+    /// Returns the lightning of a saved state, which is removed from `state`.
     ///
     /// # Errors
     /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.

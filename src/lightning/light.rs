@@ -37,7 +37,7 @@ pub const COLOR: [f64; 3] = [0.75, 0.99, 1.84];
 pub const BEFORE_S: f64 = 0.1;
 /// Longest time after its last stroke for which a flash gives light, s.
 const AFTER_S: f64 = 0.06;
-/// As [`AFTER_S`], for a flash drawn under the limit on flicker, s.
+/// Longest time after its first stroke for which a flash drawn under the limit on flicker gives light, s.
 const SMOOTH_AFTER_S: f64 = 1.5;
 /// Longest time from a flash's first stroke to its last, s. Longer ones hardly ever occur.
 pub const LONGEST_S: f64 = 4.0;

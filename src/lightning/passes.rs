@@ -16,6 +16,7 @@ use crate::{
     stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
 };
 
+/// Format of the layer in front of the picture.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Largest number of parts that are drawn: those of two or three simultaneous flashes.
 pub(super) const MOST_PARTS: usize = 4096;
@@ -27,12 +28,18 @@ type DepthKey = (bool, bool);
 
 /// Pass and its resources, created when there is a channel to draw.
 pub(super) struct ChannelPass {
+    /// Block with [`ChannelUniform`].
     block: UniformBlock,
+    /// Instances of the parts that are drawn.
     parts: wgpu::Buffer,
+    /// Layouts for a depth of one sample, and of several.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Placeholder for a missing depth.
     none: wgpu::TextureView,
+    /// Placeholder for a missing layer of clouds.
     no_layers: wgpu::TextureView,
     pipelines: LruCache<(DepthKey, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    /// Bind group of the next draw, after the depth, the layer of clouds and the veil's block that it was made for.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
@@ -115,6 +122,7 @@ impl ChannelPass {
         Ok(())
     }
 
+    /// Creates the bind group, unless the last one fits.
     fn bind(&mut self, device: &Device, merged: &MergedFrame<'_>, depth: Option<Layer<'_>>, multi: bool) {
         let Some(between) = merged.composition.own_block(Block::Between) else { return };
         let hung = merged.composition.texture(Texture::Behind);

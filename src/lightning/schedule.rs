@@ -23,9 +23,9 @@ const SINGLE: f64 = 0.2;
 const ANOTHER: f64 = 0.68;
 /// Pause between strokes: geometric mean, s, and standard deviation of its logarithm (Rakov and Uman 2003, table 1.1).
 const PAUSE_S: (f64, f64) = (0.06, 0.55);
-/// Peak current of first and of later strokes: median, kA, and standard deviation of its logarithm (Berger et
-/// al. 1975).
+/// Peak current of first strokes: median, kA, and standard deviation of its logarithm (Berger et al. 1975).
 const FIRST_KA: (f64, f64) = (30.0, 0.61);
+/// Peak current of later strokes: median, kA, and standard deviation of its logarithm (Berger et al. 1975).
 const LATER_KA: (f64, f64) = (12.0, 0.61);
 
 /// A storm that flashes at a constant rate.
@@ -91,6 +91,7 @@ impl Storm {
         flash
     }
 
+    /// Returns the flash with this number at a time, with random properties.
     fn flash(&self, number: u64, time_s: f64) -> Flash {
         let mut chance = RandomStream::new(self.seed ^ 0x5bd1_e995, number);
         let kind = if chance.even() < TO_GROUND { FlashKind::ToGround } else { FlashKind::InCloud };
@@ -126,6 +127,7 @@ fn candidates(chance: &mut RandomStream) -> u64 {
     count
 }
 
+/// Returns a random number of strokes.
 fn strokes(chance: &mut RandomStream) -> usize {
     if chance.even() < SINGLE {
         return 1;

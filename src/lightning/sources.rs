@@ -49,6 +49,7 @@ impl LightSource {
 /// Light sources of a flash.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FlashSources {
+    /// Sources of the open channel from its lower end up, then those in the cloud along the path.
     all: [LightSource; OPEN_PARTS + HIDDEN_PARTS],
 }
 

@@ -18,7 +18,9 @@ const PER_MINUTE: f64 = 3.0;
 /// Flashes of a context.
 #[derive(Clone, Copy)]
 pub(crate) struct Storms<'a> {
+    /// World of the context.
     pub world: &'a World,
+    /// Settings and triggered flashes of the host.
     pub held: &'a HeldLightning,
 }
 
@@ -69,6 +71,7 @@ impl Storms<'_> {
         }
     }
 
+    /// Calls `show` with the flashes of the weather's storm cells, one cell in each square of the map.
     fn visit_squares(
         &self,
         (near_m, reach_m): (DVec2, f64),
@@ -94,6 +97,7 @@ impl Storms<'_> {
         }
     }
 
+    /// Returns the seed of the storm cell with the indices (i, j).
     fn seed(&self, i: i64, j: i64) -> u64 {
         // A sum, because the xor of two products would often be the same for (i, j) and (-i, -j).
         let (i, j) = (i as u64, j as u64);

@@ -17,9 +17,10 @@ use crate::{
 const CHARGE_C: f64 = -12.0;
 /// Lapse rate of the air, K/m.
 const COOLS_K_M: f64 = 6.5e-3;
-/// Least height of that charge above the ground, m.
+/// Least height of the charge above the ground, m.
 const LEAST_M: f64 = 2500.0;
-/// Least distance of it from the cloud's base and top, m. In a cloud less than twice as thick it lies half way up.
+/// Least distance of the charge from the cloud's base and top, m. In a cloud thinner than twice this distance the
+/// charge lies half way up.
 const WITHIN_M: f64 = 800.0;
 /// Least cover with which a layer of cloud hides a channel inside it.
 const HIDES_FROM: f64 = 0.2;
@@ -59,7 +60,7 @@ pub(crate) struct ChannelPart {
     pub altitude_m: f64,
     /// Luminous flux, lm.
     pub flux_lm: f64,
-    /// Share of it outside clouds.
+    /// Share of the flux that the channel sends outside clouds; the rest makes the cloud glow.
     pub open: f64,
 }
 
@@ -69,13 +70,17 @@ pub(crate) struct Strike {
     pub flash: Flash,
     /// Path in the host's world, m.
     pub channel: Channel,
+    /// Clouds that hide the flash, if there are any.
     pub clouds: Option<CloudSpan>,
     /// Temperature of the air at the ground, degrees Celsius.
     pub temperature_c: f64,
+    /// Length of the main path, m.
     length_m: f64,
-    /// A position in the host's world, its altitude (`anchor_m`), and the direction up there.
+    /// Position on the ground in the host's world, m, from which altitudes are measured.
     anchor: DVec3,
+    /// Altitude of `anchor`, m.
     anchor_m: f64,
+    /// Unit vector up at `anchor` in the host's world.
     up: DVec3,
 }
 
@@ -132,6 +137,7 @@ impl Strike {
         }
     }
 
+    /// Returns the altitude of a position in the host's world, m.
     pub(super) fn altitude_m(&self, p: DVec3) -> f64 {
         self.anchor_m + (p - self.anchor).dot(self.up)
     }
@@ -153,6 +159,8 @@ impl Strike {
         }
     }
 
+    /// Calls `see` with each part of one path. `from` and `until` are the values of [`Stretch::down`] at its ends, and
+    /// `strength` is the ratio of its light to that of the main path.
     fn each_of(
         &self,
         points: &[DVec3],

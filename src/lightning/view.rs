@@ -35,31 +35,42 @@ const FRAME_S: f64 = 1.0 / 60.0;
 const LONGEST_FRAME_S: f64 = 0.5;
 /// Illuminance at the eye below which a flash is not drawn, lux.
 const FAINTEST_LUX: f64 = 1e-7;
-/// Limit of that illuminance, as a share of all other light on the ground.
+/// Least illuminance as a share of all other light on the ground; the larger of both limits counts.
 const FAINTEST_SHARE: f64 = 1e-5;
 
 /// Interval of time over which a frame averages the light of flashes.
 #[derive(Clone, Copy)]
 struct FrameTime {
+    /// Number of the frame.
     frame_id: u64,
+    /// Interval, s of simulation time.
     span: Span,
 }
 
 /// A flash that shines, placed in the world under the host's settings.
 struct Shining {
+    /// Number of the flash.
     id: u64,
+    /// Revisions of the lightning and of the surroundings for which `strike` was placed.
     revisions: [u64; 2],
     strike: Strike,
+    /// Whether the flash shines in the present frame.
     is_used: bool,
 }
 
 /// Light of the flashes in a frame.
 struct Lit {
+    /// Interval over which the light is averaged.
     span: Span,
+    /// Course of each flash's light over time.
     course: Course,
+    /// Sources, the brightest first, each with its position relative to the camera, m (east, north, up).
     sources: [(LightSource, DVec3); MAX_FLASH_LAMPS],
+    /// Number of sources.
     count: usize,
+    /// Position of the camera in the host's world, m.
     eye: DVec3,
+    /// Altitude of the camera, m.
     eye_m: f64,
     /// Whether a part of an open channel shines.
     has_line: bool,
@@ -70,12 +81,19 @@ struct Lit {
 pub(crate) struct LightningView {
     /// Whether flashes are possible.
     storms: bool,
+    /// Interval of the last frame.
     frame: Option<FrameTime>,
+    /// Flashes that shine in the present frame.
     shining: Vec<Shining>,
+    /// Sources found in the present frame with their illuminance at the eye, lux; scratch memory.
     found: Vec<(f64, LightSource)>,
+    /// Light of the present frame; `None` without a flash.
     lit: Option<Lit>,
+    /// Pass that draws channels, created at first use.
     passes: Option<Box<ChannelPass>>,
+    /// Parts to draw; scratch memory.
     parts: Vec<PartInstance>,
+    /// Own layer in front of the picture, where precipitation has none.
     layer: Option<(wgpu::Texture, wgpu::TextureView)>,
     /// Layer to draw into, and whether it has content already.
     target: Option<(wgpu::TextureView, bool)>,
@@ -165,6 +183,7 @@ impl LightningView {
         let _ = now.flash.set(light);
     }
 
+    /// Returns the own layer, created for a picture of the size of `color`.
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> wgpu::TextureView {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
         if self.layer.as_ref().is_some_and(|(texture, _)| texture.size() != size) {

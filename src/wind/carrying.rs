@@ -48,8 +48,11 @@ impl<'a> WindOver<'a> {
 /// The wind that carries the air up to a time, computed once for all queries with different starts.
 #[derive(Clone, Copy)]
 pub(crate) struct Carrying<'a> {
+    /// Wind over the timeline.
     over: WindOver<'a>,
+    /// End of the carrying, s of simulation time.
     time_s: f64,
+    /// Wind at that end.
     now: Blowing,
 }
 
@@ -77,17 +80,19 @@ impl Carrying<'_> {
 /// Number of times that are remembered: more than a frame asks for.
 const REMEMBERED: usize = 16;
 
-/// Cache of the wind at times that many frames ask for, valid until the timeline changes. It saves a walk over the
-/// timeline for each.
+/// Cache of the wind at times that many frames ask for, valid until the timeline changes. Each entry saves a walk over
+/// the timeline.
 #[derive(Default)]
 pub(crate) struct Remembered {
     revision: Cell<u64>,
     /// Winds with the bits of their times; the oldest is overwritten first.
     winds: RefCell<Vec<(u64, Blowing)>>,
+    /// Index of the entry that is overwritten next, modulo [`REMEMBERED`].
     next: Cell<usize>,
 }
 
 impl Remembered {
+    /// Returns the wind at a time, from the cache or from the timeline.
     fn at(&self, wind: &WindOver<'_>, time_s: f64) -> Blowing {
         let mut winds = self.winds.borrow_mut();
         if self.revision.replace(wind.revision) != wind.revision {

@@ -52,8 +52,9 @@ pub(crate) struct DetourMap {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detour {
     pub map: Arc<DetourMap>,
-    /// Cells per metre, and the camera's position in cells: east, north.
+    /// Reciprocal distance between nodes, east and north, 1/m.
     pub scale: DVec2,
+    /// Position of the camera in the map, in nodes from its south-western node, east and north.
     pub camera: DVec2,
     /// Height of the floor above the camera, m.
     pub floor_m: f64,
@@ -63,14 +64,19 @@ pub(crate) struct Detour {
 
 /// Level wind of a grid at a height above ground.
 struct LevelWind<'a> {
+    /// Grid of wind.
     volume: &'a WindVolume,
+    /// Returns the ground's height above the grid's origin at a place in metres east and north of it, m.
     ground_m: &'a dyn Fn(DVec2) -> f64,
+    /// Weather's wind at this height, m/s (east, north).
     weathers_m_s: DVec2,
+    /// Height above ground, m.
     height_m: f64,
 }
 
 impl LevelWind<'_> {
-    /// Returns the wind at a place in metres east and north of the grid's origin, m/s.
+    /// Returns the wind at a place in metres east and north of the grid's origin, m/s (east, north); `None` outside the
+    /// grid.
     fn at(&self, place: DVec2) -> Option<DVec2> {
         let up = (self.ground_m)(place) + self.height_m;
         let found = self.volume.at((place.extend(up)) / self.volume.cell_m)?;
@@ -156,7 +162,8 @@ impl DetourMap {
     }
 }
 
-/// Returns the lag of the air at a place of an area of this size; `entering` is the wind of free air.
+/// Returns the lag of the air at a place of an area of this size, m (east, north). `entering` is the wind of free air,
+/// m/s, and `life_m` the distance that free air travels in a patch's life.
 fn followed(level: &LevelWind<'_>, (entering, size): (DVec2, DVec2), mut place: DVec2, life_m: f64) -> DVec2 {
     let (free, speed) = (entering.normalize_or_zero(), entering.length());
     let step = 3.0 * life_m / STEPS as f64;

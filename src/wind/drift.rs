@@ -44,7 +44,7 @@ pub struct Drift {
     pub displacement_m: DVec2,
 }
 
-/// Wind at 10 m at a time. Velocities in m/s (east, north).
+/// Wind at 10 m above ground at a time. Velocities in m/s (east, north).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blowing {
     /// Displacement of the air.
@@ -70,17 +70,24 @@ impl Drift {
 
 /// Steps along a timeline from one start or end of a change to the next.
 struct Walk<'a> {
+    /// Gusts of the seed.
     gusts: &'a Gusts,
+    /// Mean wind before all of `changes`.
     base: WindProfile,
+    /// Changes that have not ended at the walk's time.
     changes: &'a [Change],
+    /// Drift at the walk's time.
     at: Drift,
+    /// Turbulence at the walk's time.
     stir: Stir,
 }
 
+/// Returns the mean wind at 10 m, m/s (east, north).
 fn mean(wind: &WindProfile) -> DVec2 {
     DVec2::new(wind.east_m_s, wind.north_m_s)
 }
 
+/// Returns the turbulence of a profile.
 fn stir_of(wind: &WindProfile) -> Stir {
     Stir::new(mean(wind).normalize_or_zero(), wind.turbulence_intensity, wind.wander_deg.to_radians())
 }
@@ -90,7 +97,8 @@ impl<'a> Walk<'a> {
     pub fn new(gusts: &'a Gusts, timeline: &'a Timeline, kept: Drift, t: f64) -> Self {
         let (Conditions { wind, .. }, changes) = timeline.parts();
         let mut walk = Self { gusts, base: *wind, changes, at: kept, stir: stir_of(wind) };
-        // Counting begins at time 0, whenever the changes do.
+        // A timeline that has forgotten nothing may have changes before time 0. The walk then starts at the first of
+        // them, with the drift that the steady wind before it has at that time.
         match changes.first() {
             Some(first) if timeline.known_since_ever() && t < first.start_s => walk.changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < kept.time_s => {
@@ -114,6 +122,7 @@ impl<'a> Walk<'a> {
         ended.is_some()
     }
 
+    /// Returns the turbulence of the mean wind at the walk's time.
     fn stir_now(&self) -> Stir {
         stir_of(&self.wind_at(self.active(), self.at.time_s).0)
     }
@@ -171,6 +180,8 @@ impl<'a> Walk<'a> {
         self.blown(self.integrals(active, from, t), (mean(&wind), speed), &stretch, t)
     }
 
+    /// Returns the wind after a part of the walk, with the turbulence there. `way` and `path` are the integrals of the
+    /// mean velocity and of the mean speed over the part, `wind` and `speed` their values at its end, `t`.
     fn blown(
         &self,
         (way, path): (DVec2, f64),

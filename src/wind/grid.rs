@@ -64,7 +64,7 @@ impl WindGrid {
         }
     }
 
-    /// Returns the velocity at a position in cells from the origin, m/s; `None` outside.
+    /// Returns the velocity at a position in cells from the origin, m/s (east, north, up); `None` outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec3> {
         let velocity = |i: usize| DVec3::from(self.velocities_m_s[i].map(f64::from));
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| velocity(i) * weight).sum())

@@ -24,7 +24,7 @@ const WANDER_M: f64 = 600.0;
 /// Number of orders of the wander's series: J_13(pi) is 1e-8.
 const ORDERS: usize = 12;
 
-/// One wave: amplitude x cos(wavenumber s + phase).
+/// One wave: amplitude x cos(wavenumber s + phase), with the path s in m and the phase in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct GustWave {
     wavenumber: f64,
@@ -68,6 +68,7 @@ impl Stir {
         Self { along: direction * turbulence_intensity, turning }
     }
 
+    /// Combines the numbers of two turbulences one by one.
     fn zip(&self, other: &Self, f: impl Fn(DVec2, DVec2) -> DVec2) -> Self {
         Self {
             along: f(self.along, other.along),
@@ -76,7 +77,7 @@ impl Stir {
     }
 }
 
-/// A stretch of path along which the turbulence changes linearly from `from` at `start_m` to `to` after `length_m`.
+/// Stretch of path along which the turbulence changes linearly from `from` at `start_m` to `to` after `length_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GustStretch {
     pub start_m: f64,
@@ -182,6 +183,7 @@ impl GustStretch {
         self.from.zip(&self.to, |a, b| a + (b - a) * part)
     }
 
+    /// Returns the change of the turbulence per metre of the stretch.
     fn rise_per_m(&self) -> Stir {
         let length = if self.length_m > 0.0 { self.length_m } else { f64::INFINITY };
         self.from.zip(&self.to, |a, b| (b - a) / length)

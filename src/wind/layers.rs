@@ -1,4 +1,4 @@
-//! Drift of each cloud layer with the wind, and how much of their lives its clouds have lived.
+//! Drift of each cloud layer with the wind, and the number of lifetimes of its clouds that have passed.
 //!
 //! A layer moves with the mean wind at its height, or with its own wind
 //! ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its drift is counted in distances from cloud to cloud, and
@@ -19,7 +19,7 @@ pub(crate) struct LayerDrift {
     /// Integral since time 0 of the wind (east, north) divided by the distance from cloud to cloud, in the pattern
     /// before it is stretched ([`stretch`]).
     pub way: DVec2,
-    /// Number of lives of its clouds since time 0.
+    /// Number of lifetimes of its clouds that have passed since time 0.
     pub lives: f64,
 }
 
@@ -37,13 +37,14 @@ struct LayerChanges<'a> {
     active: &'a [Change],
 }
 
-/// Stretch of full fibres along the wind: the coordinate along it shrinks by this share in the pattern.
+/// Share by which the coordinate along the wind shrinks in the pattern of fully fibrous clouds, which stretches the
+/// clouds.
 const DRAWN_OUT: f64 = 0.85;
 /// Wind added to a layer's own to get the direction of its fibres, m/s (east, north): there is shear even in a calm.
 const SHEAR_M_S: DVec2 = DVec2::new(2.0, 0.0);
 
-/// Returns the direction along which a layer's fibres are stretched; shorter than 1 where the direction is hardly
-/// defined.
+/// Returns the unit vector along which a layer's fibres are stretched (east, north). It is shorter than 1 where the
+/// direction is hardly defined.
 pub(crate) fn stretch_toward(slab: &CloudSlab) -> DVec2 {
     let along = DVec2::from_array(slab.wind_m_s) + SHEAR_M_S;
     along / (along.length_squared() + 0.1).sqrt()
@@ -57,12 +58,14 @@ pub(crate) fn stretch(slab: &CloudSlab) -> DMat2 {
     DMat2::IDENTITY - shorter * (DRAWN_OUT * slab.fibre)
 }
 
+/// Returns the rate of the drift of a layer, per second.
 fn rate(slab: &CloudSlab) -> LayerDrift {
     let way = stretch(slab) * DVec2::from_array(slab.wind_m_s) / slab.scale_m;
     LayerDrift { way, lives: 1.0 / slab.life_s }
 }
 
 impl LayerChanges<'_> {
+    /// Returns the slab of a slot at `t`.
     fn slab(&self, slot: usize, t: f64) -> CloudSlab {
         let over = |below: CloudSlab, change: &Change| below.blend(&change.to.clouds[slot], change.share(t));
         self.active.iter().fold(self.base.clouds[slot], over)
@@ -92,6 +95,7 @@ impl LayerDrifts {
     /// Drifts at time 0.
     pub const ZERO: Self = Self { time_s: 0.0, slots: [LayerDrift { way: DVec2::ZERO, lives: 0.0 }; MAX_CLOUD_LAYERS] };
 
+    /// Returns the drifts at `to_s`, after these changes.
     fn onward(&self, changes: LayerChanges<'_>, to_s: f64) -> Self {
         let one = |slot: usize| self.slots[slot].after(&changes.integral(slot, self.time_s, to_s), 1.0);
         Self { time_s: to_s, slots: std::array::from_fn(one) }
@@ -103,7 +107,8 @@ impl LayerDrifts {
         let (mut base, mut changes) = timeline.parts();
         let mut at = self;
         match changes.first() {
-            // Counting begins at time 0, whenever the changes do.
+            // A timeline that has forgotten nothing may have changes before time 0. Counting then starts at the first
+            // of them, with the drift that the steady wind before it has at that time.
             Some(first) if timeline.known_since_ever() && t < first.start_s => changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < at.time_s => {
                 at = at.onward(LayerChanges { base, active: &[] }, first.start_s);

@@ -2,8 +2,8 @@
 //! a solved field.
 //!
 //! Each node has the share of the weather's wind that it replaces, and its own velocity times that share. The wind at a
-//! place is own + (1 - share) x weather's: share 1 is the whole wind, 0 a difference, and values between blend one into
-//! the other.
+//! place is own + (1 - share) x the weather's. With share 1 the own velocity is the whole wind; with share 0 it is
+//! added to the weather's wind; shares between blend one into the other.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
