@@ -29,6 +29,7 @@ use crate::{
 
 /// Passes of a view, with their resources.
 pub(super) struct CloudPasses {
+    /// Look-up tables that the passes read.
     pub tables: CloudTables,
     /// Allocator of the uniform blocks.
     pages: Blocks,
@@ -43,6 +44,7 @@ pub(super) struct CloudPasses {
     /// Key and bind group of the march. The key is the bind group of the sky's tables and whether the shadow map is
     /// bound.
     marched_of: Option<(wgpu::BindGroup, bool, wgpu::BindGroup)>,
+    /// Shadow map, created when clouds first cast shadows.
     shadows: Option<ShadowMap>,
     /// Panorama of clouds in all directions.
     round: Option<CloudPanorama>,

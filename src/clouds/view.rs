@@ -44,14 +44,18 @@ struct Before {
     eye: DVec3,
     /// Displacements of the layers by the wind.
     drifts: LayerDrifts,
+    /// Factor from radiance to display values.
     exposure: f64,
 }
 
 /// Progress of a frame: the parts that its calls have drawn so far.
 #[derive(Clone, Copy)]
 struct FrameProgress {
+    /// Number of the frame.
     frame_id: u64,
+    /// Whether rays have been marched.
     is_marched: bool,
+    /// Whether shadows have been applied to the picture.
     is_shaded: bool,
     /// Whether the panorama is up to date.
     is_round: bool,
@@ -71,7 +75,9 @@ pub(crate) struct CloudsView {
     maps: LayerMaps,
     /// Passes, created when clouds are first drawn.
     passes: Option<Box<CloudPasses>>,
+    /// Camera and clouds of the last frame; `None` if there were none.
     before: Option<Before>,
+    /// Progress of the last frame that drew clouds.
     made: Option<FrameProgress>,
     /// Passes of the draw that is being composed.
     wanted: Option<Wanted>,

@@ -23,12 +23,15 @@ pub enum Scheme {
 
 /// Wind that carries, and the range in which it may be looked up.
 pub(super) struct Carrier<'a> {
+    /// Grid.
     lattice: &'a Lattice,
+    /// Wind that carries, m/s.
     wind: &'a Faces,
     /// Range of places along each axis, in cells; `None` along a periodic axis, where places wrap.
     range: [Option<[f32; 2]>; 3],
     /// Offset to the next value along each axis; 0 along a flat one.
     next: [usize; 3],
+    /// Whether an axis is flat.
     is_flat: [bool; 3],
     /// Reciprocal size of a cell along each axis, 1/m.
     per_cell: [f32; 3],
@@ -36,18 +39,23 @@ pub(super) struct Carrier<'a> {
 
 /// Values around a place: index of the lowest one, and the fraction of a cell between it and the next along each axis.
 struct Taps {
+    /// Position of the lowest value in the list.
     low: usize,
+    /// Fraction of a cell between the lowest value and the next, along each axis.
     part: [f32; 3],
 }
 
 /// Place among the values of all components: offset and fraction along each axis, relative to faces and to cell
 /// centres.
 struct StaggeredPlace {
+    /// Place relative to the faces, as (offset of the lower face in the list, fraction of a cell).
     faces: [(usize, f32); 3],
+    /// Place relative to the cell centres, as (offset of the lower centre in the list, fraction of a cell).
     middles: [(usize, f32); 3],
 }
 
 impl StaggeredPlace {
+    /// Returns the values of a component around the place.
     #[inline]
     fn taps(&self, component: usize) -> Taps {
         let mut taps = Taps { low: 0, part: [0.0; 3] };
@@ -122,6 +130,7 @@ impl<'a> Carrier<'a> {
         between
     }
 
+    /// Returns the values of a component around a place in cells.
     #[inline]
     fn taps(&self, component: usize, place: [f32; 3]) -> Taps {
         self.between(place).taps(component)
@@ -184,6 +193,7 @@ impl<'a> Carrier<'a> {
         self.velocity(self.moved(place, [0.0; 3], 0.0)).into()
     }
 
+    /// Returns the wind at a place in cells within the range, m/s.
     #[inline]
     fn velocity(&self, place: [f32; 3]) -> [f32; 3] {
         let between = self.between(place);

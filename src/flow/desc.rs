@@ -136,7 +136,9 @@ pub struct WindFieldReport {
 /// Change at a time: from then on there is a field of this description, or none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FieldChange {
+    /// Simulation time of the change, s.
     pub start_s: f64,
+    /// Description from then on; `None` for no field.
     pub desc: Option<WindFieldDesc>,
 }
 

@@ -25,9 +25,13 @@ pub struct FlowField {
     pub(super) roles: Roles,
     /// Outer wind on and beyond the sides, m/s.
     pub(super) outer: Faces,
+    /// Open shares of the faces, and what follows from them.
     pub(super) openings: Openings,
+    /// Values beside rough walls.
     pub(super) walls: Walls,
+    /// Mixing by eddies over the ground.
     pub(super) mixing: GroundMixing,
+    /// Pressure equation and its solvers.
     pub(super) pressure: Pressure,
     /// Velocity of the air, m/s.
     pub(super) velocity: Faces,

@@ -48,6 +48,7 @@ impl Lattice {
         Ok(Self { n, h: cell_m.as_vec3().to_array(), stride, size, ghosts })
     }
 
+    /// Whether an axis has one cell, so that nothing changes along it.
     pub(super) fn is_flat(&self, axis: usize) -> bool {
         self.n[axis] == 1
     }
@@ -68,6 +69,7 @@ impl Lattice {
         self.size.iter().product()
     }
 
+    /// Creates lists of zeros for the three components.
     pub(super) fn zeros(&self) -> Faces {
         [0, 1, 2].map(|_| vec![0.0; self.len()])
     }

@@ -251,6 +251,7 @@ pub(super) struct Start {
 /// Field of a context, with the state of its steps.
 pub(super) struct Live {
     pub desc: WindFieldDesc,
+    /// Origin and axes from which the field's cells are counted.
     pub anchor: Anchor,
     /// Lowest corner, cells from the anchor.
     pub corner: [i64; 3],
@@ -410,6 +411,7 @@ impl Live {
         DVec3::from(self.corner.map(|c| c as f64)) * self.desc.cell_m
     }
 
+    /// Returns the length of the field's steps, s.
     pub fn step_s(&self) -> f64 {
         step_s(self.desc.mode)
     }

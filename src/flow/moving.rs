@@ -13,6 +13,7 @@ use crate::error::{Result, check_range};
 
 /// Obstacles of a field at their last evaluation, so that only changes are evaluated again.
 pub(super) struct SolidBodies {
+    /// Open shares of all faces.
     shares: Shares,
     /// Columns in which something moves.
     moving: Option<ColumnRange>,

@@ -46,7 +46,9 @@ type CoarseTaps = [(usize, f32); 2];
 
 /// Neighbours of a row of cells: start of the row itself, and of the rows before, after, below and above it.
 struct RowNeighbours {
+    /// Start of the row in the lists.
     own: usize,
+    /// Starts of the rows before, after, below and above it.
     beside: [usize; 4],
 }
 

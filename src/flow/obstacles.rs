@@ -84,6 +84,7 @@ struct SolidBox {
     low: DVec2,
     /// Highest corner of the box's extent, m east and north of the field's corner.
     high: DVec2,
+    /// Velocity of the box, m/s.
     velocity: DVec3,
 }
 
@@ -148,6 +149,7 @@ pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<ColumnR
 }
 
 impl FlowObstacles<'_> {
+    /// Checks the boxes; the error names the field at fault.
     fn check(&self, lattice: &Lattice) -> Result<()> {
         let size = DVec3::from([0, 1, 2].map(|a| lattice.n[a] as f64 * f64::from(lattice.h[a])));
         for (i, b) in self.boxes.iter().enumerate() {

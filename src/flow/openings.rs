@@ -29,6 +29,7 @@ pub(super) struct Openings {
     dead: Vec<(usize, usize, f32)>,
     /// Body of air to which each cell belongs.
     bodies: Vec<u32>,
+    /// Number of bodies of air.
     body_count: usize,
     /// Closed faces of each component by layer, from the air inwards.
     inside: [Vec<Vec<usize>>; 3],
@@ -40,19 +41,26 @@ pub(super) struct Openings {
 
 /// Face of an open side.
 struct SideFace {
+    /// Axis through the face.
     axis: usize,
+    /// Position of the face in the lists.
     at: usize,
+    /// Body of air behind the face.
     body: usize,
     /// Sign of the outward direction along the axis: 1 or -1.
     outward: f64,
+    /// Open area of the face, m2.
     open_m2: f64,
+    /// Whether air leaves through the side.
     is_out: bool,
 }
 
 /// Flux of the air of one body through the sides, outwards, m3/s, and the area through which it can leave, m2.
 #[derive(Clone, Copy, Debug, Default)]
 struct Passing {
+    /// Flux outwards, m3/s.
     outward: f64,
+    /// Area of the outflow faces, m2.
     way_out: f64,
 }
 

@@ -95,6 +95,7 @@ fn largest(v: &[f32]) -> f32 {
     v.iter().fold(0.0, |most, r| most.max(r.abs()))
 }
 
+/// Returns the scalar product of two lists.
 fn dot(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
 }
@@ -112,6 +113,7 @@ impl Pressure {
         Self { levels: Levels::new(finest), r, before, z, p, q }
     }
 
+    /// Returns the equation on the finest grid.
     fn finest(&self) -> Option<&GridLevel> {
         self.levels.0.first()
     }
@@ -130,6 +132,8 @@ impl Pressure {
         }
     }
 
+    /// Solves by red-black over-relaxation. `first` and `last` are the relaxation factors, `most` the largest number of
+    /// iterations.
     fn sor(&mut self, [first, last]: [f32; 2], most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
         let Some(level) = self.levels.0.first() else { return Solved::default() };
         // The residual costs as much as an iteration, so it is computed only after an eighth more iterations each time.
@@ -152,6 +156,7 @@ impl Pressure {
         }
     }
 
+    /// Solves by conjugate gradients preconditioned by V-cycles, in at most `most` cycles.
     fn multigrid(&mut self, most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
         let Self { levels, r, before, z, p, q } = self;
         let Some(level) = levels.0.first() else { return Solved::default() };

@@ -23,7 +23,9 @@ pub(super) struct SavedDesc {
     floor_center_m: [f64; 3],
     cell_m: [f64; 3],
     cells: [u32; 3],
+    /// Whether the mode is [`WindFieldMode::Running`].
     running: bool,
+    /// Whether the walls are [`WindWalls::Smooth`].
     smooth: bool,
     most_bytes: u64,
 }
@@ -41,6 +43,7 @@ pub(super) struct SavedChange {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedField {
+    /// Name of the solver ([`SOLVER`]).
     solver: String,
     time_s: f64,
     begun_s: f64,
@@ -48,6 +51,7 @@ pub(super) struct SavedField {
     anchor_axes: [f64; 9],
     anchor_altitude_m: f64,
     corner: [i64; 3],
+    /// Hashes of the scenery, in hexadecimal digits.
     stood: [String; 2],
     solved_for: [f64; 3],
     awake_s: f64,
@@ -59,6 +63,7 @@ pub(super) struct SavedField {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shown_over: Option<WindProfile>,
     desc: SavedDesc,
+    /// All numbers of the field (`FlowField::numbers`), as [`written`] encodes them.
     numbers: String,
 }
 

@@ -28,8 +28,11 @@ const INTEGRAL_M: f64 = 70.0;
 /// Wave with the velocity sine x sin(k . place) + cosine x cos(k . place).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
+    /// Wave vector, 1/m.
     k_per_m: DVec3,
+    /// Velocity of the sine part.
     sine: DVec3,
+    /// Velocity of the cosine part.
     cosine: DVec3,
 }
 
@@ -94,6 +97,7 @@ impl Turbulence {
 
 /// Eddies in the wind that comes in over a field's sides.
 pub(super) struct Whirls {
+    /// Eddies; `None` if there are none.
     turbulence: Option<Turbulence>,
     /// Axes as columns: along the mean wind, across it, up.
     axes: DMat3,

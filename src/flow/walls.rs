@@ -17,7 +17,9 @@ const KAPPA: f64 = 0.4;
 /// Value beside a wall: its index, and the share of its speed that the wall takes per metre of path, 1/m.
 #[derive(Clone, Copy, Debug)]
 struct Rubbed {
+    /// Position in the list of a component.
     at: u32,
+    /// Share of its speed that the wall takes per metre of path, 1/m.
     per_m: f32,
 }
 

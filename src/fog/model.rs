@@ -36,6 +36,7 @@ pub struct Term {
 }
 
 impl Term {
+    /// Returns the term for the cosine `mu` between the view direction and up.
     pub(super) fn at(&self, mu: f64) -> DVec3 {
         self.even + self.odd * mu
     }

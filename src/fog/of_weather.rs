@@ -29,8 +29,11 @@ const LEAST_SHOWN: f64 = 1e-3;
 /// rain areas. Each has its own extinction and heights. A visibility reported at the station includes the extinction of
 /// both.
 pub(crate) struct LowAir {
+    /// Fog, mist or dust near the ground, if there is any.
     layer: Option<FogLayer>,
+    /// Precipitation outside rain areas.
     falling: FallingLayer,
+    /// Lag of the patches where the wind flows round obstacles.
     detour: Option<Detour>,
 }
 

@@ -89,8 +89,9 @@ fn slab_part(m: &FogModel, bend: f64, reach: [f64; 4], length: f64, low: f64, hi
 /// Altitudes along a ray that starts at altitude `h0` with cosine `mu` and is `t` metres long, split at its lowest
 /// point.
 struct RayCourse {
-    /// Altitude of the end, m, and cosine with the vertical there.
+    /// Altitude of the end, m.
     end_altitude: f64,
+    /// Cosine of the ray with the vertical at its end.
     end_mu: f64,
     /// Distance at which the ray is level, m.
     level: f64,

@@ -41,6 +41,7 @@ pub fn transmittance_between(layer: &FogLayer, eye: &Viewpoint, offset: DVec3) -
     Ok(FogModel::new(&Law::Layer(*layer), &NO_LIGHT, eye)?.transmittance_over(offset))
 }
 
+/// Checks that an offset is finite.
 fn check_offset(offset: DVec3) -> Result<()> {
     if offset.is_finite() { Ok(()) } else { Err(Error::range("offset", "finite, in metres", offset)) }
 }

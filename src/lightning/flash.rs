@@ -44,7 +44,9 @@ pub struct Flash {
     pub kind: FlashKind,
     /// Place where it starts, m east and north.
     pub place_m: DVec2,
+    /// Strokes in order, of which the first `count` belong to the flash.
     pub(super) strokes: [Stroke; MOST_STROKES],
+    /// Number of strokes.
     pub(super) count: usize,
 }
 

@@ -27,6 +27,7 @@ pub(crate) struct HeldLightning {
     pub revision: u64,
 }
 
+/// Saved form of a host's storm cell.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedCell {
@@ -35,6 +36,7 @@ struct SavedCell {
     flashes_per_minute: f64,
 }
 
+/// Saved form of a triggered flash.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedTrigger {

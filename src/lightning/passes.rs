@@ -38,11 +38,13 @@ pub(super) struct ChannelPass {
     none: wgpu::TextureView,
     /// Placeholder for a missing layer of clouds.
     no_layers: wgpu::TextureView,
+    /// Pipelines that were used last.
     pipelines: LruCache<(DepthKey, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
     /// Bind group of the next draw, after the depth, the layer of clouds and the veil's block that it was made for.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
+/// Creates the layout of the bind group, for a depth of one sample or of several.
 fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     // The block of the veil belongs to another room, so its size is left open.
     let slots = [

@@ -30,7 +30,9 @@ const FADES_M: f64 = 60.0;
 /// Clouds that hide flashes: altitudes of their lowest base and highest top, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CloudSpan {
+    /// Altitude of the lowest base, m.
     pub base_m: f64,
+    /// Altitude of the highest top, m.
     pub top_m: f64,
 }
 

@@ -53,6 +53,7 @@ struct Shining {
     id: u64,
     /// Revisions of the lightning and of the surroundings for which `strike` was placed.
     revisions: [u64; 2],
+    /// Flash in the host's world.
     strike: Strike,
     /// Whether the flash shines in the present frame.
     is_used: bool,

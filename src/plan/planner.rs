@@ -155,6 +155,7 @@ pub(crate) struct Situation {
     pub forward: DVec3,
     /// Unit vector towards the sun.
     pub sun: DVec3,
+    /// Conditions of the weather at the camera.
     pub conditions: Conditions,
 }
 
@@ -216,6 +217,7 @@ pub(crate) struct Planner<U> {
     gauge: Option<Gauge>,
     /// Findings of the last gauge.
     choices: Choices,
+    /// Predictor of times.
     governor: Governor,
     /// Gauge whose samples have not arrived yet.
     gauging: Option<Gauging<U>>,

@@ -13,7 +13,9 @@ use crate::weather::Timeline;
 /// The wind of a seed over a timeline of weathers.
 #[derive(Clone, Copy)]
 pub(crate) struct WindOver<'a> {
+    /// Wind of the seed.
     pub wind: &'a Wind,
+    /// Weathers over time.
     pub timeline: &'a Timeline,
     /// Drift of the air at the end of the last change that the timeline has forgotten.
     pub kept: Drift,
@@ -84,6 +86,7 @@ const REMEMBERED: usize = 16;
 /// the timeline.
 #[derive(Default)]
 pub(crate) struct Remembered {
+    /// Revision of the timeline for which the entries hold.
     revision: Cell<u64>,
     /// Winds with the bits of their times; the oldest is overwritten first.
     winds: RefCell<Vec<(u64, Blowing)>>,

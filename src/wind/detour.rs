@@ -51,6 +51,7 @@ pub(crate) struct DetourMap {
 /// A map as it lies around a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detour {
+    /// Map of the lags.
     pub map: Arc<DetourMap>,
     /// Reciprocal distance between nodes, east and north, 1/m.
     pub scale: DVec2,

@@ -27,6 +27,7 @@ const ORDERS: usize = 12;
 /// One wave: amplitude x cos(wavenumber s + phase), with the path s in m and the phase in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct GustWave {
+    /// Wavenumber along the path, rad/m.
     wavenumber: f64,
     amplitude: f64,
     phase: f64,
@@ -36,8 +37,11 @@ struct GustWave {
 /// (1972), and the wave that turns the wind.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Gusts {
+    /// Waves of the gusts along the mean wind.
     along: [GustWave; TONES],
+    /// Waves of the gusts across the mean wind.
     across: [GustWave; TONES],
+    /// Wave by which the direction wanders.
     wander: GustWave,
 }
 
@@ -80,9 +84,13 @@ impl Stir {
 /// Stretch of path along which the turbulence changes linearly from `from` at `start_m` to `to` after `length_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GustStretch {
+    /// Path of the mean wind at the stretch's beginning, m.
     pub start_m: f64,
+    /// Length of the stretch, m; 0 if the turbulence does not change.
     pub length_m: f64,
+    /// Turbulence at the beginning.
     pub from: Stir,
+    /// Turbulence at the end.
     pub to: Stir,
 }
 
@@ -115,8 +123,11 @@ fn wave(k: f64, length: f64) -> [DVec2; 3] {
 /// Velocities that turbulence adds to the mean wind at a point of a stretch, per m/s of mean speed, by wander and by
 /// gusts; and how far both have carried the air since the start of the stretch, m.
 pub(super) struct Stirred {
+    /// Velocity by the wander, per m/s of mean speed.
     pub turned: DVec2,
+    /// Velocity by gusts, per m/s of mean speed.
     pub gust: DVec2,
+    /// Displacement by both since the start of the stretch, m.
     pub way_m: DVec2,
 }
 

@@ -26,14 +26,18 @@ pub(crate) struct LayerDrift {
 /// Drifts of all layers at a time, by the slots of [`Conditions::clouds`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LayerDrifts {
+    /// Simulation time, s.
     pub time_s: f64,
+    /// Drift of each slot.
     pub slots: [LayerDrift; MAX_CLOUD_LAYERS],
 }
 
 /// Slots of the weather before all changes, and the changes under way.
 #[derive(Clone, Copy)]
 struct LayerChanges<'a> {
+    /// Weather before all changes.
     base: &'a Conditions,
+    /// Changes under way.
     active: &'a [Change],
 }
 

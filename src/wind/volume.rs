@@ -26,6 +26,7 @@ pub(crate) struct WindVolume {
     pub values: Vec<[f32; 4]>,
     /// First and last time for which it holds, s; `None` for all times.
     pub holds_s: Option<[f64; 2]>,
+    /// Number that differs whenever the values have changed.
     revision: u64,
 }
 

@@ -70,6 +70,7 @@ struct MarchedLayer<'a> {
     field: Field<'a>,
     /// Share of the layer that is drawn as a volume.
     share: f64,
+    /// Light that falls on the layer.
     light: LayerLight,
     /// Index of the medium: 0 for droplets, [`ICE`] for ice.
     medium: usize,
@@ -84,6 +85,7 @@ pub(crate) struct CloudRays<'a> {
     light: LightWithin<'a>,
     /// Position of the place: m east and north of the world's origin, and m above the sea.
     place_m: DVec3,
+    /// Radius of the planet, m.
     radius_m: f64,
     /// Whether a share of the layers above the place is a deck.
     pub has_deck: bool,
@@ -105,6 +107,7 @@ enum LightWithin<'a> {
 }
 
 impl LightWithin<'_> {
+    /// Returns the tables of a medium: 0 for droplets, [`ICE`] for ice.
     fn of(&self, medium: usize) -> &Sources {
         match self {
             Self::Given(sources) => sources,
@@ -120,6 +123,7 @@ impl LightWithin<'_> {
 struct MarchState {
     /// Radiance, cd/m^2 for each channel.
     light: DVec3,
+    /// Transmittance of the clouds met so far.
     transmittance: f64,
     /// Sum of distance times lost transmittance, m.
     distance: f64,

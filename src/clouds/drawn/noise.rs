@@ -27,7 +27,9 @@ pub(crate) struct CloudNoise {
 
 /// Light in a medium under a sun.
 struct LitMedium {
+    /// Medium for which `sources` was computed.
     medium: Arc<Transport>,
+    /// Tables under the sun of the last query.
     sources: Arc<Sources>,
 }
 

@@ -32,8 +32,11 @@ pub(crate) struct March {
 /// Key of the pipelines that resolve a whole picture.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Resolve {
+    /// Whether the last frame's picture is used.
     pub has_history: bool,
+    /// Whether clouds cast shadows on surfaces.
     pub has_shadows: bool,
+    /// Whether shafts of light are drawn.
     pub has_shafts: bool,
     /// Whether the host's depth has several samples a pixel.
     pub is_multisampled: bool,
@@ -47,11 +50,13 @@ pub(crate) struct Resolve {
 /// and with several depth samples a pixel.
 pub(crate) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
+    /// Layouts for depths of one sample and of several.
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
     /// The two pipelines that were used last, because a view that climbs and sinks again alternates between two keys.
     march: LruCache<March, wgpu::RenderPipeline, 2>,
     /// Pipeline of the light of lamps and flashes, created at first use.
     glow: LruCache<March, wgpu::RenderPipeline, 1>,
+    /// Pipeline that reprojects squares of pixels.
     pub follow: wgpu::RenderPipeline,
     /// Layouts of the march and of the sky. The panorama is marched with them too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
@@ -204,7 +209,9 @@ fn attachment(
 /// Part of a pass's targets: rows from `first_row` on, and the viewport's size, pixels.
 #[derive(Clone, Copy)]
 pub(crate) struct TargetPart {
+    /// First row of the part in the target.
     pub first_row: u32,
+    /// Width and height of the part, pixels.
     pub size: (u32, u32),
 }
 

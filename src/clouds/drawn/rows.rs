@@ -57,8 +57,11 @@ impl MapRows {
 /// Rows of a map that is `width` texels wide.
 #[derive(Clone, Copy)]
 pub(crate) struct RowSpan {
+    /// Width of the map, texels.
     pub width: u32,
+    /// Index of the first row.
     pub first: u32,
+    /// Number of rows.
     pub count: u32,
 }
 

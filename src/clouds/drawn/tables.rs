@@ -100,7 +100,9 @@ pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
 /// Tables of light scattered more than once in two media, by depth above, depth below and leak. The tables stand side
 /// by side, and the media one below the other.
 pub(crate) struct LightTables {
+    /// Texture with all tables.
     texture: wgpu::Texture,
+    /// Media of the tables: droplets (0) and ice (1).
     pub media: [Arc<Transport>; 2],
     /// Cosine of the sun's zenith angle for which the tables hold; `None` before the first update.
     under: Option<f64>,
@@ -153,6 +155,7 @@ pub(crate) struct CloudTables {
     pub map: wgpu::TextureView,
     /// Solid noise that frays their edges.
     pub solid: NoiseTexture,
+    /// Tables of light scattered more than once.
     pub light: LightTables,
     /// Linear sampler that repeats.
     pub repeating: wgpu::Sampler,

@@ -89,6 +89,7 @@ pub struct LitLayer {
     shape: Shape,
     map: Map,
     solid: Solid,
+    /// Tables of light that the model reads.
     sources: Arc<Sources>,
     light: GivenLight,
 }

@@ -100,7 +100,9 @@ impl AreaCell {
 
 /// Clouds of all rain areas at a moment.
 pub(crate) struct AreaClouds {
+    /// Cells, of which the first `count` are in use.
     pub cells: [AreaCell; MAX_AREAS],
+    /// Number of cells.
     pub count: usize,
     /// Height above the station of the lowest top of an area's rain, m.
     lowest_m: f64,

@@ -15,7 +15,9 @@ const SHAPED_FROM: f64 = 0.02;
 pub(crate) struct CoverThreshold {
     /// Number of the map above which cloud grows.
     pub threshold: f64,
+    /// Excess at which a cloud reaches the layer's top ([`Shape::dome`]).
     pub dome: f64,
+    /// Extinction inside clouds, 1/m.
     pub extinction_per_m: f64,
 }
 

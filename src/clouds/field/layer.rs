@@ -14,6 +14,7 @@ pub(crate) struct OverheadLayer {
     pub slab: CloudSlab,
     /// Slot of the layer in `Conditions::clouds`.
     pub slot: usize,
+    /// Share of the layer that is drawn as a volume, 0 to 1.
     pub share: f64,
 }
 

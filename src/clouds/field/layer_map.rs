@@ -18,7 +18,9 @@ const STEPS: usize = 64;
 /// A layer that follows a map, cell by cell.
 #[derive(Debug)]
 pub struct LayerMap {
+    /// Slab of the layer.
     slab: CloudSlab,
+    /// Map of the host.
     pub(crate) map: Arc<CloudMap>,
     /// Values of each cell, rounded to half floats: threshold, dome, extinction (1/m), and the distance within which
     /// the threshold stays the same, m.
@@ -68,6 +70,7 @@ impl LayerMap {
         (CoverThreshold { threshold, dome, extinction_per_m }, steady_m)
     }
 
+    /// Whether this is the layer of `slab` under `map`.
     fn is_of(&self, slab: &CloudSlab, map: &Arc<CloudMap>) -> bool {
         self.slab == *slab && Arc::ptr_eq(&self.map, map)
     }

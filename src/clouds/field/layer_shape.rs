@@ -12,6 +12,7 @@ use crate::{
     wind::{LayerDrift, stretch, stretch_toward},
 };
 
+/// Interpolates linearly from `a` to `b`; `t` is the weight of `b`.
 fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }

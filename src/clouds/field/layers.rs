@@ -27,7 +27,9 @@ const DISC_PALES: [f64; 2] = [12.0, 14.0];
 
 /// Layers of cloud over a place.
 pub(crate) struct CloudLayers {
+    /// Layers from the lowest up, of which the first `count` are in use.
     layers: [OverheadLayer; MAX_CLOUD_LAYERS],
+    /// Number of layers.
     count: usize,
     /// Number of layers of which a share is drawn as a volume. They come first, since only the uppermost are decks.
     drawn: usize,

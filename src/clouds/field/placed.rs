@@ -26,7 +26,9 @@ use crate::falling::MAX_AREAS;
 /// Cells of cloud over rain areas, and the threshold inside them.
 #[derive(Clone, Copy, Debug)]
 pub struct AreaCells {
+    /// Cells, of which the first `count` are in use.
     pub(crate) cells: [AreaCell; MAX_AREAS],
+    /// Number of cells.
     pub(crate) count: usize,
     /// Index of the layer that has the cells.
     pub(crate) layer: usize,
@@ -54,7 +56,9 @@ impl AreaCells {
 /// Local cover that overrides a layer's own.
 #[derive(Clone, Debug, Default)]
 pub struct LocalCover {
+    /// Layer under the host's cover map.
     pub(super) map: Option<Arc<LayerMap>>,
+    /// Cells over rain areas.
     pub(super) areas: Option<Arc<AreaCells>>,
 }
 

@@ -78,6 +78,7 @@ fn most_on(overhead: &CloudLayers, lamp: &HostLight, rise: f64, height_m: f64) -
 }
 
 impl CloudLampUniform {
+    /// Creates the lamp of a host's light, relative to the camera.
     fn host(lamp: &HostLight, now: &SceneMoment<'_>, exposure: f64) -> Self {
         let light = lamp.uniform(now.eye, now.scene.world_to_enu, exposure);
         Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }

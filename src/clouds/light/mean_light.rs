@@ -18,6 +18,7 @@ const LIGHTS: [f64; 6] = [1.0, 0.7, 0.4, 0.2, 0.1, 0.03];
 /// Number of places for each seed.
 const PLACES: usize = 160;
 
+/// Creates the maps and noises of three seeds.
 fn grown() -> Vec<(Map, Solid)> {
     (1..=3).map(|seed| (Map::new(seed), Solid::new(seed).unwrap())).collect()
 }
@@ -39,6 +40,7 @@ fn mean(c: &Conditions, grown: &[(Map, Solid)], height_m: f64, mu: f64) -> f64 {
     grown.iter().map(of_seed).sum::<f64>() / grown.len() as f64
 }
 
+/// Returns the conditions of a weather with these layers of cloud.
 fn under(layers: &[CloudLayer]) -> Conditions {
     derive(&Weather { clouds: layers.to_vec(), ..Weather::default() }).unwrap()
 }

@@ -13,6 +13,7 @@ pub(crate) const SUN_MOVED: f64 = 2e-3;
 /// Asymmetry parameter of ice crystals (Fu 2007: 0.74 to 0.8 by shape).
 const ICE_ASYMMETRY: f64 = 0.77;
 
+/// Creates the transport in a medium that absorbs nothing.
 fn medium(phase: Phase) -> Arc<Transport> {
     Arc::new(Transport::new(Scattering::new(PhaseLobes::new(&phase), 1.0)))
 }

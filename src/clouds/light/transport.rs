@@ -31,6 +31,7 @@ use crate::light::phase::{PhaseLobes, lobes_phase};
 /// Gauss nodes and weights over (0, 1). The nodes are the cosines of the directions of a hemisphere.
 const NODES: DVec4 =
     DVec4::new(0.069_431_844_202_973_71, 0.330_009_478_207_571_9, 0.669_990_521_792_428_1, 0.930_568_155_797_026_3);
+/// Weights of the [`NODES`].
 const WEIGHTS: DVec4 =
     DVec4::new(0.173_927_422_568_726_93, 0.326_072_577_431_273_07, 0.326_072_577_431_273_07, 0.173_927_422_568_726_93);
 
@@ -167,15 +168,20 @@ pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
 struct ScatterSlab {
     /// Scaled depth.
     depth: f64,
+    /// Reflection, from above as from below.
     reflects: DMat4,
+    /// Transmission, including light that is not scattered.
     passes: DMat4,
 }
 
 /// Light that leaves a slab under a beam: scattered down, scattered up, and the share left of the beam.
 #[derive(Clone, Copy)]
 struct UnderBeam {
+    /// Scattered radiance below the slab, in the directions of [`NODES`].
     down: DVec4,
+    /// Scattered radiance above the slab, in the directions of [`NODES`].
     up: DVec4,
+    /// Share left of the beam.
     left: f64,
 }
 
@@ -215,7 +221,9 @@ impl ScatterSlab {
 /// Matrices of single scattering in a layer of scaled depth 1, without attenuation: the shares of the light scattered
 /// from each direction that go into each direction, down and up.
 struct ScatterMatrices {
+    /// Scattering from a downward direction into the downward directions.
     down: DMat4,
+    /// Scattering from a downward direction into the upward directions.
     up: DMat4,
 }
 
@@ -309,6 +317,7 @@ pub type Table = Vec<[f32; 4]>;
 pub struct Transport {
     /// Scattering of the medium.
     pub scattering: Scattering,
+    /// Ladders of slabs, one for each leak rate.
     ladders: Vec<SlabLadder>,
     /// Factor that conserves energy ([`Transport::conserving`]).
     conserved: f64,

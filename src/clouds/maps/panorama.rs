@@ -38,11 +38,13 @@ pub(crate) struct PanoramaInputs {
 
 /// Panorama with the pass that draws it.
 pub(crate) struct CloudPanorama {
+    /// Octahedral map of radiance and transmittance, of [`PANORAMA_SIDE`] texels on a side.
     pub texture: wgpu::Texture,
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
     /// Inputs of the last frame.
     around: Option<PanoramaInputs>,
+    /// Progress of the refresh.
     rows: MapRows,
 }
 

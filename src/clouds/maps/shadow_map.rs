@@ -27,6 +27,7 @@ const COARSE: u32 = 64;
 const ROWS: u32 = 32;
 /// Shadow map with the passes that draw it.
 pub(crate) struct ShadowMap {
+    /// Map, which pictures or the host read.
     pub view: wgpu::TextureView,
     /// Block with [`ShadowUniform`].
     pub block: UniformBlock,
@@ -36,6 +37,7 @@ pub(crate) struct ShadowMap {
     coarse: Coarse,
     /// Inputs of the last frame.
     standing: Option<ShadowInputs>,
+    /// Progress of the refresh.
     rows: MapRows,
     /// Number of rows that still come from the coarse map.
     coarse_rows: u32,
@@ -45,10 +47,13 @@ pub(crate) struct ShadowMap {
 struct Coarse {
     view: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
+    /// Pipeline that fills the whole map from the coarse one.
     spread: wgpu::RenderPipeline,
+    /// Bind group with the coarse map, for `spread`.
     group: wgpu::BindGroup,
 }
 
+/// Format of the map: one share of the direct light.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// Creates the texture of a map with `side` texels along a side.

@@ -45,6 +45,7 @@ pub(crate) enum HistoryUse {
 }
 
 impl HistoryUse {
+    /// Returns the use that a frame makes of history, by its flags.
     pub fn of(frame: &Frame<'_>) -> Self {
         match frame.flags {
             flags if flags.has(FrameFlags::NO_HISTORY) => Self::None,
@@ -75,6 +76,7 @@ pub(crate) struct ShadowInputs {
 /// Projection of the map around a camera.
 #[derive(Clone, Copy)]
 pub(crate) struct ShadowProjection {
+    /// Inputs from which the projection was created.
     pub standing: ShadowInputs,
     /// Unit vector towards the light, never level.
     pub to_light: DVec3,
