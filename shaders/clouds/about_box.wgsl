@@ -3,17 +3,20 @@
 //!include "clouds/box.wgsl"
 //!include "clouds/light.wgsl"
 
+// Place in the box: position from the box's low corner, m, and height, 0 at the base to 1 at the top.
 struct CloudPlace {
     level: vec2f,
     height: f32,
 }
 
+// Cloud at a place; the names are those of about.wgsl.
 struct CloudHere {
     excess: f32,
     extinction: f32,
     share: f32,
 }
 
+// Blur of clouds, of which the box has none.
 struct CloudBlur {
     spread: f32,
 }
@@ -37,6 +40,7 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     return 0.0;
 }
 
+// Longest path that a ray is followed, m: longer than any box.
 const CLOUD_FARTHEST: f32 = 1.0e9;
 
 fn cloud_fades(within: f32) -> f32 {
@@ -54,6 +58,7 @@ fn box_place(layer: CloudLayer, at: CloudPlace) -> vec3f {
     return clamp(vec3f(at.level, at.height * sides.z), vec3f(0.0), sides);
 }
 
+// Length of cloud from a place along a direction, up to `most`, m.
 fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
     return min(box_exit(box_place(layer, at), box_sides(layer), toward), most);
 }
@@ -71,6 +76,7 @@ fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level;
 }
 
+// Scaled depths of cloud around a place: above, below, horizontally to the nearest side and to the one opposite.
 fn cloud_box(layer: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     let scaled = layer.size.w * layer.medium.y;
     let sides = box_sides(layer);
@@ -89,6 +95,7 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     return CloudDepths(high.z, low.z, to_sun, low.x, high.x, low.y, high.y);
 }
 
+// Distance after which a ray meets other clouds; without blur it has no effect.
 const CLOUD_CELL: f32 = 1.0;
 
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {

@@ -1,7 +1,9 @@
 // Clouds of a frame: CloudsUniform of src/clouds/drawn/uniforms.rs.
 
+// Largest number of layers, the size of the arrays.
 const CLOUD_LAYERS: u32 = 16u;
 
+// One layer of cloud.
 struct CloudLayer {
     // Altitude of the base, m; 1/thickness, 1/m; 1/distance from cloud to cloud, 1/m; extinction inside, 1/m.
     size: vec4f,
@@ -46,6 +48,7 @@ struct CloudArea {
     extent: vec4f,
 }
 
+// Scattering of one medium: droplets (0) or ice (1).
 struct CloudMedium {
     // Phase function: asymmetry of the Henyey-Greenstein lobe and of Draine's, Draine's alpha, weight of Draine's.
     lobes: vec4f,
@@ -54,6 +57,7 @@ struct CloudMedium {
     rest: vec4f,
 }
 
+// Clouds of a frame: their light, media, layers, and cells over rain areas.
 struct CloudsUniform {
     // Unit vector towards the sun or moon that lights the clouds, (east, north, up) at the camera; number of layers.
     to_sun: vec3f,
@@ -73,7 +77,7 @@ override CLOUD_COARSE: bool = false;
 
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
 
-// Number of layers, limited as lights_binding.wgsl limits a count.
+// Number of layers, limited to 31 by a mask, so that a loop over them ends whatever the block holds.
 fn cloud_layers() -> u32 {
     return clouds.layer_count & 31u;
 }

@@ -1,8 +1,10 @@
 // A box of even cloud, and the origin of the probe's ray in it.
 //!include "clouds/block.wgsl"
 
+// Origin of the ray, m from the box's low corner.
 var<private> box_origin: vec3f;
 
+// Sides of the box, m (x, y, thickness).
 fn box_sides(layer: CloudLayer) -> vec3f {
     return vec3f(layer.sheets.xy, 1.0 / layer.size.y);
 }

@@ -48,6 +48,7 @@ struct CloudBlur {
     spread: f32,
 }
 
+// Blur at the place that a ray looks up.
 var<private> cloud_blur: CloudBlur;
 
 // Texels of the map in one distance from cloud to cloud.

@@ -5,9 +5,12 @@
 //!include "common/frame.wgsl"
 
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
+// Radiance and transmittance of the marched pixels, one for each square.
 @group(0) @binding(2) var marched: texture_2d<f32>;
+// Reach of the marched pixels (MarchedPixel of march_view.wgsl).
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
 
+// Values for one square of pixels.
 struct FollowedSquare {
     // Smallest and largest radiance and transmittance of the squares around this one.
     @location(0) least: vec4f,
@@ -41,6 +44,7 @@ fn light_and_open(seen: vec4f) -> vec2f {
 }
 
 @fragment
+// Reprojects one square by the movement of its cloud's mean distance.
 fn follow(in: FullscreenVarying) -> FollowedSquare {
     let square = vec2u(in.position.xy);
     let own = textureLoad(marched, vec2i(square), 0);

@@ -1,6 +1,7 @@
 // Lamps and flashes that light clouds: LampsUniform of src/clouds/light/lamps.rs.
 //!include "common/light.wgsl"
 
+// A lamp or a flash that lights clouds.
 struct CloudLamp {
     light: HostLight,
     // Radius of the source, m.
@@ -12,6 +13,7 @@ struct CloudLamp {
     pad: f32,
 }
 
+// All lamps and flashes that light clouds.
 struct CloudLamps {
     count: u32,
     // First row of the glow in its target, and the glow's size, texels.

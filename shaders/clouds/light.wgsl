@@ -5,6 +5,7 @@
 // Tables of source terms. Side by side: under the beam on the top, under the beam on the side, under the sky. The media
 // lie one below the other, and the leaks in the third dimension.
 @group(0) @binding(4) var cloud_tables: texture_3d<f32>;
+// Linear sampler that clamps to the edge.
 @group(0) @binding(6) var cloud_table_sampler: sampler;
 
 // Number of depths in a row or column of a table.

@@ -164,7 +164,8 @@ fn cloud_lit(layer: CloudLayer, at: CloudPlace, here: CloudHere, stretch: CloudS
         let once = cloud_once(medium, lamp, from_origin, stretch, scaled * shine.between / shine.distance);
         var light = inside * once.x;
         if inside > 0.0 {
-            // In cloud the light of a beam spreads as from a point ahead of its lamp, where it has lost its direction.
+            // In cloud the light of a beam spreads as if from a point ahead of the lamp, where the light has lost its
+            // direction.
             let ahead = lamp.light.direction * ((1.0 - lamp.even) / (medium.rest.z * scaled));
             let to = from_origin + ahead - place;
             let way = sqrt(dot(to, to) + lamp.radius * lamp.radius);

@@ -19,6 +19,7 @@ const CLOUD_THICK_STEP: f32 = 0.7;
 // Transmittance at which a ray ends.
 override CLOUD_LEAST: f32 = 0.01;
 
+// Clouds along a ray.
 struct CloudSeen {
     // Radiance, cd/m^2 times exposure.
     light: vec3f,
@@ -48,7 +49,9 @@ fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
 
 // State of a march: what the ray has gathered so far.
 struct CloudMarch {
+    // Radiance so far, cd/m^2 times exposure.
     light: vec3f,
+    // Transmittance so far.
     transmittance: f32,
     // Distance, m, and its square, km^2, weighted by the visible cloud.
     distance: vec2f,
@@ -100,6 +103,7 @@ const CLOUD_FOUND: u32 = 3u;
 
 // State of a step along a ray.
 struct CloudStep {
+    // Purpose of the next look-up: CLOUD_SEEKS and the constants after it.
     looks_for: u32,
     // Distance at which it begins, m.
     begun: f32,
@@ -107,6 +111,7 @@ struct CloudStep {
     at: f32,
     // Distance of the next place to look up, m.
     next: f32,
+    // Length of the step, m.
     length: f32,
     // Whether it begins at the face of a cloud.
     at_face: bool,
@@ -115,6 +120,7 @@ struct CloudStep {
     here: CloudHere,
 }
 
+// Scaled depth of a step.
 fn cloud_step_depth(layer: CloudLayer, step: CloudStep) -> f32 {
     return step.here.extinction * layer.medium.y * step.length;
 }

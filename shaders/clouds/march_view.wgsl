@@ -25,6 +25,7 @@ fn air_before(ray: ViewRay, distance: f32, between: f32) -> Veil {
     return air_between(ray.direction, distance);
 }
 
+// Clouds of a marched pixel: radiance and transmittance, and reach.
 struct MarchedPixel {
     @location(0) seen: vec4f,
     // log2 of the reach, m, times 1 - transmittance, so that a mean of texels is weighted by the visible cloud.
@@ -32,6 +33,7 @@ struct MarchedPixel {
 }
 
 @fragment
+// Marches the ray of one pixel in each square.
 fn march(in: FullscreenVarying) -> MarchedPixel {
     drawn = frame.drawn;
     let pixel = marched_pixel(picture, vec2u(in.position.xy));

@@ -3,6 +3,7 @@
 // Marks a square that was outside the last picture.
 const LOST: f32 = 30000.0;
 
+// Pixels that a frame marches, and its reprojection from the last frame.
 struct CloudsPicture {
     // Size of the picture, pixels; side of a square; index of the pixel in it that this frame marches.
     size: vec2u,
@@ -33,6 +34,7 @@ fn marched_pixel(picture: CloudsPicture, square: vec2u) -> vec2u {
     return min(square * picture.side + marched_within(picture), picture.size - 1u);
 }
 
+// Position of a pixel's middle in normalized device coordinates.
 fn pixel_ndc(picture: CloudsPicture, pixel: vec2u, y_sign: f32) -> vec2f {
     let uv = (vec2f(pixel) + 0.5) / vec2f(picture.size);
     return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * y_sign);

@@ -4,6 +4,7 @@
 // Layers under a host's map, one below the other: threshold, dome, extinction, 1/m, distance within which the threshold
 // stays the same, m.
 @group(0) @binding(8) var cloud_maps: texture_2d<f32>;
+// Linear sampler that repeats.
 @group(0) @binding(5) var cloud_sampler: sampler;
 
 // Whether there is a map or a rain area.
@@ -14,6 +15,7 @@ const CLOUD_CLEAR_FROM: f32 = 6.95;
 
 // A layer with the local cover of a place.
 struct CloudLocal {
+    // The layer with its local threshold, dome and extinction.
     layer: CloudLayer,
     // Distance within which the layer's threshold stays the same, m, and the largest change of the threshold per metre
     // beyond.

@@ -5,6 +5,7 @@
 //!include "clouds/march.wgsl"
 //!include "clouds/box.wgsl"
 
+// Rays for each face, along each side of its tile.
 const PROBE_SIDE: u32 = 64u;
 
 // Quasirandom points in the unit cube (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").

@@ -7,8 +7,10 @@
 //!include "clouds/shafts.wgsl"
 
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
+// Radiance and transmittance, and reach, of the pixels that this frame marched.
 @group(0) @binding(2) var marched: texture_2d<f32>;
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
+// Layers of the last frame's picture.
 @group(0) @binding(4) var last: texture_2d_array<f32>;
 @group(0) @binding(5) var linear: sampler;
 // Smallest and largest radiance and transmittance around each square, and the square's offset (FollowedSquare of
@@ -32,6 +34,7 @@ override SHAFTS: bool = false;
 // log2 of a distance beyond all clouds, m.
 const NOWHERE: f32 = 24.0;
 
+// Clouds of a resolved pixel.
 struct ResolvedPixel {
     @location(0) seen: vec4f,
     // log2 of the distances of the reach, m (x, y); share of direct light at the surface that the host drew (z);
@@ -55,6 +58,7 @@ fn shadow_on(pixel: vec2u, ndc: vec2f) -> vec2f {
     return vec2f(share, cloud_shafts(shadows, shadow_map, repeating, ray.origin, ray.direction, range, between));
 }
 
+// Resolves one pixel.
 fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let pixel = vec2u(in.position.xy);
     let among = among_marched(picture, pixel) / vec2f(textureDimensions(marched));
@@ -99,9 +103,11 @@ struct ResolvedKind {
     @builtin(frag_depth) kind: f32,
 }
 
+// Depth that marks a pixel on which the host drew.
 const KIND_DRAWN: f32 = 1.0;
 
 @fragment
+// Resolves one pixel without shadows, and marks it if the host drew on it.
 fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
     let pixel = resolved(in);
     let depth = view_depth(frame.depth, textureLoad(host_depth, vec2i(in.position.xy), 0).r, frame_ndc(in.uv));

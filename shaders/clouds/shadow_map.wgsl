@@ -1,5 +1,6 @@
 // Mapping of a place to the clouds' shadow map: CloudShadows of src/clouds/drawn/uniforms.rs.
 
+// Placement of the shadow map, and the light that casts the shadows.
 struct CloudShadows {
     // Unit vector towards the light (east, north, up), never level.
     to_light: vec3f,

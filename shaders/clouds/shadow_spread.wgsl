@@ -1,6 +1,7 @@
 // Fills the shadow map from a coarse one, until its own rows are drawn.
 //!include "common/fullscreen.wgsl"
 
+// Coarse map.
 @group(0) @binding(2) var coarse: texture_2d<f32>;
 @group(0) @binding(5) var repeating: sampler;
 

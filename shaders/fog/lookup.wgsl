@@ -51,9 +51,11 @@ fn has_own_layer() -> bool {
 
 // Effect of fog on a colour: colour * transmittance + radiance.
 struct Fog {
+    // Light scattered into the ray.
     radiance: vec3f,
     // Distance, m, up to which the air is drawn in front of the fog.
     distance: f32,
+    // Share of the light from behind the fog that is left, per channel.
     transmittance: vec3f,
     // Share that is left of the air's light between the eye and an object: the layer shades the air inside it.
     shade: f32,

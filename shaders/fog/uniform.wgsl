@@ -1,5 +1,6 @@
 // Fog of a frame in the layout of shaders: FogUniform of src/fog/uniforms.rs.
 
+// Fog of a frame: the light in the layer, its shape, and its patterns.
 struct FogUniform {
     // Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     to_sun: vec3f,

@@ -5,6 +5,7 @@
 //!include "common/host.wgsl"
 //!include "between/veil.wgsl"
 
+// Camera and picture of a draw.
 struct ChannelUniform {
     // Matrix from camera-relative (east, north, up), m, to clip space.
     clip: mat4x4f,
@@ -33,6 +34,7 @@ const REACH: f32 = 3.5;
 // Smallest clip w at which a part is drawn.
 const NEAREST: f32 = 0.5;
 
+// Values of a part of a channel for the fragments of its quad.
 struct ChannelVarying {
     @builtin(position) position: vec4f,
     // One end, pixels from the target's first corner, and the line's spread, pixels.

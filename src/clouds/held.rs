@@ -48,8 +48,8 @@ impl HeldClouds {
     /// simulation time, s.
     ///
     /// # Errors
-    /// Errors of [`super::field::Solid::new`]; [`WeatherOver::check_time`] refuses times for which the weather is not
-    /// known.
+    /// [`crate::Status::OutOfMemory`] if there is no memory for the noise; [`WeatherOver::check_time`] refuses times
+    /// for which the weather is not known.
     pub fn sun_share(
         &self,
         seed: u64,
@@ -85,7 +85,7 @@ impl HeldClouds {
     /// place in the host's world, m, and `radius_m` the radius of the planet.
     ///
     /// # Errors
-    /// As [`HeldClouds::sun_share`].
+    /// Errors of [`HeldClouds::sun_share`].
     pub fn rays(
         &self,
         seed: u64,

@@ -45,7 +45,7 @@ impl HeldFlow {
     /// Sets or ends the field at a time; see [`Context::set_wind_field`](crate::context::Context::set_wind_field).
     ///
     /// # Errors
-    /// As for that function; nothing changes then.
+    /// Errors of `Context::set_wind_field`; nothing changes then.
     pub fn set(&mut self, world: &World, desc: Option<WindFieldDesc>, start_s: f64) -> Result<()> {
         if let Some(desc) = &desc {
             desc.validate()?;

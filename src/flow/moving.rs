@@ -86,7 +86,7 @@ impl FlowField {
     /// that `wind` gives at places of the moved box. The caller must set the obstacles next.
     ///
     /// # Errors
-    /// As for [`FlowField::set_wind`].
+    /// Errors of [`FlowField::set_wind`].
     pub fn shift(&mut self, cells: [i64; 3], wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
         self.set_wind(&wind)?;
         let Self { lattice, velocity, scratch, .. } = self;
@@ -104,7 +104,7 @@ impl FlowField {
     /// result of the last call, if terrain and fixed obstacles are the same.
     ///
     /// # Errors
-    /// As for [`FlowField::new`]; the field then stays unchanged.
+    /// Errors of [`FlowField::new`]; the field then stays unchanged.
     pub(super) fn follow_obstacles(
         &mut self,
         obstacles: &FlowObstacles,

@@ -45,9 +45,9 @@ impl Curtains {
         (part * sum, 0.5 * part * part * squares)
     }
 
-    /// Returns the optical depth with curtains where even rain has `depth`. The variance v raises it, so that the mean
-    /// transmittance over all places, and with it the visibility, is that of even rain. For a normally distributed
-    /// depth x with the mean m, mean(exp(-x)) = exp(v / 2 - m).
+    /// Returns the optical depth with curtains where even rain has `depth`. Half the variance v of the depth is added,
+    /// so that the mean transmittance over all places, and with it the visibility, equals that of even rain. For a
+    /// normally distributed depth x with the mean m, mean(exp(-x)) = exp(v / 2 - m).
     pub fn depth(&self, depth: f64, (added, variance): (f64, f64)) -> f64 {
         (depth * (1.0 + added)).max(0.0) + 0.5 * depth * depth * variance
     }

@@ -117,7 +117,8 @@ pub struct FogModel {
     pub falling: FallingModel,
 }
 
-/// Precipitation as a medium of its own: even below the altitude where it begins, except for curtains.
+/// Precipitation as a separate medium. Below the altitude where it begins, its extinction is uniform except for
+/// curtains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingModel {
     /// Extinction at 550 nm, 1/m; 0 if nothing falls.

@@ -86,8 +86,8 @@ pub fn visibility_between_m(layer: &FogLayer, eye: &Viewpoint, offset: DVec3, ba
 }
 
 /// Returns the vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5
-/// % of its contrast in the layer and the extinction `background_per_m` of the rest. Infinite if it keeps more through
-/// the whole layer and nothing else extinguishes.
+/// % of its contrast in the layer and the extinction `background_per_m` of the rest. Infinite if the target keeps more
+/// than that through the whole layer and `background_per_m` is 0.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -78,7 +78,7 @@ impl Span {
 /// Course of a flash's light over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// As in nature.
+    /// The measured course: leaders, strokes and their decay.
     Natural,
     /// Rises once and decays smoothly, with the same total light.
     Smooth,

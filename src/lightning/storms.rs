@@ -9,7 +9,7 @@ use crate::world::World;
 /// Side of the map's squares that each have one storm cell in a thunderstorm, m: a common size of single cells (Byers
 /// and Braham 1949).
 pub(crate) const SQUARE_M: f64 = 20_000.0;
-/// Radius of such a cell, m.
+/// Radius of a storm cell of the weather, m: distance from its middle within which two thirds of its flashes start.
 const RADIUS_M: f64 = 2500.0;
 /// Flashes a minute of a cell where the weather has thunder and no rate is set: 1 to 5 are common (Rakov and Uman 2003,
 /// chapter 2).

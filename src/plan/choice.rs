@@ -37,7 +37,7 @@ pub(super) struct Choices {
     search: Search,
     /// Work of the picture with everything.
     pub all: WorkAmount,
-    /// Error of the picture if only this step and those above it are taken.
+    /// Error of the picture for each step, if only that step and the steps above it in its part are taken.
     pub worth: [Estimate; MOST_STEPS],
     /// Steps of the parts that are present.
     there: Set,

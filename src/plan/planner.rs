@@ -30,8 +30,8 @@ pub struct PartPlan {
     pub reason: Reason,
     /// Error of the picture with only this part at each rung, as last gauged; that of the first rung is 0.
     pub worth: [Estimate; MOST_RUNGS],
-    /// Work that the whole part adds, or would add, to this picture with everything else, in units of a pixel without
-    /// any parts.
+    /// Work that the whole part adds, or would add, to this picture with everything else, in units of the work of a
+    /// pixel in which no part is drawn.
     pub work: f64,
     /// Steps that the part has gone down; a fraction during a fade.
     depth: f32,
@@ -51,7 +51,7 @@ pub struct Plan {
     pub parts: Vec<PartPlan>,
     /// Estimated error of everything that is left out together.
     pub error: Estimate,
-    /// Work of the picture as planned, in units of a pixel without any parts.
+    /// Work of the picture as planned, in units of the work of a pixel in which no part is drawn.
     pub work: f64,
     /// Work of the picture with everything.
     pub work_of_everything: f64,
@@ -209,7 +209,7 @@ pub(crate) struct Planner<U> {
     budget: Budget,
     /// Demands on a picture that follow from `budget`.
     asked: Asked,
-    /// Work of building the sky's default tables, in pixels without any parts.
+    /// Work of building the sky's default tables, in units of the work of a pixel in which no part is drawn.
     pub rebuild: f64,
     /// Work of the last picture with everything, in the same units; 0 before the first.
     work: f64,
@@ -236,8 +236,8 @@ pub(crate) struct Planner<U> {
 }
 
 impl<U: Unseen> Planner<U> {
-    /// Creates a planner for a list of parts. `rebuild` is the work of building the sky's default tables, in pixels
-    /// without any parts.
+    /// Creates a planner for a list of parts. `rebuild` is the work of building the sky's default tables, in units of
+    /// the work of a pixel in which no part is drawn.
     pub fn new(parts: &'static [Part], rebuild: f64) -> Self {
         let mut planner = Self {
             rebuild,

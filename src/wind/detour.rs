@@ -2,14 +2,14 @@
 //!
 //! Patches move with the displacement of the weather's wind, which is the same everywhere. Where the wind varies in
 //! space, the air at a place has come by another path. The path is traced back along the level wind w near the ground.
-//! With e the wind that enters the grid, w and e both divided by the speed of e, and s the distance that free air
-//! travels, the air at a place lags by
+//! Let e be the wind that enters the grid, and s the distance that free air travels; w and e are divided by the speed
+//! of e. The air at a place then lags by
 //!
 //! L = integral of (e - w) e^(-s / life) ds,
 //!
-//! so that the patches there are those that would lie L farther on. Eddies stir patches: what happened to the air more
-//! than a patch's life ago no longer shows, and no lag grows longer than that life. With an infinite life L would be
-//! the drift of Darwin (1953).
+//! and the patches at the place are those that free air would have carried L farther. Eddies stir patches: what
+//! happened to the air more than a patch's life ago no longer shows, and no lag grows longer than that life. With an
+//! infinite life L would be the drift of Darwin (1953).
 
 use std::sync::Arc;
 

@@ -37,7 +37,7 @@ impl CloudNoise {
     /// Creates the noise of a seed.
     ///
     /// # Errors
-    /// As [`Solid::new`].
+    /// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
     pub fn new(seed: u64) -> Result<Self> {
         Ok(Self { map: Map::new(seed), solid: Solid::new(seed)?, lit: Default::default(), maps: Mutex::default() })
     }

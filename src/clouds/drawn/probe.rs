@@ -131,7 +131,7 @@ fn straight([x, _, z]: [f64; 3], sine: f64, cosine: f64) -> (f64, f64) {
 /// ordered as in [`fluxes`].
 ///
 /// # Errors
-/// As [`fluxes`].
+/// Errors of [`fluxes`].
 pub fn lamp_fluxes(device: &Device, cloud: &EvenCloud, position: DVec3) -> Result<[f64; 6]> {
     cloud.check()?;
     let lobes = PhaseLobes::new(&Phase::HenyeyGreenstein { g: cloud.asymmetry });

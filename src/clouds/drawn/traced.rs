@@ -98,7 +98,7 @@ impl LitLayer {
     /// Creates the layer of a slab in still air with the noise of a seed.
     ///
     /// # Errors
-    /// As [`Solid::new`].
+    /// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
     pub fn new(slab: &CloudSlab, seed: u64, light: GivenLight) -> Result<Self> {
         let [droplets, ice] = media(nearest_diameter(std::iter::once(slab)));
         let medium = if slab.ice_fraction > 0.5 { ice } else { droplets };
@@ -291,7 +291,7 @@ impl Case {
     /// Creates the layer in its light.
     ///
     /// # Errors
-    /// As [`LitLayer::new`].
+    /// Errors of [`LitLayer::new`].
     pub fn layer(&self) -> Result<LitLayer> {
         let (sine, cosine) = self.sun_deg.to_radians().sin_cos();
         let to_sun = DVec3::new(0.5 * cosine, -0.75f64.sqrt() * cosine, sine);
@@ -318,7 +318,7 @@ impl Case {
     /// Compares the model with photons along `rays` rays, with `photons` photons for each.
     ///
     /// # Errors
-    /// As [`LitLayer::new`].
+    /// Errors of [`LitLayer::new`].
     pub fn compare(&self, rays: usize, photons: u32) -> Result<Compared> {
         let layer = self.layer()?;
         let rays = self.rays(&layer, rays);

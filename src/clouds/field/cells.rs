@@ -9,8 +9,8 @@
 //!
 //! The light at a place is that under one layer of the cells' cloud, whose cover is the share of the sky that the cells
 //! take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from level
-//! ground (Hamilton and Morgan 1952). The disc's horizontal distance, in its radii, is that of the cell in its half
-//! widths.
+//! ground (Hamilton and Morgan 1952). The disc lies at the horizontal distance r |d / s| from the place: r is the
+//! disc's radius, d the vector to the cell's middle along the cell's axes, and s the cell's half widths.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 

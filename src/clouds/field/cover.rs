@@ -61,7 +61,7 @@ pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
 /// `thresholds.in`.
 ///
 /// # Errors
-/// As [`Solid::new`].
+/// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
 pub fn find_thresholds(kind: CloudKind, seeds: &[(Map, Solid)], places: usize) -> Result<[f64; OKTAS]> {
     let mut row = [0.0; OKTAS];
     for (i, to) in row.iter_mut().enumerate() {
@@ -92,7 +92,7 @@ pub fn field<'a>(slab: &CloudSlab, (map, solid): &'a (Map, Solid), threshold: f6
 /// over seeds.
 ///
 /// # Errors
-/// As [`Solid::new`].
+/// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
 pub fn seen_over_seeds(kind: CloudKind, cover: f64, seeds: u64, places: usize) -> Result<[f64; 2]> {
     if cover <= 0.0 {
         return Ok([0.0; 2]);

@@ -9,10 +9,10 @@
 //! ([`cover`]). The excess e = z - threshold says how high the cloud grows there. Solid noise frays the cloud's edges.
 //! The two sheets glide against each other, so that clouds form and dissolve without end, as a function of time alone.
 //!
-//! At a place with excess e and height h, from 0 at the base to 1 at the top, the extinction is that of the layer times
-//! (e - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here dome(h) is the excess that cloud needs at
-//! height h, rough and soft are fields of [`Shape`], and noise is the solid noise, scaled to about 0 to 1. In cumulus
-//! the dome also grows with e, so that no top is cut flat.
+//! At a place with excess e and height h, from 0 at the base to 1 at the top, the extinction is k c. k is the layer's
+//! extinction inside clouds, 1/m, and c = (e - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here dome(h)
+//! is the excess that cloud needs at height h, rough and soft are fields of [`Shape`], and noise is the solid noise,
+//! scaled to about 0 to 1. In cumulus the dome also grows with e, so that no top is cut flat.
 //!
 //! Ice cloud is stretched along the wind that carries it, and leans with height: the head of a fibre lies downwind of
 //! the crystals that have fallen from it. Cumulonimbus has an anvil, a sheet below the layer's top around its towers

@@ -33,7 +33,7 @@ const HEADS: f64 = 2.0;
 /// Largest [`Shape::rough`] to which larger heads raise that of a cell: amplitude of the solid noise, as an excess.
 const MOST_ROUGH: f64 = 2.1;
 
-/// Place and time at which the layers of cloud are asked for.
+/// Query for the layers of cloud at a place and a time.
 pub(crate) struct LayersQuery<'a> {
     pub scene: &'a Scene,
     /// The scene's place in the host's world, m.

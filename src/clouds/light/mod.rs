@@ -5,19 +5,19 @@
 //! that in a box with these depths. Light that is scattered once keeps the true phase function. Light scattered more
 //! often comes from the tables of [`transport`]: one for the beam on the box's top, one for the beam on the side that
 //! faces the sun, and one each for sky and ground. Near the face that the beam falls on, this light is even from side
-//! to side. Deeper in the box it varies from side to side as a cosine: the same for which [`transport`] computes the
+//! to side. Deeper in the box it varies from side to side as a cosine, the one from which [`transport`] computes the
 //! leak.
 //!
 //! Top and side share the beam, because the sun's rays reach a place through the nearer of the two. With d the path to
 //! the top less the path to the side, the top has the share 1 / (1 + exp((1 - g') d)), and the side has the rest. A
 //! real cloud is no box: where its path to the sun, s, is longer than the box's, m, the light is multiplied by the
 //! square of (1 + (1 - g') m) / (1 + (1 - g') s). The beam and the light of its first scatterings keep the momentum
-//! exp(-(1 - g') s) - exp(-s) (van de Hulst 1980). Its component along the axis of a table is in the table; the other
-//! one is added to the first moment.
+//! exp(-(1 - g') s) - exp(-s) (van de Hulst 1980). The component of this momentum along the axis of a table is in the
+//! table already. The component across the axis is added to the first moment.
 //!
 //! A cloud that absorbs nothing, between sky and ground of equal radiance, has that radiance too. The tables give less,
-//! because some of the light leaks through the sides. As much comes in there; this difference is added, half for the
-//! sky and half for the ground.
+//! because some of the light leaks through the sides. The same amount comes in through the sides. The difference is
+//! added, half to the sky's light and half to the ground's.
 //!
 //! # Error
 //! Fluxes through the faces of a cube of optical depth 16 (Henyey-Greenstein 0.85) stay within 0.03 of the incident
