@@ -58,8 +58,8 @@ const SOLID_TEXELS: f32 = 64.0;
 // Number of mip levels by which the second sheet is read finer, because its cells are larger.
 const SECOND_LEVEL: f32 = 0.694;
 // A mean over a width w removes the share 1 - exp(-(w / x)^y) of the variance. These constants hold (x, y): for the
-// even and the cellular sheets with w in cells, and for the solid noise with w in its sides. A test holds the numbers
-// (src/clouds/field/map.rs).
+// even and the cellular sheets with w in distances from cloud to cloud, and for the solid noise with w in sides of its
+// cube. A test holds the numbers (src/clouds/field/map.rs).
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);

@@ -105,7 +105,7 @@ const CLOUD_FOUND: u32 = 3u;
 struct CloudStep {
     // Purpose of the next look-up: CLOUD_SEEKS and the constants after it.
     looks_for: u32,
-    // Distance at which it begins, m.
+    // Distance from the camera at which the step begins, m.
     begun: f32,
     // Distance of the place whose extinction holds for the whole step, m.
     at: f32,
@@ -113,10 +113,11 @@ struct CloudStep {
     next: f32,
     // Length of the step, m.
     length: f32,
-    // Whether it begins at the face of a cloud.
+    // Whether the step begins at the face of a cloud.
     at_face: bool,
-    // Place at which its light is computed, and the cloud there.
+    // Place at which the light of the step is computed.
     place: CloudPlace,
+    // Cloud at that place.
     here: CloudHere,
 }
 

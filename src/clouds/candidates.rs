@@ -11,7 +11,7 @@ use crate::plan::{
 pub const CLOUDS: Part =
     Part { name: "clouds", rungs: &["volume", "deck"], importance: 0.4, worth: Worth::Estimated(4) };
 
-/// Work of the volume in a pixel that looks towards clouds. The unit is the work of a pixel with none of the parts.
+/// Work of the volume in a pixel that looks towards clouds. The unit is the work of a pixel in which no part is drawn.
 /// Measured on a software driver (`cargo bench --bench speed -- clouds`): a frame with a clear sky takes as long as 20
 /// copies of the picture, and the volume adds the time of 34 copies.
 const MARCHED: f64 = 2.0;

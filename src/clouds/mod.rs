@@ -3,10 +3,11 @@
 //! # Model
 //! * [`field`] says where there is cloud. A map fixed to the moving air says how strongly cloud grows at each place,
 //!   and solid noise frays the edges. [`cover`] finds the threshold at which the clouds of the map have the cover that
+//!   is asked for.
 //! * [`light`] computes the light in clouds, with the tables of [`transport`]. Light scattered once keeps the true
-//! phase function. Light scattered more than once is computed as if the place stood in a box of even cloud with the
-//! same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
-//! [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
+//!   phase function. Light scattered more than once is computed as if the place stood in a box of even cloud with the
+//!   same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
+//!   [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
 //! * A picture marches the ray of one pixel in sixteen in each frame and takes the other pixels over from the frame
 //!   before.
 //! * Mirrors and cube maps show clouds from `maps::panorama`, a small map of all directions.

@@ -19,7 +19,8 @@ pub(crate) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
 pub(crate) const SECOND_TURN_RAD: f64 = 0.9;
 /// Offset of the second sheet, in periods.
 pub(crate) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
-/// Octaves of the even sheets. The first has half as many cells as the map, so that clouds stand in groups.
+/// Octaves of the even sheets. The first has half as many cells along a side as the map has clouds, so that clouds
+/// stand in groups.
 const EVEN_OCTAVES: u32 = 4;
 /// Ratio of an octave's amplitude to that of the one before, in the even and in the cellular sheets.
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];

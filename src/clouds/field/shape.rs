@@ -37,7 +37,8 @@ pub struct Shape {
     pub lean_m: DVec2,
     /// How far the wind has carried the layer (east, north), m.
     pub drift_m: DVec2,
-    /// How far the map's second sheet of noise has glided against the first, in cells.
+    /// How far the map's second sheet of noise has glided against the first (east, north), in distances from cloud to
+    /// cloud.
     pub evolution: DVec2,
 }
 

@@ -152,7 +152,7 @@ fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &S
     let often = sum.max(0.0) / PI;
     let momentum = (-turning * shine.between).exp() - (-shine.between).exp();
     let kept = scattering.scaled_albedo() * 3.0 * scattering.moments[1] / (4.0 * PI) * momentum * x;
-    // Light that returns through the face has first gone some way in.
+    // Light that returns through the face has first gone some depth into the cloud.
     let d = d - shine.between + shine.between.max(RETURNS_FROM / turning);
     (often + kept.clamp(-often, often)) / (d * d)
 }
