@@ -63,31 +63,44 @@ struct Fog {
     once: vec3f,
 }
 
-// Path of a ray through a medium: its optical depth at 550 nm, and the distances at which the ray enters and leaves the
-// medium, m.
+// Path of a ray through a medium.
 struct LayerPath {
+    // Optical depth at 550 nm.
     depth: f32,
+    // Distance at which the ray enters the medium, m.
     first: f32,
+    // Distance at which the ray leaves the medium, m.
     last: f32,
 }
 
-// Altitudes along a ray, split at its lowest point: see the twin in src/fog/path.rs.
+// Altitudes along a ray, split at its lowest point: twin of RayCourse in src/fog/path.rs.
 struct RayCourse {
+    // Altitude of the end, m.
     end_altitude: f32,
+    // Cosine of the ray with the vertical at its end.
     end_mu: f32,
+    // Distance at which the ray is level, m.
     level: f32,
+    // Whether that distance is within the ray's length.
     passes: bool,
+    // Whether the ray only descends.
     falls: bool,
+    // Lowest altitude, m.
     low: f32,
+    // Cosine with which both parts of the ray rise from the lowest point.
     low_mu: f32,
+    // Length of the part before the lowest point, m.
     before: f32,
+    // Length of the part after the lowest point, m.
     after: f32,
+    // Altitude at the upper end of the first part, m.
     high: f32,
+    // Curvature of the altitude along the ray, 1/m.
     bend: f32,
 }
 
-// Returns the share of the delta-scaled beam that is really unscattered after the optical path `slant`, as
-// share_unscattered of src/fog/phase.rs.
+// Returns the share of the delta-scaled beam that is really unscattered after the optical path s = `slant`: (1 - e^(-f
+// s)) / (f s) with f = `forward`. src/fog/phase.rs has the derivation.
 fn share_unscattered(forward: f32, slant: f32) -> f32 {
     let fs = min(forward * slant, 1e4);
     return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
@@ -163,8 +176,8 @@ fn layer_reach(curvature: f32, mu: f32, lift: vec2f) -> vec2f {
     return c / max(mu + sqrt(mu * mu + curvature * c), vec2f(1e-20));
 }
 
-// Returns the length of a flank, between the knots at the distances `reach`, and the mean share of the extinction in
-// it.
+// Returns the length of a ray's part between the two knots of a flank, m, and the mean of (altitude - first knot) /
+// height of the flank over it, 0 to 1. The ray passes the knots at the distances `reach`; `inverse` is 1/height.
 fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f32) -> vec2f {
     let l = reach.y - reach.x;
     let h = clamp(knots, vec2f(low), vec2f(high));
@@ -172,7 +185,10 @@ fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f3
     return vec2f(l, clamp((mean - knots.x) * inverse, 0.0, 1.0));
 }
 
-// Twin of slab_part in src/fog/path.rs. Without a lower edge the whole ray lies above that edge.
+// Returns the optical depth of a part of a ray in a slab, divided by the slab's extinction, m. The part rises from
+// altitude `low` to `high` over `length` metres. It passes the knots of the lower flank at the distances `base`, those
+// of the upper flank at `top`. Without a lower edge the whole part lies above the lower flank. Twin of slab_part in
+// src/fog/path.rs.
 fn slab_part(u: FogUniform, bend: f32, base: vec2f, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
     let t = min(top, vec2f(length));
     let upper = flank(bend, t, u.knots.zw, u.pair.y, low, high);
@@ -404,6 +420,7 @@ fn grazing_light(
 
 // Light scattered into a ray.
 struct LayerLight {
+    // Radiance of all of it.
     radiance: vec3f,
     // Light scattered exactly once, divided by the phase function (Fog.once).
     once: vec3f,

@@ -51,12 +51,16 @@ struct FogUniform {
     // ln(1 - weight of Draine); sign of the Henyey-Greenstein g; share of scattering that counts as forward; asymmetry
     // of the rest.
     scattering: vec4f,
-    // Source terms c(mu) = [0] + mu [1] of scattered light at a scaled depth below the top: constant; per unit of
-    // depth; times e^(-depth/mu0); times e^(-k depth); times e^(-k (total - depth)).
+    // Source terms of scattered light at a scaled depth below the top. Each is c(mu) = [0] + mu [1], where mu is the
+    // cosine between the view direction and up. This one is constant.
     constant: array<vec4f, 2>,
+    // Source term per unit of scaled depth.
     slope: array<vec4f, 2>,
+    // Source term times e^(-depth/mu0).
     beam: array<vec4f, 2>,
+    // Source term times e^(-k depth).
     rise: array<vec4f, 2>,
+    // Source term times e^(-k (total - depth)).
     fall: array<vec4f, 2>,
     // Waves of the patches: wave vector, phase at the camera.
     patch_waves: array<vec4f, 6>,

@@ -36,15 +36,17 @@ const NEAREST: f32 = 0.5;
 
 // Values of a part of a channel for the fragments of its quad.
 struct ChannelVarying {
+    // Vertex stage: corner of the quad in clip space. Fragment stage: centre of the pixel, pixels.
     @builtin(position) position: vec4f,
-    // One end, pixels from the target's first corner, and the line's spread, pixels.
+    // x, y: one end of the line, pixels right of and below the target's upper left corner; z: spread of the line,
+    // pixels.
     @location(0) @interpolate(flat) first: vec3f,
-    // Unit vector along the line, and its length, pixels.
+    // x, y: unit vector along the line in the picture; z: length of the line, pixels.
     @location(1) @interpolate(flat) along: vec3f,
-    // Unit vector to its middle, and the middle's distance, m.
+    // xyz: unit vector from the camera to the middle of the part (east, north, up); w: distance of the middle, m.
     @location(2) @interpolate(flat) middle: vec4f,
-    // Luminance of a pixel that contains one pixel's length of the line, times exposure, and distance from the camera's
-    // plane, m.
+    // x: luminance of a pixel that contains one pixel's length of the line, times exposure; y: distance of the middle
+    // from the camera's plane, m.
     @location(3) @interpolate(flat) light: vec2f,
 }
 
@@ -137,7 +139,7 @@ fn is_open(in: ChannelVarying) -> bool {
     return view_range(frame.depth, depth, ndc) >= in.middle.w;
 }
 
-// Premultiplied with alpha 0: added to the picture.
+// Returns the light of the part in a pixel, premultiplied with alpha 0, so that it is added to the picture.
 @fragment
 fn channel_fragment(in: ChannelVarying) -> @location(0) vec4f {
     drawn = frame.drawn;

@@ -14,9 +14,9 @@ pub enum Scheme {
     /// Value along a curved path, corrected by the error that carrying it back shows, and limited to the range of the
     /// values it came from (Selle et al. 2008).
     MacCormack,
-    /// Half a step of advection, a projection, a reflection at the projection, another half step of advection and a
-    /// projection (Zehnder et al. 2018, eq. 6). Advection is cubic. The reflection gives back the energy that the
-    /// projection removes.
+    /// Half a step of advection, a projection, a reflection (2 x projected - unprojected velocity), another half step
+    /// of advection and a projection (Zehnder et al. 2018, eq. 6). Advection is cubic. The reflection gives back the
+    /// energy that the projection removes.
     #[default]
     Reflection,
 }

@@ -102,8 +102,8 @@ impl WindFieldDesc {
         Ok(())
     }
 
-    /// Whether a field of one description can become one of the other by moving: everything except the place, and the
-    /// memory limit, is equal.
+    /// Whether a field of this description only has to move to become a field of the description `other`: both are
+    /// equal but for the place and the memory limit.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         Self { floor_center: other.floor_center, most_bytes: other.most_bytes, ..*self } == *other
     }
@@ -114,10 +114,11 @@ impl WindFieldDesc {
 pub struct WindFieldReport {
     /// Simulation time of the field, s: the present, or up to one step before it.
     pub time_s: f64,
-    /// Time of the last start from a steady field, s: when the field was first set, after a leap of more than a minute,
-    /// or after a move too far to follow.
+    /// Simulation time of the last start, s. A start sets the whole field to the steady flow of the mean wind. The
+    /// field starts when it is first set, after a leap of time of more than a minute, and after a move too far to
+    /// follow.
     pub begun_s: f64,
-    /// Length of its steps, s.
+    /// Length of the field's steps, s.
     pub step_s: f64,
     /// Whether the field is steady and rests: nothing is stepped.
     pub rests: bool,

@@ -17,7 +17,7 @@ use super::lattice::{Faces, Lattice};
 /// 1925). With the stress of rough walls ([`super::walls`]), the logarithmic profile of the inflow is then in balance.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroundMixing {
-    /// Product kappa u*, m/s; 0 for no mixing.
+    /// Product kappa u* of von Karman's constant and the friction velocity, m/s; 0 for no mixing.
     pub speed_m_s: f32,
     /// Longest mixing length, m.
     pub most_m: f32,
@@ -31,7 +31,7 @@ impl GroundMixing {
         f64::from(self.speed_m_s * self.most_m)
     }
 
-    /// Adds this viscosity to that of the cells.
+    /// Adds the viscosity of this mixing to `cells`, the viscosity of each cell, m2/s.
     pub fn add(&self, lattice: &Lattice, cells: &mut [f32]) {
         if self.speed_m_s <= 0.0 {
             return;

@@ -150,7 +150,7 @@ struct Scenery<'a> {
     terrain: Option<&'a Arc<TerrainHeights>>,
     /// Tiles of the host's terrain, used if there is no grid.
     tiles: Option<&'a Arc<Terrain>>,
-    /// Vector from the terrain's origin to the field's corner, m.
+    /// Vector from the terrain's origin to the field's corner, m (east, north, up).
     from_terrain: DVec3,
     /// Height of the ground where there is no terrain, m.
     level_m: f64,

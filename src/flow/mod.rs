@@ -24,10 +24,10 @@
 //! - Rough walls: air that slides along them feels the stress of the logarithmic law (`walls.rs`). Eddies smaller than
 //!   a cell: Vreman's eddy viscosity (2004), and over the ground Prandtl's kappa u* z, which maintains the inflow's
 //!   profile (`eddies.rs`). No constant is fitted.
-//! - Advection ([`Scheme`]): by default half a step, a projection, a reflection at it, another half step and a
-//!   projection (Zehnder et al. 2018). Each half step is cubic, limited to the range of the values it interpolates. The
-//!   advecting wind is extrapolated to the middle of each half step; with the wind of its beginning, vortices would
-//!   drift across the mean wind. Stam's and MacCormack's schemes are available too.
+//! - Advection ([`Scheme`]): by default half a step, a projection, a reflection (2 x projected - unprojected velocity),
+//!   another half step and a projection (Zehnder et al. 2018). Each half step is cubic, limited to the range of the
+//!   values it interpolates. The advecting wind is extrapolated to the middle of each half step; with the wind of its
+//!   beginning, vortices would drift across the mean wind. Stam's and MacCormack's schemes are available too.
 //! - Pressure ([`PressureMethod`]): conjugate gradients preconditioned by multigrid, or red-black over-relaxation. Both
 //!   stop by the remaining divergence. The previous step's potential is subtracted first, so rounding errors are only
 //!   those of the change.
@@ -36,19 +36,22 @@
 //!
 //! # Error
 //!
+//! A name in the column of commands stands for `cargo test --lib flow -- --nocapture NAME`, with `WELKIN_ACCEPT=1` in
+//! the environment where the column says "accept".
+//!
 //! | flow | found | command |
 //! |---|---|---|
-//! | lid-driven cavity, Re 100, 32^2, compared to Ghia et al. (1982) | 0.49 % of the lid's speed | `cargo test --lib flow -- --nocapture lid` |
-//! | same cavity, 64^2 and 128^2; Re 1000, 128^2, compared to Botella and Peyret (1998) | 0.49 % and 0.54 %; 0.73 % | the same with `WELKIN_ACCEPT=1` |
+//! | lid-driven cavity, Re 100, 32^2, compared to Ghia et al. (1982) | 0.49 % of the lid's speed | `lid` |
+//! | same cavity, 64^2 and 128^2; Re 1000, 128^2, compared to Botella and Peyret (1998) | 0.49 % and 0.54 %; 0.73 % | `lid`, accept |
 //! | Taylor-Green vortices, 64^2: share of energy kept, CFL 1 and 4 | 0.994 and 0.994 | `probe taylor-green --n 64 --cfl 1` |
-//! | same vortices, MacCormack's scheme | 0.769 and 0.455 | the same with `--scheme maccormack` |
-//! | same vortices, Stam's semi-Lagrangian scheme | 0.644 and 0.407 | the same with `--scheme semi-lagrangian` |
-//! | shear layers, 64^2 compared to 128^2, CFL 1 and 4 | 0.4 % and 0.9 % | `cargo test --lib flow -- --nocapture shear` |
-//! | vortex of 8 cells in radius, carried over 96 cells, CFL 1 and 4 | 1.3 % and 2.9 % of its speed | `.. whirl_drifts` |
-//! | vortex that leaves the box, seen a vortex's width from the side | 5.3 % of its speed while it leaves, then less than 0.4 % | `.. what_leaves` |
-//! | drag coefficient of a cube of 10 cells an edge, mean over 20 edges/U; reference 1.05 | 1.21 (16 % more) | the same with `WELKIN_ACCEPT=1`: `.. cube` |
-//! | cube on the floor of a turbulent channel: distance behind it, in edges, at which the flow reattaches; reference 1.6 (Martinuzzi and Tropea 1993); 8 and 16 cells an edge | 2.84 and 1.94 | .. `floor` |
-//! | largest divergence times cell size over speed, hills and boxes | below the tolerance, 1e-4 by default | `.. no_air_is_made` |
+//! | same vortices, MacCormack's scheme | 0.769 and 0.455 | `probe taylor-green --n 64 --cfl 1 --scheme maccormack` |
+//! | same vortices, Stam's scheme | 0.644 and 0.407 | `probe taylor-green --n 64 --cfl 1 --scheme semi-lagrangian` |
+//! | shear layers, 64^2 compared to 128^2, CFL 1 and 4 | 0.4 % and 0.9 % | `shear` |
+//! | vortex of 8 cells in radius, carried over 96 cells, CFL 1 and 4 | 1.3 % and 2.9 % of its speed | `whirl_drifts` |
+//! | vortex that leaves the box, seen a vortex's width from the side | 5.3 % of its speed while it leaves, then less than 0.4 % | `what_leaves` |
+//! | drag coefficient of a cube of 10 cells an edge, mean over 20 edges/U; reference 1.05 | 1.21 (16 % more) | `cube`, accept |
+//! | cube on the floor of a turbulent channel: distance behind it, in edges, where the flow reattaches; reference 1.6 (Martinuzzi and Tropea 1993); 8 and 16 cells an edge | 2.84 and 1.94 | `floor`, accept |
+//! | largest divergence times cell size over speed, hills and boxes | below the tolerance, 1e-4 by default | `no_air_is_made` |
 //!
 //! # Cost
 //!

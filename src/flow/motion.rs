@@ -26,7 +26,7 @@ impl FlowField {
         Ok(())
     }
 
-    /// Carries by the whole step and projects.
+    /// Makes a step of the schemes that do not reflect: advection over the whole step, mixing, and one projection.
     fn step_whole(&mut self, dt: f64) {
         let from = std::mem::take(&mut self.velocity);
         let [mut to, mut other, spare] = std::mem::take(&mut self.scratch);
@@ -39,9 +39,10 @@ impl FlowField {
         self.last_dt = dt;
     }
 
-    /// Carries by half a step, projects, reflects, carries by half a step and projects. The wind that carries is the
-    /// one at the middle of each half, extrapolated from the two winds before it: with the wind at the half's
-    /// beginning, vortices would drift across the mean wind.
+    /// Makes a step of the scheme [`Scheme::Reflection`]: half a step of advection, a projection, a reflection, another
+    /// half step of advection, and a projection. The air is carried by the wind in the middle of each half,
+    /// extrapolated from the two winds before it. With the wind at the half's beginning, vortices would drift across
+    /// the mean wind.
     fn step_mirrored(&mut self, dt: f64) {
         let from = std::mem::take(&mut self.velocity);
         let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
@@ -57,7 +58,8 @@ impl FlowField {
         self.carry(&mirrored, &wind, dt / 2.0, &mut Faces::default(), &mut to);
         self.mix(&wind, dt / 2.0, &mut mirrored, &mut to);
         self.project(&mut to, 1);
-        // `wind` now lies beyond the middle by half the distance of the beginning before it.
+        // `wind` is now middle + (middle - beginning) / 2, so 3 middle - 2 `wind` is the velocity at the beginning of
+        // the step.
         self.last_change_m_s = largest_of(&to, |c, at| to[c][at] - (3.0 * middle[c][at] - 2.0 * wind[c][at]));
         self.velocity = to;
         self.scratch = [middle, mirrored, wind];
@@ -99,7 +101,8 @@ impl FlowField {
         Ok(false)
     }
 
-    /// Projects `middle`, and sets `mirrored` to the reflection of the unprojected `middle` at its projection.
+    /// Projects `middle`, and sets `mirrored` to the reflection of `middle` at its projection: 2 x projected -
+    /// unprojected.
     fn reflect(&mut self, middle: &mut Faces, mirrored: &mut Faces) {
         for c in self.lattice.axes() {
             mirrored[c].copy_from_slice(&middle[c]);
@@ -111,7 +114,8 @@ impl FlowField {
         self.fill_all(mirrored);
     }
 
-    /// Sets `target` to `source` carried by the wind for `dt`, with ghosts filled.
+    /// Sets `target` to `source` carried by `wind` for `dt` seconds, and fills its ghosts. `other` is scratch memory of
+    /// MacCormack's scheme.
     fn carry(&mut self, source: &Faces, wind: &Faces, dt: f64, other: &mut Faces, target: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
         let carrier = Carrier::new(&self.lattice, wind, self.range());

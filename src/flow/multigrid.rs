@@ -73,7 +73,8 @@ impl GridLevel {
         level
     }
 
-    /// Calls `f` for every row along x with its neighbours and its colour's parity.
+    /// Calls `f` for every row along x with its neighbours and a number whose parity is the colour of the row's first
+    /// cell.
     fn each_row(&self, mut f: impl FnMut(&RowNeighbours, usize)) {
         let [nx, ny, nz] = self.n;
         for k in 0..nz {

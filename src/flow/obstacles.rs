@@ -290,7 +290,9 @@ impl SpanColumn {
         (span[1].min(high) - span[0].max(low)).max(0.0) / self.h
     }
 
-    /// Returns the share of moving objects, as [`Self::closed`], times their velocity along the component's axis.
+    /// Returns the sum over moving objects of the share of a cell's height that the object takes up, times its velocity
+    /// along the component's axis, m/s. For the vertical component the share is 1 or 0: whether the object holds the
+    /// face at the cell's bottom.
     fn pushed(&self, component: usize, cell: usize) -> f64 {
         self.moving.iter().map(|(span, v)| self.within(span, component, cell) * v[component]).sum()
     }

@@ -21,8 +21,11 @@ pub enum Side {
 /// Present effect of a side on the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
+    /// Periodic: what leaves comes in on the opposite side.
     Periodic,
+    /// Wall along which air slides without friction.
     Slip,
+    /// Wall at which air has the wall's velocity, m/s (east, north, up).
     NoSlip([f32; 3]),
     /// Inflow: air has the velocity of the outer wind.
     In,
@@ -103,7 +106,7 @@ pub(super) fn fill(lattice: &Lattice, roles: &Roles, outer: &Faces, component: u
         lattice.each_line(axis, |first| {
             let at = |i: isize| (first as isize + i * stride) as usize;
             for (end, role) in roles[axis].into_iter().enumerate() {
-                // Counted inward from the side: faces from 0, and values between faces from 0 too.
+                // Index counted inward from the side, from 0 for faces and for values between faces.
                 let edge = if across { n } else { n - 1 };
                 let inward = |i: isize| at(if end == 0 { i } else { edge - i });
                 match role {

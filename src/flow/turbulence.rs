@@ -22,13 +22,14 @@ const WHOLE: f64 = 1.0325;
 /// Ratios to the friction velocity of the standard deviations of the wind near the ground, along the mean wind, across
 /// it and upward, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
-/// Integral length along the wind, m, at 10 m over open grassland (25 z^0.35 / z0^0.063, Counihan 1975).
+/// Integral length along the wind, m, over open grassland: 25 z^0.35 / z0^0.063 (Counihan 1975) at z = 10 m with z0 =
+/// 0.03 m.
 const INTEGRAL_M: f64 = 70.0;
 
 /// Wave with the velocity sine x sin(k . place) + cosine x cos(k . place).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
-    /// Wave vector, 1/m.
+    /// Wave vector, rad/m.
     k_per_m: DVec3,
     /// Velocity of the sine part.
     sine: DVec3,

@@ -1,10 +1,10 @@
 //! Friction of the air at rough walls.
 //!
 //! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0). A wall
-//! of roughness length z0 therefore takes the momentum u*^2 = (kappa / ln(y/z0))^2 u^2 per second from each square
-//! metre of air that has the speed u at the distance y (Schumann 1975, for grids too coarse to resolve the layer at a
-//! wall). y is the distance to the middle of the open part of the cell at the wall. The logarithm takes y + z0 in place
-//! of y, so that it does not fall below zero in thin cells.
+//! of roughness length z0 therefore takes, divided by the density of the air, the momentum u*^2 = (kappa / ln(y/z0))^2
+//! u^2 per second from each square metre of air that has the speed u at the distance y (Schumann 1975, for grids too
+//! coarse to resolve the layer at a wall). y is the distance to the middle of the open part of the cell at the wall.
+//! The logarithm takes y + z0 in place of y, so that it does not fall below zero in thin cells.
 
 use super::{
     lattice::{Faces, Lattice},

@@ -2,9 +2,9 @@
 //! the ground from below by reflection.
 //!
 //! The radiance is approximated as I(tau, mu) = I0 + mu I1, where mu > 0 points down. The forward peak of the phase
-//! function counts as unscattered (Joseph, Wiscombe and Weinman 1976; its share f is the second moment as in delta-M,
-//! Wiscombe 1977). With the albedo w, the asymmetry g and the sun's irradiance F, the moments of the transfer equation
-//! are (Shettle and Weinman 1970):
+//! function counts as unscattered (Joseph, Wiscombe and Weinman 1976; its share f is the phase function's second
+//! moment, as in delta-M, Wiscombe 1977). With the albedo w, the asymmetry g and the sun's irradiance F, the moments of
+//! the transfer equation are (Shettle and Weinman 1970):
 //!
 //! * dI1/dtau = -3 (1 - w) I0 + 3 w F / (4 pi) e^(-tau/mu0)
 //! * dI0/dtau = -(1 - w g) I1 + 3 w g mu0 F / (4 pi) e^(-tau/mu0)
@@ -15,7 +15,8 @@
 
 use std::f64::consts::PI;
 
-/// Slab of one channel, in scaled optical depth.
+/// Slab of one channel, in scaled optical depth. Irradiances may have any unit; radiances are in that unit per
+/// steradian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slab {
     /// Scaled optical depth from top to bottom.
@@ -53,13 +54,13 @@ pub struct Solution {
     pub k: f64,
     /// Constant terms for I0 and I1.
     pub constant: [f64; 2],
-    /// Terms per unit of scaled depth.
+    /// Factors of t.
     pub slope: [f64; 2],
-    /// Terms that decrease from the top down.
+    /// Factors of e^(-k t), which decreases from the top down.
     pub rise: [f64; 2],
-    /// Terms that decrease from the bottom up.
+    /// Factors of e^(-k (depth - t)), which decreases from the bottom up.
     pub fall: [f64; 2],
-    /// Terms of the direct beam.
+    /// Factors of -e^(-t/mu0), the terms of the direct beam.
     pub beam: [f64; 2],
 }
 

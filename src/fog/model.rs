@@ -42,7 +42,8 @@ impl Term {
     }
 }
 
-/// Fog of a frame, prepared in f64; [`FogModel::uniform`] returns its form for shaders.
+/// Fog of a frame, prepared in f64; [`FogModel::uniform`] returns its form for shaders. Radiances and source terms are
+/// in the unit of the light's irradiance ([`super::FogLight`]) per steradian.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogModel {
     /// Kind of the fog.
@@ -72,7 +73,7 @@ pub struct FogModel {
     pub scaling: DVec3,
     /// Optical depth at 550 nm from the layer's top to the ground.
     pub depth_total: f64,
-    /// Unit vector towards the sun, or the moon if it is brighter.
+    /// Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     pub to_sun: DVec3,
     /// 1/cosine of the sun's zenith angle, as used in the solution of the slab.
     pub inverse_mu0: f64,
@@ -82,7 +83,7 @@ pub struct FogModel {
     pub forward: f64,
     /// Asymmetry of the rest of the scattering.
     pub smooth: f64,
-    /// Whether the exponential terms are used.
+    /// Whether `rise` and `fall` are used: the layer absorbs.
     pub absorbing: bool,
     /// Diffusion exponent per channel.
     pub k: DVec3,
@@ -107,9 +108,9 @@ pub struct FogModel {
     pub solutions: Option<[Solution; 3]>,
     /// Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
     pub lit: f64,
-    /// Strength of the patches.
+    /// Strength of the patches, 0 (even) to 1.
     pub patch_amount: f64,
-    /// Waves of the patches, as (wave vector, phase at the camera).
+    /// Waves of the patches, as (wave vector, rad/m, phase at the camera, rad).
     pub patch_waves: [(DVec3, f64); PATCH_WAVES],
     /// Lag of the patches where the wind flows round obstacles.
     pub(crate) detour: Option<Detour>,

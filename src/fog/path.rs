@@ -105,7 +105,7 @@ struct RayCourse {
     low_mu: f64,
     /// Length of the part before the lowest point, m.
     before: f64,
-    /// Length of the part after it, m.
+    /// Length of the part after the lowest point, m.
     after: f64,
     /// Altitude at the upper end of the first part, m.
     high: f64,
@@ -153,7 +153,7 @@ pub fn falling_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     let c = ray_course(m, h0, mu, t);
     let f = &m.falling;
     let reach = f.top.map(|h| layer_reach(m.curvature, c.low_mu, h - c.low));
-    // Precipitation falls to the ground at any altitude, so the ray is never below it.
+    // Precipitation reaches down to the ground at any altitude, so no part of the ray lies below the precipitation.
     let part = |length: f64, high: f64| {
         let r = reach.map(|x| x.min(length));
         let [h0, h1] = f.top.map(|k| k.clamp(c.low, high));
@@ -172,7 +172,8 @@ pub fn layer_path(m: &FogModel, h0: f64, mu: f64, t: f64) -> LayerPath {
     let RayCourse { end_altitude, end_mu, .. } = c;
     if m.kind == FogKind::Exponential {
         let depth = exponential_path(m, h0, mu, t, end_altitude, end_mu);
-        // The ends of the part with most of the depth, which lies at the denser end of the ray.
+        // The layer has no edge: `first` and `last` bound the part with most of the depth, at the denser end of the
+        // ray.
         let dense = m.extinction * ((m.knots[0] - h0.min(end_altitude)) / m.knots[1]).min(60.0).exp();
         let length = (depth / dense.max(1e-20)).min(t);
         let first = if end_altitude < h0 { t - length } else { 0.0 };

@@ -6,10 +6,10 @@
 //! Along the ray this depth is taken as linear in optical path, which is exact for flat layers. Each exponential of the
 //! depth then integrates to an exponential.
 //!
-//! The share f of the scattering goes forward, into a lobe. To the ray it adds the mean radiance K over the lobe about
-//! the ray. With the full (unscaled) optical depth t, the transfer equation is dI/dt = I - (1 - f) J - f K. The light
-//! of a host's object is attenuated by the full depth. The object hides the share e^-t of the light from behind it, so
-//! the contrast of a black target is e^-t.
+//! The share f of the scattering goes forward, into a lobe. This scattering adds to the ray the mean radiance K over
+//! the lobe about the ray. With the full (unscaled) optical depth t, the transfer equation is dI/dt = I - (1 - f) J - f
+//! K. The light of a host's object is attenuated by the full depth. The object hides the share e^-t of the light from
+//! behind it, so the contrast of a black target is e^-t.
 //!
 //! * **Steep rays**: the lobe is narrow compared with the ray's angle to the horizon, so K is the radiance in the ray's
 //!   own direction. The solution is the delta-scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t),

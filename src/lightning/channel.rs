@@ -109,8 +109,8 @@ impl Channel {
         std::iter::once(self.points_m.as_slice()).chain(self.branches.iter().map(|b| b.points_m.as_slice()))
     }
 
-    /// Ends every path where it first meets an object. `met` returns where on an interval that is, 0 to 1. Returns
-    /// whether the main path was cut.
+    /// Ends every path where it first meets an object. `met` returns the point of an interval between two places at
+    /// which it meets an object, 0 to 1; `None` if it meets none. Returns whether the main path was cut.
     pub fn cut(&mut self, met: impl Fn(DVec3, DVec3) -> Option<f64>) -> bool {
         let cut = |points: &mut Vec<DVec3>| {
             let hit = points.windows(2).enumerate().find_map(|(i, p)| Some((i, p[0].lerp(p[1], met(p[0], p[1])?))));
@@ -143,7 +143,7 @@ impl Channel {
         self.points_m.windows(2).map(|p| (p[1] - p[0]).length()).sum()
     }
 
-    /// Returns the distance from a place to its nearest point, m.
+    /// Returns the distance from a place to the nearest point of the channel, m.
     pub fn distance_m(&self, place_m: DVec3) -> f64 {
         let to_stretch = |ends: &[DVec3]| {
             let (a, way) = (ends[0], ends[1] - ends[0]);
@@ -183,9 +183,9 @@ fn wander(chance: &mut RandomStream, (start, end): (DVec3, DVec3), halvings: u32
 
 /// Branches of the first order: the smallest number, and the largest number of additional ones.
 const BRANCHES: (f64, f64) = (8.0, 10.0);
-/// Range of their angles to the path that they leave, degrees.
+/// Range of the angles of branches to the path that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
-/// Range of the ratio of their lengths to the rest of the path.
+/// Range of the ratio of a branch's length to the rest of the path that it leaves.
 const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;

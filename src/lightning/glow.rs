@@ -23,8 +23,8 @@ pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     }
 }
 
-/// Returns the luminance of the visible side of the clouds. `h` is the distance of a source from the face, `r` the
-/// distance along the face, and `k` the intensity, cd.
+/// Returns the luminance of the visible side of the clouds, cd/m2. `h` is the distance of a source from the face, `r`
+/// the distance along the face, and `k` the intensity, cd.
 #[cfg(test)]
 fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)

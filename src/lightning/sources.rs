@@ -31,7 +31,7 @@ pub(crate) struct LightSource {
 }
 
 impl LightSource {
-    /// Whether it is in a cloud.
+    /// Whether the source is in a cloud.
     pub fn is_hidden(&self) -> bool {
         self.depth_m > 0.0
     }
@@ -63,7 +63,7 @@ impl FlashSources {
 impl Strike {
     /// Returns the sources of its light, averaged over a span. A cloud of height H lets (1 - d/H) of the light of a
     /// source d above its base out through the base, and the rest through the top. Droplets absorb hardly any light, so
-    /// it wanders until it leaves the cloud (gambler's ruin).
+    /// the light wanders until it leaves the cloud (gambler's ruin).
     pub fn sources(&self, span: &Span, course: Course) -> FlashSources {
         let mut sources = FlashSources::default();
         let ends = [self.channel.points_m[0], self.channel.end_m()];

@@ -24,8 +24,8 @@ impl ChannelUniform {
     ///
     /// Let M be the 3 x 3 matrix of the rows x, y and w of `clip`. It takes a unit direction d to M d = w (X, Y, 1),
     /// where w is the clip w of d, and X and Y are its place in the picture, -1 to 1. The cone over dX dY has the solid
-    /// angle |det M^-1| w^3 dX dY, and a pixel covers dX dY = 4 / number of pixels. `pixel_sr` is this without w^3. For
-    /// parallel rays w is constant, and a pixel has an area, `pixel_m2`, instead.
+    /// angle |det M^-1| w^3 dX dY, and a pixel covers dX dY = 4 / number of pixels. `pixel_sr` = |det M^-1| dX dY, the
+    /// solid angle without w^3. For parallel rays w is constant, and a pixel has an area, `pixel_m2`, instead.
     pub fn new(clip: &DMat4, size: [u32; 2]) -> Self {
         let rows = [0, 1, 3].map(|i| clip.row(i).truncate());
         let pixels = f64::from(size[0]) * f64::from(size[1]);

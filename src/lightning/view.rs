@@ -35,7 +35,8 @@ const FRAME_S: f64 = 1.0 / 60.0;
 const LONGEST_FRAME_S: f64 = 0.5;
 /// Illuminance at the eye below which a flash is not drawn, lux.
 const FAINTEST_LUX: f64 = 1e-7;
-/// Least illuminance as a share of all other light on the ground; the larger of both limits counts.
+/// Illuminance at the eye, as a share of all other light on the ground, below which a flash is not drawn. The larger of
+/// this limit and [`FAINTEST_LUX`] counts.
 const FAINTEST_SHARE: f64 = 1e-5;
 
 /// Interval of time over which a frame averages the light of flashes.

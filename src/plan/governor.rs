@@ -161,8 +161,8 @@ impl Governor {
         }
     }
 
-    /// Returns the median of the last reports, so that a slow frame or two have no effect. Of an even number it is the
-    /// lower middle one.
+    /// Returns the median of the last reports, so that a slow frame or two have no effect. For an even number of
+    /// reports it is the lower of the two in the middle.
     fn median(&self) -> f64 {
         let mut sorted = self.recent;
         let seen = &mut sorted[..self.reports.clamp(1, SEEN)];

@@ -194,8 +194,9 @@ struct Gauging<U> {
 /// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share, because
 /// tables are not built in finer strips. The second is the usual share, for frames with time to spare.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Largest work on the sky's tables in a frame, as a share of the picture's own work, where this is more than the usual
-/// share of a build. It keeps a frame with such work below 1.5 times the time of a frame without.
+/// Largest work on the sky's tables in a frame, as a share of the picture's own work. Where the usual share of a build
+/// ([`SHARE`]) is more work than this, the usual share is the limit. It keeps a frame with such work below 1.5 times
+/// the time of a frame without.
 const SLICE: f64 = 0.3;
 
 /// Largest relative change of a pixel in one frame while a part fades.

@@ -14,7 +14,7 @@ use super::parts::{Ladder, Set};
 const WHOLE: usize = 64;
 /// Number of trials in order of increasing work, for each pair of steps.
 const TRIALS: usize = 3;
-/// Number of sets by each of the two criteria to which further steps are added.
+/// Number of sets to which further steps are added, by each of the two criteria of [`Search::downwards`].
 const FRONT: usize = 3;
 /// Strain above which other parts are not expected to compensate.
 const MOST_STRAIN: f64 = 3.0;

@@ -48,7 +48,7 @@ pub struct Price {
 }
 
 impl Default for Price {
-    /// Fitted by `lab chart` to a software driver, where look-ups are dear (docs/lab).
+    /// Returns the costs that `lab chart` fitted to a software driver, where look-ups are dear (docs/lab).
     fn default() -> Self {
         Self { texel: 6.4, byte: 0.8 }
     }

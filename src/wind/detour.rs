@@ -19,7 +19,7 @@ use super::WindVolume;
 
 use crate::numerics::smooth;
 
-/// Nodes of a map on each side: `DETOUR_SIDE` of `shaders/fog/uniform.wgsl`.
+/// Number of nodes along a side of a map: `DETOUR_SIDE` of `shaders/fog/uniform.wgsl`.
 pub(crate) const DETOUR_SIDE: usize = 24;
 /// Height above ground of the wind along which patches are traced, m.
 const HEIGHT_M: f64 = 2.0;
@@ -28,7 +28,7 @@ const LEAST_WIND_M_S: f64 = 0.2;
 /// Number of steps back over three lives of a patch.
 const STEPS: usize = 48;
 /// Share of the map's width at each side over which detours fade to 0, so that the pattern continues unchanged outside.
-/// A solved field blends into the weather's wind there; the entering wind is therefore sampled inside of it.
+/// A solved field blends into the weather's wind there; the entering wind is therefore sampled inside these edges.
 const EDGE: f64 = 0.15;
 /// Number of heights above ground at which a grid is sampled to find how high its obstacles reach.
 const LEVELS: usize = 12;

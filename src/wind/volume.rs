@@ -24,7 +24,7 @@ pub(crate) struct WindVolume {
     pub nodes: [u32; 3],
     /// Velocity (east, north, up), m/s, times the share, and the share. East varies fastest, then north, then up.
     pub values: Vec<[f32; 4]>,
-    /// First and last time for which it holds, s; `None` for all times.
+    /// First and last time for which the wind holds, s; `None` for all times.
     pub holds_s: Option<[f64; 2]>,
     /// Number that differs whenever the values have changed.
     revision: u64,
@@ -77,7 +77,7 @@ impl WindVolume {
         self.revision
     }
 
-    /// Whether it holds at a time.
+    /// Whether the wind holds at a time.
     pub fn holds_at(&self, time_s: f64) -> bool {
         self.holds_s.is_none_or(|[first, last]| (first..=last).contains(&time_s))
     }
