@@ -28,8 +28,9 @@ struct CloudHere {
     frayed_gap: f32,
     // Excess at which the place reaches the layer's top.
     dome: f32,
-    // Distance within which the place's threshold stays the same, m, and its change per metre beyond.
+    // Distance within which the place's threshold stays the same, m.
     steady: f32,
+    // Largest change of the threshold per metre beyond that distance.
     slope: f32,
     // Distance without cloud, whatever the map holds, m.
     clear: f32,

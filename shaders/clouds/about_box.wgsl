@@ -3,21 +3,27 @@
 //!include "clouds/box.wgsl"
 //!include "clouds/light.wgsl"
 
-// Place in the box: position from the box's low corner, m, and height, 0 at the base to 1 at the top.
+// A place in the box.
 struct CloudPlace {
+    // Position along x and y from the box's low corner, m.
     level: vec2f,
+    // Height, 0 at the base to 1 at the top.
     height: f32,
 }
 
 // Cloud at a place; the names are those of about.wgsl.
 struct CloudHere {
+    // Excess over the threshold, always 0.
     excess: f32,
+    // Extinction, 1/m.
     extinction: f32,
+    // Share of the place that is cloud, always 1.
     share: f32,
 }
 
 // Blur of clouds, of which the box has none.
 struct CloudBlur {
+    // Standard deviation of the excess, always 0.
     spread: f32,
 }
 

@@ -18,7 +18,8 @@ struct CloudLayer {
     sun: vec4f,
     // Radiance of sky and higher clouds above the layer, cd/m^2 times exposure.
     above: vec4f,
-    // Radiance of ground and lower clouds below it, cd/m^2 times exposure; scaled width of a cloud from side to side.
+    // Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled width of a cloud from side to
+    // side.
     below: vec4f,
     // Index of the medium; ratio of scaled extinction to extinction; share of the layer that is drawn as a volume;
     // 1/side of the solid noise, 1/m.
@@ -59,16 +60,23 @@ struct CloudMedium {
 
 // Clouds of a frame: their light, media, layers, and cells over rain areas.
 struct CloudsUniform {
-    // Unit vector towards the sun or moon that lights the clouds, (east, north, up) at the camera; number of layers.
+    // Unit vector towards the sun or moon that lights the clouds, (east, north, up) at the camera.
     to_sun: vec3f,
+    // Number of layers.
     layer_count: u32,
-    // Altitude of the camera, m; radius of the planet's ground, m; jitter of the first step.
+    // Altitude of the camera, m.
     altitude: f32,
+    // Radius of the planet's ground, m.
     radius: f32,
+    // Offset of a ray's samples within their steps, 0 to 1.
     jitter: f32,
+    // Padding.
     unused: f32,
+    // Scattering of droplets (0) and ice (1).
     media: array<CloudMedium, 2>,
+    // Layers, of which the first `layer_count` count.
     layers: array<CloudLayer, 16>,
+    // Cells of cloud over rain areas.
     areas: array<CloudArea, 16>,
 }
 

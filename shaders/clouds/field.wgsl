@@ -23,9 +23,11 @@ const MOST_FRAYED: f32 = 0.8;
 // Change of the map's number over one distance from cloud to cloud.
 const MAP_SLOPE: f32 = 4.0;
 
-// A place in a layer: m east and north of the camera, and height, 0 at the base to 1 at the top.
+// A place in a layer.
 struct CloudPlace {
+    // Position east and north of the camera, m.
     level: vec2f,
+    // Height, 0 at the layer's base to 1 at its top.
     height: f32,
 }
 
@@ -40,11 +42,13 @@ const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // Share by which an anvil's edges fray less than its towers'.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
-// Blur of clouds in a pixel that spans several of them: mip levels of the map and of the solid noise, and standard
-// deviation of the excess within the pixel. All are 0 nearby.
+// Blur of clouds in a pixel that spans several of them. All is 0 nearby.
 struct CloudBlur {
+    // Mip level of the map.
     map: f32,
+    // Mip level of the solid noise.
     solid: f32,
+    // Standard deviation of the excess within the pixel.
     spread: f32,
 }
 

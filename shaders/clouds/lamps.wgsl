@@ -3,6 +3,7 @@
 
 // A lamp or a flash that lights clouds.
 struct CloudLamp {
+    // Lamp or flash as all shaders read it.
     light: HostLight,
     // Radius of the source, m.
     radius: f32,
@@ -10,15 +11,19 @@ struct CloudLamp {
     even: f32,
     // Above 0 for a source inside a cloud, whatever lies on the path.
     buried: f32,
+    // Padding.
     pad: f32,
 }
 
 // All lamps and flashes that light clouds.
 struct CloudLamps {
+    // Number of lamps and flashes.
     count: u32,
-    // First row of the glow in its target, and the glow's size, texels.
+    // First row of the glow in its target.
     row: f32,
+    // Width and height of the glow's picture, texels.
     size: vec2f,
+    // Lamps and flashes, of which the first `count` count.
     lamps: array<CloudLamp, 16>,
 }
 

@@ -18,20 +18,27 @@ const CLOUD_PI: f32 = 3.1415927;
 // Steepness with which the beam is divided between top and side of the box.
 const PART_RATE: f32 = 1.0;
 
-// Scaled depths of cloud around a place: straight up and down, towards the sun, horizontally to the side where the sun
-// stands and away from it, and across the sun's direction to the nearer and the farther edge.
+// Scaled depths of cloud around a place.
 struct CloudDepths {
+    // Depth straight up.
     above: f32,
+    // Depth straight down.
     below: f32,
+    // Depth towards the sun.
     to_sun: f32,
+    // Level depth towards the side where the sun stands.
     near: f32,
+    // Level depth away from the sun.
     far: f32,
+    // Level depth across the sun's direction, to the nearer edge of the cloud.
     left: f32,
+    // Level depth across the sun's direction, to the farther edge of the cloud.
     right: f32,
 }
 
 // Interval of a ray, and the place on it whose light counts for all of it.
 struct CloudStretch {
+    // Unit vector along the ray.
     direction: vec3f,
     // Distance at which the interval begins, m.
     begun: f32,
@@ -43,14 +50,16 @@ struct CloudStretch {
     to_eye: f32,
 }
 
-// Scattered light per unit of the sun's irradiance on a surface that faces it (`sun`), and per unit of the radiance of
-// sky and ground.
+// Scattered light, per unit of the light that falls on the layer.
 struct CloudScattered {
+    // Sunlight, per unit of the sun's irradiance on a surface that faces it, 1/sr.
     sun: f32,
     // Share of the sunlight that is scattered for the first time. Multiplied by the phase function, it gives the light
     // that is scattered once.
     once: f32,
+    // Light of the sky, per unit of its radiance.
     sky: f32,
+    // Light of the ground, per unit of its radiance.
     ground: f32,
 }
 

@@ -5,16 +5,18 @@ const LOST: f32 = 30000.0;
 
 // Pixels that a frame marches, and its reprojection from the last frame.
 struct CloudsPicture {
-    // Size of the picture, pixels; side of a square; index of the pixel in it that this frame marches.
+    // Size of the picture, pixels.
     size: vec2u,
+    // Side of a square of pixels, of which each frame marches one.
     side: u32,
+    // Index of the pixel in the square that this frame marches.
     place: u32,
     // Matrix from a place relative to the camera (east, north, up), m, to the last frame's clip space, before clouds
     // and camera moved.
     before: mat4x4f,
-    // Movement of a cloud relative to the camera since the last frame, m; ratio of this frame's exposure to the last
-    // one's, 0 without history.
+    // Movement of a cloud relative to the camera since the last frame, m.
     moved: vec3f,
+    // Ratio of this frame's exposure to the last one's, 0 without history.
     exposed: f32,
 }
 

@@ -17,9 +17,9 @@ const CLOUD_CLEAR_FROM: f32 = 6.95;
 struct CloudLocal {
     // The layer with its local threshold, dome and extinction.
     layer: CloudLayer,
-    // Distance within which the layer's threshold stays the same, m, and the largest change of the threshold per metre
-    // beyond.
+    // Distance within which the layer's threshold stays the same, m.
     steady: f32,
+    // Largest change of the threshold per metre beyond that distance.
     slope: f32,
 }
 

@@ -18,8 +18,9 @@ struct CloudShadows {
     told: f32,
     // Height above the plane from which on the mean holds, m.
     top: f32,
-    // Extinction of the air at the camera's height, 1/m, and its scale height, m.
+    // Extinction of the air at the camera's height, 1/m.
     haze: f32,
+    // Scale height of that extinction, m.
     haze_height: f32,
 }
 

@@ -30,18 +30,39 @@ use crate::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LayerUniform {
+    /// Altitude of the base, m; 1/thickness, 1/m; 1/distance from cloud to cloud, 1/m; extinction inside, 1/m.
     pub size: [f32; 4],
+    /// Threshold of the map, dome, amplitude of the fraying, 1/softness.
     pub shape: [f32; 4],
+    /// Position of the camera on the map's first and second sheet, in their periods.
     pub sheets: [f32; 4],
+    /// Position of the camera in the solid noise, in its period (up: from the layer's base); share of the cellular
+    /// pattern.
     pub solid: [f32; 4],
+    /// Illuminance by the sun or moon on a surface that faces it, lux times exposure.
     pub sun: [f32; 4],
+    /// Radiance of sky and higher clouds above the layer, cd/m^2 times exposure.
     pub above: [f32; 4],
+    /// Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled width of a cloud from side to
+    /// side.
     pub below: [f32; 4],
+    /// Index of the medium; ratio of scaled extinction to extinction; share of the layer that is drawn as a volume;
+    /// 1/side of the solid noise, 1/m.
     pub medium: [f32; 4],
+    /// Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
+    /// excess.
     pub stretch: [f32; 4],
+    /// Distance that the top lies downwind of the base (east, north), m; least excess that has an anvil above it;
+    /// length of the first two, m.
     pub lean: [f32; 4],
+    /// Host's map: position of the camera (east, north), in cells from the middle of the first one; 1/side of a cell,
+    /// 1/m; row of the map's first texels.
     pub mapped: [f32; 4],
+    /// Number of the map's cells east and north, 0 without a map; growth of the domes times the dome squared; largest
+    /// change of the threshold per metre.
     pub cells: [f32; 4],
+    /// Threshold, dome and extinction, 1/m, where the layer is filled over rain areas; number of areas, 0 for other
+    /// layers.
     pub filled: [f32; 4],
 }
 
@@ -49,7 +70,9 @@ pub(crate) struct LayerUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct AreaUniform {
+    /// Middle, m east and north of the camera; unit vector to the right.
     pub place: [f32; 4],
+    /// Half extents to the right and ahead, width of the edge, smaller half extent, m.
     pub extent: [f32; 4],
 }
 
@@ -57,7 +80,10 @@ pub(crate) struct AreaUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct MediumUniform {
+    /// Phase function: asymmetry of the Henyey-Greenstein lobe and of Draine's, Draine's alpha, weight of Draine's.
     pub lobes: [f32; 4],
+    /// Share of scattering that counts as straight on; value at which the phase function is cut off, 1/sr; 1 -
+    /// asymmetry of the rest; single-scattering albedo of the rest.
     pub smooth: [f32; 4],
 }
 
@@ -65,14 +91,23 @@ pub(crate) struct MediumUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CloudsUniform {
+    /// Unit vector towards the sun or moon that lights the clouds, (east, north, up) at the camera.
     pub to_sun: [f32; 3],
+    /// Number of layers.
     pub layer_count: u32,
+    /// Altitude of the camera, m.
     pub altitude: f32,
+    /// Radius of the planet's ground, m.
     pub radius: f32,
+    /// Offset of a ray's samples within their steps, 0 to 1.
     pub jitter: f32,
+    /// Padding.
     pub unused: f32,
+    /// Scattering of droplets (0) and ice (1).
     pub media: [MediumUniform; 2],
+    /// Layers, of which the first `layer_count` count.
     pub layers: [LayerUniform; MAX_CLOUD_LAYERS],
+    /// Cells of cloud over rain areas.
     pub areas: [AreaUniform; MAX_AREAS],
 }
 
@@ -80,11 +115,18 @@ pub(crate) struct CloudsUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct PictureUniform {
+    /// Size of the picture, pixels.
     pub size: [u32; 2],
+    /// Side of a square of pixels, of which each frame marches one.
     pub side: u32,
+    /// Index of the pixel in the square that this frame marches.
     pub place: u32,
+    /// Matrix from a place relative to the camera (east, north, up), m, to the last frame's clip space, before clouds
+    /// and camera moved.
     pub before: [[f32; 4]; 4],
+    /// Movement of a cloud relative to the camera since the last frame, m.
     pub moved: [f32; 3],
+    /// Ratio of this frame's exposure to the last one's, 0 without history.
     pub exposed: f32,
 }
 
@@ -92,16 +134,27 @@ pub(crate) struct PictureUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct ShadowUniform {
+    /// Unit vector towards the light (east, north, up), never level.
     pub to_light: [f32; 3],
+    /// Height of the plane above the sea, m.
     pub plane: f32,
+    /// Position of the camera in the map, in periods.
     pub camera: [f32; 2],
+    /// Side of the map, m; the map repeats with this period.
     pub period: f32,
+    /// Height of the camera above the plane, m.
     pub eye: f32,
+    /// Mean share of the direct light over all places.
     pub mean: f32,
+    /// Weight of the map against that mean, 0 to 1.
     pub told: f32,
+    /// Height above the plane from which on the mean holds, m.
     pub top: f32,
+    /// Extinction of the air at the camera's height, 1/m.
     pub haze: f32,
+    /// Scale height of that extinction, m.
     pub haze_height: f32,
+    /// Padding.
     pub pad: [f32; 3],
 }
 

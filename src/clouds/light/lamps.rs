@@ -21,24 +21,33 @@ const REFLECTS: f64 = 0.7;
 /// Distance at which a lamp inside a cloud is taken to light it, m.
 const NEAREST_M: f64 = 5.0;
 
-/// A lamp or a flash: `CloudLamp` of `shaders/clouds/lamps.wgsl`, which describes the fields.
+/// A lamp or a flash: `CloudLamp` of `shaders/clouds/lamps.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CloudLampUniform {
+    /// Lamp or flash as all shaders read it.
     pub light: LightUniform,
+    /// Radius of the source, m.
     pub radius: f32,
+    /// Ratio of the mean intensity over all directions to that in the middle of the beam.
     pub even: f32,
+    /// Above 0 for a source inside a cloud, whatever lies on the path.
     pub buried: f32,
+    /// Padding.
     pub pad: f32,
 }
 
-/// All lamps and flashes: `CloudLamps` of `shaders/clouds/lamps.wgsl`, which describes the fields.
+/// All lamps and flashes: `CloudLamps` of `shaders/clouds/lamps.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LampsUniform {
+    /// Number of lamps and flashes.
     pub count: u32,
+    /// First row of the glow in its target.
     pub row: f32,
+    /// Width and height of the glow's picture, texels.
     pub size: [f32; 2],
+    /// Lamps and flashes, of which the first `count` count.
     pub lamps: [CloudLampUniform; LAMPS],
 }
 
