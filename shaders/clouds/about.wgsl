@@ -9,9 +9,10 @@ const SUN_STEPS: u32 = 5u;
 const SUN_FRAYED: u32 = 3u;
 // Ends of the intervals, in distances from cloud to cloud.
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
-// Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
-// and of the solid noise, per side of its cube (`SOLID_SKIP`). Steeper places are too small to matter.
+// Largest slope of the map that rays assume when they skip clear air, per distance from cloud to cloud. Steeper places
+// are too small to matter.
 const MAP_SKIP: f32 = 6.0;
+// Largest slope of the solid noise that rays assume when they skip clear air, per side of its cube.
 const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.

@@ -62,9 +62,9 @@ struct FogUniform {
     rise: array<vec4f, 2>,
     // Source term times e^(-k (total - depth)).
     fall: array<vec4f, 2>,
-    // Waves of the patches: wave vector, phase at the camera.
+    // Waves of the patches: wave vector, rad/m, and phase at the camera, rad.
     patch_waves: array<vec4f, 6>,
-    // Waves of the curtains of rain (src/fog/patterns.rs): wave vector, phase at the camera.
+    // Waves of the curtains of rain: wave vector, rad/m, and phase at the camera, rad.
     curtain_waves: array<vec4f, 8>,
     // Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     falling: vec4f,
@@ -81,13 +81,15 @@ const DETOUR_SIDE: u32 = 24u;
 
 // Fog and the detours of its patches round obstacles (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
 struct LowAir {
+    // Fog of the frame.
     fog: FogUniform,
-    // Nodes of the map per metre, and the camera's position in the map, in nodes from its south-west corner: east,
-    // north.
+    // Nodes of the map of detours per metre, east and north, 1/m.
     detour_scale: vec2f,
+    // Position of the camera in the map, in nodes from its south-west corner, east and north.
     detour_camera: vec2f,
-    // Altitude of the map's floor relative to the camera, m; 1/height above it at which detours end, 1/m.
+    // Altitude of the map's floor relative to the camera, m.
     detour_floor: f32,
+    // 1/height above the floor at which detours end, 1/m.
     detour_fade: f32,
     // Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south to
     // north.

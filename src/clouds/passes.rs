@@ -79,14 +79,17 @@ pub(super) struct Wanted {
     pub march: bool,
     /// Whether to resolve the whole picture.
     pub resolve: bool,
-    /// Whether to draw the panorama (`round`), and whether the picture shows it (`shows_round`).
+    /// Whether to draw the panorama.
     pub round: bool,
+    /// Whether the picture shows the panorama.
     pub shows_round: bool,
 }
 
 /// Inputs of the passes.
 pub(super) struct CloudFrame<'a> {
+    /// Passes to draw in this frame.
     pub wanted: Wanted,
+    /// Block with the clouds of the frame.
     pub clouds: CloudsUniform,
     /// Reprojection, and the pixels that this frame marches.
     pub picture: PictureUniform,
@@ -96,6 +99,7 @@ pub(super) struct CloudFrame<'a> {
     pub sky: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
     /// Texture of the light behind the sky's own light: stars and the glow between them.
     pub behind: Option<&'a wgpu::Texture>,
+    /// Inputs of the shadows; `None` without shadows.
     pub shaded: Option<Shaded<'a>>,
     /// Whether shafts of light are drawn: the air in front of the surfaces is shaded too.
     pub has_shafts: bool,
@@ -109,8 +113,9 @@ pub(super) struct CloudFrame<'a> {
     pub is_coarse: bool,
     /// Use that the frame makes of earlier frames.
     pub past: HistoryUse,
-    /// Whether the host's depth has several samples a pixel, and which kinds of depth there are (`depth_kinds`).
+    /// Whether the host's depth has several samples a pixel.
     pub is_multisampled: bool,
+    /// Kinds of depth that the host's depth texture may hold (`Rays::depth_kinds`).
     pub depth_kinds: f64,
 }
 

@@ -66,6 +66,7 @@ struct FrameProgress {
 /// Clouds of a view.
 #[derive(Default)]
 pub(crate) struct CloudsView {
+    /// Settings of the clouds in this view.
     pub settings: CloudSettings,
     /// Layers over the camera in this frame; `None` without clouds or volumes.
     overhead: Option<CloudLayers>,

@@ -20,6 +20,7 @@ use crate::error::{Error, Result};
 pub struct FlowField {
     /// Settings with which the field was created.
     pub(super) settings: FlowSettings,
+    /// Grid of the box.
     pub(super) lattice: Lattice,
     /// Present roles of the sides.
     pub(super) roles: Roles,

@@ -35,8 +35,10 @@ pub(crate) struct HeldFlow {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedFlow {
+    /// Changes in order of time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     changes: Vec<SavedChange>,
+    /// Present field, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     field: Option<SavedField>,
 }

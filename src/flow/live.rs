@@ -136,7 +136,9 @@ impl Inflow {
 
 /// Ground and boxes around a field. Their positions are measured from the field's lowest corner, m (east, north, up).
 struct Scenery<'a> {
+    /// World with the host's terrain and boxes.
     world: &'a World,
+    /// Anchor of the field.
     anchor: Anchor,
     /// Lowest corner of the field, cells from the anchor.
     corner: [i64; 3],
@@ -250,11 +252,13 @@ pub(super) struct Start {
 
 /// Field of a context, with the state of its steps.
 pub(super) struct Live {
+    /// Description of the field.
     pub desc: WindFieldDesc,
     /// Origin and axes from which the field's cells are counted.
     pub anchor: Anchor,
     /// Lowest corner, cells from the anchor.
     pub corner: [i64; 3],
+    /// Velocity of the air, its obstacles and its solver.
     pub field: FlowField,
     /// Simulation time of the velocities, s.
     pub time_s: f64,

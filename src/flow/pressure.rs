@@ -77,6 +77,7 @@ impl Solved {
 /// Pressure equation on all grids, and vectors of its solvers.
 #[derive(Clone, Debug)]
 pub(super) struct Pressure {
+    /// Equation on all grids, finest first.
     levels: Levels,
     /// Residual.
     r: Vec<f32>,

@@ -20,13 +20,17 @@ const SOLVER: &str = "reflection 1";
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedDesc {
+    /// Centre of the field's floor in the host's world, m.
     floor_center_m: [f64; 3],
+    /// Size of a cell east, north and up, m.
     cell_m: [f64; 3],
+    /// Numbers of cells east, north and up.
     cells: [u32; 3],
     /// Whether the mode is [`WindFieldMode::Running`].
     running: bool,
     /// Whether the walls are [`WindWalls::Smooth`].
     smooth: bool,
+    /// Limit of the memory of the field, bytes.
     most_bytes: u64,
 }
 
@@ -34,7 +38,9 @@ pub(super) struct SavedDesc {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedChange {
+    /// Simulation time of the change, s.
     start_s: f64,
+    /// Description from then on; `None` for no field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     desc: Option<SavedDesc>,
 }
@@ -45,23 +51,35 @@ pub(super) struct SavedChange {
 pub(super) struct SavedField {
     /// Name of the solver ([`SOLVER`]).
     solver: String,
+    /// Simulation time of the velocities, s.
     time_s: f64,
+    /// Simulation time of the last start, s.
     begun_s: f64,
+    /// Origin of the anchor in the host's world, m.
     anchor_m: [f64; 3],
+    /// Rotation from the host's axes to (east, north, up) at the anchor, column by column.
     anchor_axes: [f64; 9],
+    /// Altitude of the anchor, m.
     anchor_altitude_m: f64,
+    /// Lowest corner of the field, cells from the anchor.
     corner: [i64; 3],
     /// Hashes of the scenery, in hexadecimal digits.
     stood: [String; 2],
+    /// Wind for which a steady field was solved: mean at 10 m east and north, m/s, and roughness length, m.
     solved_for: [f64; 3],
+    /// Time for which a steady field has not rested, s.
     awake_s: f64,
+    /// Whether a steady field rests.
     rests: bool,
+    /// Length of the previous step, s.
     last_dt_s: f64,
+    /// Largest change of a velocity in the last step, m/s.
     last_change_m_s: f32,
     /// Profile as in [`Live::shown_over`]. States of older versions lack it; their fields are compared with the present
     /// wind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shown_over: Option<WindProfile>,
+    /// Description of the field.
     desc: SavedDesc,
     /// All numbers of the field (`FlowField::numbers`), as [`written`] encodes them.
     numbers: String,

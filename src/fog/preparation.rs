@@ -32,10 +32,13 @@ const MIN_MU0: f64 = 0.01;
 /// error is an eighth of its square.
 const LINEAR_DIFFUSION: f64 = 0.05;
 
-/// Scattering of a medium; [`FogLayer`] explains the fields.
+/// Scattering of a medium, as in [`FogLayer`].
 struct FogScattering {
+    /// Exponent of Angstrom's law sigma ~ wavelength^-a.
     angstrom: f64,
+    /// Single-scattering albedo per channel, 0 to 1.
     albedo: [f64; 3],
+    /// Phase function.
     phase: Phase,
 }
 

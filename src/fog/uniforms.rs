@@ -151,40 +151,77 @@ fn term(t: &Term) -> [[f32; 4]; 2] {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
 pub struct FogUniform {
+    /// Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     pub to_sun: [f32; 3],
+    /// Altitude of the camera, m.
     pub altitude: f32,
+    /// Slab: altitudes where the flanks begin and end, m. Exponential layer: reference altitude, scale height, m.
     pub knots: [f32; 4],
+    /// Ratio of each channel's extinction to that at 550 nm.
     pub ratio: [f32; 3],
+    /// Extinction at 550 nm, 1/m; density of the compatibility laws.
     pub extinction: f32,
+    /// Ratio of each channel's delta-scaled optical depth to the depth at 550 nm.
     pub scaling: [f32; 3],
+    /// Optical depth from the layer's top to the ground, at 550 nm.
     pub depth_total: f32,
+    /// Slab: 1/height of the lower and the upper flank, 1/m. Linear law: start and end, m.
     pub pair: [f32; 2],
+    /// Height of the band of sky that the compatibility laws cover, rad.
     pub sky_band: f32,
+    /// 1 if the compatibility laws measure from the camera's plane, otherwise 0.
     pub plane_distance: u32,
+    /// Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
     pub lobes: [f32; 4],
+    /// Distance of the camera from the planet's centre, m; 1e30 for a flat world.
     pub radius: f32,
+    /// 1/(planet radius + altitude), 1/m; 0 for a flat world.
     pub curvature: f32,
+    /// Altitude at which rays without an object end, m.
     pub ground: f32,
+    /// 1/cosine of the sun's zenith angle.
     pub inverse_mu0: f32,
+    /// Diffusion exponent per channel of absorbing layers.
     pub k: [f32; 3],
+    /// 1 if the exponential terms `rise` and `fall` are used, otherwise 0.
     pub absorbing: u32,
+    /// First scattering, to be multiplied by the phase function and e^(-depth/mu0); colour of the compatibility laws.
     pub first: [f32; 3],
+    /// Strength of the patches, 0 to 1.
     pub patch_amount: f32,
+    /// Mean radiance of the sky above the layer.
     pub sky_radiance: [f32; 3],
+    /// Kind of the fog, a value of [`FogKind`].
     pub kind: u32,
+    /// Radiance of the ground below the layer.
     pub ground_radiance: [f32; 3],
+    /// Spread of the forward lobe in elevation, rad.
     pub spread: f32,
+    /// ln(1 - weight of Draine); sign of the Henyey-Greenstein g; share of scattering that counts as forward; asymmetry
+    /// of the rest.
     pub scattering: [f32; 4],
+    /// Constant source term c(mu) = [0] + mu [1] of scattered light, where mu is the cosine between the view direction
+    /// and up.
     pub constant: [[f32; 4]; 2],
+    /// Source term per unit of scaled depth below the top.
     pub slope: [[f32; 4]; 2],
+    /// Source term times e^(-depth/mu0).
     pub beam: [[f32; 4]; 2],
+    /// Source term times e^(-k depth).
     pub rise: [[f32; 4]; 2],
+    /// Source term times e^(-k (total - depth)).
     pub fall: [[f32; 4]; 2],
+    /// Waves of the patches: wave vector, rad/m, and phase at the camera, rad.
     pub patch_waves: [[f32; 4]; PATCH_WAVES],
+    /// Waves of the curtains of rain: wave vector, rad/m, and phase at the camera, rad.
     pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
+    /// Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     pub falling: [f32; 4],
+    /// Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
     pub lit: f32,
+    /// Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     pub curtain_amount: f32,
+    /// Numbers of waves of the patches and of the curtains; 0 if there are none.
     pub waves: [u32; 2],
 }
 
@@ -193,12 +230,20 @@ pub struct FogUniform {
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
 pub struct LowAirUniform {
+    /// Fog of the frame.
     pub fog: FogUniform,
+    /// Nodes of the map of detours per metre, east and north, 1/m.
     pub detour_scale: [f32; 2],
+    /// Position of the camera in the map, in nodes from its south-west corner, east and north.
     pub detour_camera: [f32; 2],
+    /// Altitude of the map's floor relative to the camera, m.
     pub detour_floor: f32,
+    /// 1/height above the floor at which detours end, 1/m.
     pub detour_fade: f32,
+    /// Padding.
     pub pad: [f32; 2],
+    /// Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south
+    /// to north.
     pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
 }
 

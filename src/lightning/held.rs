@@ -31,8 +31,11 @@ pub(crate) struct HeldLightning {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedCell {
+    /// Middle of the cell in the host's world, m.
     position: [f64; 3],
+    /// Distance from the middle within which two thirds of the flashes start, m.
     radius_m: f64,
+    /// Flashes a minute.
     flashes_per_minute: f64,
 }
 
@@ -40,10 +43,15 @@ struct SavedCell {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedTrigger {
+    /// Time of the first stroke, s of simulation time.
     time_s: f64,
+    /// Position that the flash strikes or, in the cloud, passes over, in the host's world, m.
     position: [f64; 3],
+    /// Whether the flash strikes the ground; otherwise it stays in the cloud.
     to_ground: bool,
+    /// Largest peak current, kA; `None` for a random one.
     peak_ka: Option<f64>,
+    /// Number of strokes; `None` for a random one.
     strokes: Option<u32>,
 }
 
@@ -51,10 +59,15 @@ struct SavedTrigger {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Saved {
+    /// Flashes a minute of each storm cell; `None` for the weather's rate.
     flashes_per_minute: Option<f64>,
+    /// Whether views limit flicker.
     limits_flicker: bool,
+    /// Tips of tall objects in the host's world, m.
     masts: Vec<[f64; 3]>,
+    /// Storm cells of the host.
     cells: Vec<SavedCell>,
+    /// Flashes that the host triggered.
     triggered: Vec<SavedTrigger>,
 }
 

@@ -69,6 +69,7 @@ pub(crate) struct ChannelPart {
 /// A flash in the host's world.
 #[derive(Clone, Debug)]
 pub(crate) struct Strike {
+    /// Flash on the map, with its strokes.
     pub flash: Flash,
     /// Path in the host's world, m.
     pub channel: Channel,

@@ -8,11 +8,17 @@ use super::light::COLOR;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct ChannelUniform {
+    /// Matrix from camera-relative (east, north, up), m, to clip space.
     pub clip: [[f32; 4]; 4],
+    /// Colour of the light in linear Rec. 709, with luminance 1.
     pub color: [f32; 3],
+    /// Solid angle of a pixel divided by the cube of the clip w of a unit direction, sr; 0 for parallel rays.
     pub pixel_sr: f32,
+    /// Size of the target, pixels.
     pub size: [f32; 2],
+    /// Area of a pixel for parallel rays, m^2; 0 otherwise.
     pub pixel_m2: f32,
+    /// Radius of a channel, m.
     pub radius: f32,
 }
 
@@ -53,6 +59,7 @@ pub(super) struct PartInstance {
     pub intensity: f32,
     /// Other end, relative to the camera, m.
     pub to: [f32; 3],
+    /// Padding.
     pub pad: f32,
 }
 

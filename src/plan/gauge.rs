@@ -30,12 +30,15 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Size of a row in the staging buffer, bytes.
 const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
-/// States of a readback, in the order in which it passes them: no readback, pass recorded, buffer being mapped, buffer
-/// ready. `FAILED`: the mapping failed.
+/// State of a readback: there is none. The next three states follow in the order of their numbers.
 const IDLE: u32 = 0;
+/// State of a readback: the pass is recorded.
 const RECORDED: u32 = 1;
+/// State of a readback: the buffer is being mapped.
 const MAPPING: u32 = 2;
+/// State of a readback: the buffer is ready.
 const READY: u32 = 3;
+/// State of a readback: the mapping failed.
 const FAILED: u32 = 4;
 
 /// Names and values of `override` constants.
@@ -62,6 +65,7 @@ pub(crate) struct GaugeSample {
 pub(crate) struct Gauge {
     /// Texture with one texel for each gauged pixel.
     target: wgpu::Texture,
+    /// View of the texture, into which the pass draws.
     view: wgpu::TextureView,
     /// Staging buffer that the CPU reads.
     buffer: wgpu::Buffer,

@@ -16,6 +16,7 @@ use crate::{
 /// The wind of a seed. Plain data, any thread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wind {
+    /// Waves of the gusts.
     gusts: Gusts,
 }
 

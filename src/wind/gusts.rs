@@ -29,7 +29,9 @@ const ORDERS: usize = 12;
 struct GustWave {
     /// Wavenumber along the path, rad/m.
     wavenumber: f64,
+    /// Amplitude, in standard deviations of the gusts.
     amplitude: f64,
+    /// Phase, rad.
     phase: f64,
 }
 

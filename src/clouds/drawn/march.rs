@@ -45,9 +45,9 @@ const FADES_M: f64 = 15e3;
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 /// Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: usize = 3;
-/// Largest slopes that rays assume when they skip clear air: of the map, per distance from cloud to cloud (`MAP_SKIP`),
-/// and of the solid noise, per side of its cube (`SOLID_SKIP`).
+/// Largest slope of the map that rays assume when they skip clear air, per distance from cloud to cloud.
 const MAP_SKIP: f64 = 6.0;
+/// Largest slope of the solid noise that rays assume when they skip clear air, per side of its cube.
 const SOLID_SKIP: f64 = 12.0;
 
 /// Threshold above which there is no cloud: just below [`CLEAR`].
@@ -67,6 +67,7 @@ pub(crate) struct CloudsSeen {
 
 /// A layer with the light that falls on it.
 struct MarchedLayer<'a> {
+    /// Field of the layer's clouds.
     field: Field<'a>,
     /// Share of the layer that is drawn as a volume.
     share: f64,
@@ -81,7 +82,9 @@ struct MarchedLayer<'a> {
 
 /// Clouds around a place, for queries.
 pub(crate) struct CloudRays<'a> {
+    /// Layers over the place.
     layers: Vec<MarchedLayer<'a>>,
+    /// Tables of the light within the clouds.
     light: LightWithin<'a>,
     /// Position of the place: m east and north of the world's origin, and m above the sea.
     place_m: DVec3,
@@ -131,6 +134,7 @@ struct MarchState {
 
 /// A place inside a layer's cloud.
 struct AtPlace<'a> {
+    /// Layer of the cloud.
     layer: &'a MarchedLayer<'a>,
     /// The layer's field with the local cover of this place.
     field: Field<'a>,

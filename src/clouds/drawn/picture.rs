@@ -50,6 +50,7 @@ fn with_round((width, height): (u32, u32)) -> (u32, u32) {
 
 /// Textures of a whole picture, as one frame leaves them.
 pub(crate) struct Whole {
+    /// Texture with all layers.
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
     pub layers: wgpu::TextureView,

@@ -49,6 +49,7 @@ pub(crate) struct Resolve {
 /// Pipelines, and the layouts of their bind groups: for the march, for the passes after it, and for the shadows without
 /// and with several depth samples a pixel.
 pub(crate) struct Pipelines {
+    /// Layout for the passes of a picture after the march.
     pub picture_layout: wgpu::BindGroupLayout,
     /// Layouts for depths of one sample and of several.
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
@@ -218,6 +219,7 @@ pub(crate) struct TargetPart {
 /// Attachments of a pass.
 #[derive(Clone, Copy)]
 pub(crate) struct PassTargets<'a> {
+    /// Views that the pass draws into, in the order of its outputs.
     pub colors: &'a [&'a wgpu::TextureView],
     /// Depth that selects the pixels of each draw of the pass.
     pub kinds: Option<&'a wgpu::TextureView>,

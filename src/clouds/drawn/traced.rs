@@ -86,11 +86,15 @@ pub struct Seen {
 
 /// A layer of cloud of one kind in given light.
 pub struct LitLayer {
+    /// Shape of the layer's clouds.
     shape: Shape,
+    /// Sheets of the map.
     map: Map,
+    /// Solid noise that frays the edges.
     solid: Solid,
     /// Tables of light that the model reads.
     sources: Arc<Sources>,
+    /// Light that falls on the layer.
     light: GivenLight,
 }
 
@@ -150,8 +154,11 @@ impl LitLayer {
 
 /// A photon that is traced back from the eye.
 struct Photon<'a> {
+    /// Layer in which the photon moves.
     layer: &'a LitLayer,
+    /// Field of the layer's clouds.
     field: &'a Field<'a>,
+    /// Phase function of the droplets or crystals.
     lobes: &'a PhaseLobes,
 }
 

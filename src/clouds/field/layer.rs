@@ -11,6 +11,7 @@ pub(crate) const ICE: usize = 1;
 pub(crate) struct OverheadLayer {
     /// Shape of the clouds, from `slab` and the air.
     pub shape: Shape,
+    /// Slab of the weather from which the layer comes.
     pub slab: CloudSlab,
     /// Slot of the layer in `Conditions::clouds`.
     pub slot: usize,

@@ -35,9 +35,11 @@ const MOST_ROUGH: f64 = 2.1;
 
 /// Query for the layers of cloud at a place and a time.
 pub(crate) struct LayersQuery<'a> {
+    /// Scene of the place: its weather and position.
     pub scene: &'a Scene,
     /// The scene's place in the host's world, m.
     pub eye: DVec3,
+    /// Weather of the context over places and times.
     pub weather: &'a WeatherOver<'a>,
     /// Simulation time, s.
     pub time_s: f64,

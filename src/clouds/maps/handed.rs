@@ -41,6 +41,7 @@ pub const SHADOW_SNIPPET_GLSL: &str = include_str!("../../../shaders/snippets/we
 
 /// Texture that a host has asked for, with the mapping of the last frame.
 pub(crate) struct HostShadowTexture {
+    /// Texture and mapping as the host gets them.
     pub shadows: CloudShadows,
 }
 

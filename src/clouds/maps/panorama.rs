@@ -40,7 +40,9 @@ pub(crate) struct PanoramaInputs {
 pub(crate) struct CloudPanorama {
     /// Octahedral map of radiance and transmittance, of [`PANORAMA_SIDE`] texels on a side.
     pub texture: wgpu::Texture,
+    /// View of the texture, into which the pass draws.
     view: wgpu::TextureView,
+    /// Pipeline that draws the panorama.
     pipeline: wgpu::RenderPipeline,
     /// Inputs of the last frame.
     around: Option<PanoramaInputs>,

@@ -31,9 +31,11 @@ pub(crate) struct ShadowMap {
     pub view: wgpu::TextureView,
     /// Block with [`ShadowUniform`].
     pub block: UniformBlock,
+    /// Pipeline that draws rows of the whole map.
     pipeline: wgpu::RenderPipeline,
     /// Bind group of the clouds, for both the map and the coarse map.
     clouds: wgpu::BindGroup,
+    /// Coarse map, drawn first.
     coarse: Coarse,
     /// Inputs of the last frame.
     standing: Option<ShadowInputs>,
@@ -45,7 +47,9 @@ pub(crate) struct ShadowMap {
 
 /// Coarse map, with the pass that draws it and the pass that copies it to the whole map.
 struct Coarse {
+    /// View of the coarse map.
     view: wgpu::TextureView,
+    /// Pipeline that draws the coarse map.
     pipeline: wgpu::RenderPipeline,
     /// Pipeline that fills the whole map from the coarse one.
     spread: wgpu::RenderPipeline,
