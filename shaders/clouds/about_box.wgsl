@@ -27,12 +27,15 @@ struct CloudBlur {
     spread: f32,
 }
 
+// Blur at the place that a ray looks up.
 var<private> cloud_blur: CloudBlur;
 
+// Returns no blur.
 fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
     return CloudBlur(0.0);
 }
 
+// Returns the cloud at a place: the same everywhere in the box.
 fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
     return CloudHere(0.0, layer.size.w, 1.0);
 }
@@ -42,6 +45,7 @@ fn cloud_inside(here: CloudHere) -> f32 {
     return 1.0;
 }
 
+// Returns the distance without cloud, m: none.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     return 0.0;
 }
@@ -49,10 +53,12 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
 // Longest path that a ray is followed, m: longer than any box.
 const CLOUD_FARTHEST: f32 = 1.0e9;
 
+// Returns the share of clouds left at a distance: all.
 fn cloud_fades(within: f32) -> f32 {
     return 1.0;
 }
 
+// Returns the place on the ray at the distance `t`, m.
 fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     let at = box_origin + direction * t;
     return CloudPlace(at.xy, at.z * layer.size.y);
@@ -74,10 +80,12 @@ struct CloudLocal {
     layer: CloudLayer,
 }
 
+// Returns the layer at a place.
 fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
     return CloudLocal(layer);
 }
 
+// Returns the level position of a place; the box does not lean.
 fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level;
 }
@@ -104,6 +112,7 @@ fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
 // Distance after which a ray meets other clouds; without blur it has no effect.
 const CLOUD_CELL: f32 = 1.0;
 
+// Returns the share of sunlight that other clouds leave: all.
 fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     return 1.0;
 }

@@ -83,6 +83,7 @@ struct CloudsUniform {
 // Whether pixels at some places are wider than the structure of the clouds, which are then blurred (field.wgsl).
 override CLOUD_COARSE: bool = false;
 
+// Clouds of the frame.
 @group(0) @binding(1) var<uniform> clouds: CloudsUniform;
 
 // Number of layers, limited to 31 by a mask, so that a loop over them ends whatever the block holds.

@@ -4,6 +4,7 @@
 //!include "clouds/picture.wgsl"
 //!include "common/frame.wgsl"
 
+// Pixels that this frame marches, and reprojection.
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 // Radiance and transmittance of the marched pixels, one for each square.
 @group(0) @binding(2) var marched: texture_2d<f32>;

@@ -27,4 +27,5 @@ struct CloudLamps {
     lamps: array<CloudLamp, 16>,
 }
 
+// Lamps and flashes of the frame.
 @group(0) @binding(11) var<uniform> lamps: CloudLamps;

@@ -14,6 +14,7 @@ const CLOUD_DEPTHS: f32 = 28.0;
 const CLOUD_LEAKS: f32 = 16.0;
 // Smallest scaled depth above 0 in a table.
 const CLOUD_THINNEST: f32 = 0.05;
+// Pi.
 const CLOUD_PI: f32 = 3.1415927;
 // Steepness with which the beam is divided between top and side of the box.
 const PART_RATE: f32 = 1.0;

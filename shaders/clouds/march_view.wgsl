@@ -9,8 +9,11 @@
 //!include "clouds/shafts.wgsl"
 //!include "between/shaft_light.wgsl"
 
+// Pixels that this frame marches.
 @group(0) @binding(7) var<uniform> picture: CloudsPicture;
+// Placement of the shadow map.
 @group(0) @binding(9) var<uniform> shadows: CloudShadows;
+// Share of the direct light that clouds let through.
 @group(0) @binding(10) var shadow_map: texture_2d<f32>;
 
 // Whether the air in front of the clouds shows their shadows.

@@ -13,6 +13,7 @@ fn spread(i: u32) -> vec4f {
     return fract(vec4f(0.5) + f32(i) * vec4f(0.8566749, 0.7338919, 0.6287067, 0.5385973));
 }
 
+// Marches one ray of the probe.
 @fragment
 fn box_probe(in: FullscreenVarying) -> @location(0) vec4f {
     let layer = clouds.layers[0];

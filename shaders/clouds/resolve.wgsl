@@ -6,12 +6,14 @@
 //!include "clouds/picture.wgsl"
 //!include "clouds/shafts.wgsl"
 
+// Pixels that this frame marches, and reprojection.
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 // Radiance and transmittance, and reach, of the pixels that this frame marched.
 @group(0) @binding(2) var marched: texture_2d<f32>;
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
 // Layers of the last frame's picture.
 @group(0) @binding(4) var last: texture_2d_array<f32>;
+// Sampler that interpolates linearly.
 @group(0) @binding(5) var linear: sampler;
 // Smallest and largest radiance and transmittance around each square, and the square's offset (FollowedSquare of
 // follow.wgsl).
@@ -19,9 +21,13 @@
 @group(0) @binding(7) var most: texture_2d<f32>;
 @group(0) @binding(8) var back: texture_2d<f32>;
 
+// Depth of the host's picture.
 @group(1) @binding(0) var host_depth: HostDepth;
+// Placement of the shadow map.
 @group(1) @binding(1) var<uniform> shadows: CloudShadows;
+// Share of the direct light that clouds let through.
 @group(1) @binding(2) var shadow_map: texture_2d<f32>;
+// Sampler that interpolates linearly and repeats the map.
 @group(1) @binding(3) var repeating: sampler;
 
 // Whether the last frame's picture may be used.
@@ -91,6 +97,7 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     return ResolvedPixel(select(likely, now, lost || is_marched), reach);
 }
 
+// Resolves one pixel.
 @fragment
 fn resolve(in: FullscreenVarying) -> ResolvedPixel {
     return resolved(in);

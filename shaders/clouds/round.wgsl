@@ -4,6 +4,7 @@
 //!include "between/hung.wgsl"
 //!include "clouds/march.wgsl"
 
+// Marches the ray of one texel of the panorama.
 @fragment
 fn round(in: FullscreenVarying) -> @location(0) vec4f {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);

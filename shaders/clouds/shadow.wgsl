@@ -5,6 +5,7 @@
 //!include "clouds/about.wgsl"
 //!include "clouds/shadow_map.wgsl"
 
+// Placement of the shadow map.
 @group(0) @binding(7) var<uniform> shadows: CloudShadows;
 
 // Side of the map, texels.
@@ -27,6 +28,7 @@ fn shadow_depth(layer: CloudLayer, level: vec2f) -> f32 {
     return depth * step / shadows.to_light.z;
 }
 
+// Computes one texel of the shadow map.
 @fragment
 fn shadow(in: FullscreenVarying) -> @location(0) vec4f {
     let away = fract(in.position.xy / SHADOW_TEXELS - shadows.camera + 0.5) - 0.5;

@@ -3,11 +3,13 @@
 
 // Coarse map.
 @group(0) @binding(2) var coarse: texture_2d<f32>;
+// Sampler that interpolates linearly and repeats the map.
 @group(0) @binding(5) var repeating: sampler;
 
 // Side of the map, texels.
 override SHADOW_TEXELS: f32 = 512.0;
 
+// Fills one texel of the whole map from the coarse map.
 @fragment
 fn spread(in: FullscreenVarying) -> @location(0) vec4f {
     return textureSampleLevel(coarse, repeating, in.position.xy / SHADOW_TEXELS, 0.0);

@@ -29,11 +29,15 @@ override FOG_NEUTRAL: bool = false;
 // Whether the slab has a lower edge above the ground.
 override FOG_LIFTED: bool = true;
 
-// Kinds of fog, the values of FogUniform.kind.
+// Value of FogUniform.kind for no layer.
 const FOG_CLEAR: u32 = 0u;
+// Value of FogUniform.kind for a slab with linear flanks.
 const FOG_SLAB: u32 = 1u;
+// Value of FogUniform.kind for an exponential layer.
 const FOG_EXPONENTIAL: u32 = 2u;
+// Value of FogUniform.kind for the linear law.
 const FOG_LINEAR_LAW: u32 = 3u;
+// Value of FogUniform.kind for the exponential law.
 const FOG_EXPONENTIAL_LAW: u32 = 4u;
 // Kind 5, the exponential-squared law, needs no constant: it is drawn where no other law is.
 // Height of the sky band, rad, from which on it covers all of the sky.

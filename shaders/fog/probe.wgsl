@@ -2,9 +2,12 @@
 //!include "common/fullscreen.wgsl"
 //!include "fog/lookup.wgsl"
 
+// Camera of the synthetic picture.
 @group(0) @binding(0) var<uniform> probe_depth: DepthUniform;
+// Depth of the targets.
 @group(0) @binding(1) var depth_texture: texture_2d<f32>;
 
+// Returns the white target behind fog, the black target behind it, and the transmittance, at 550 nm.
 @fragment
 fn fog_probe(in: FullscreenVarying) -> @location(0) vec4f {
     let ndc = vec2f(2.0 * in.uv.x - 1.0, 1.0 - 2.0 * in.uv.y);

@@ -21,7 +21,9 @@ struct ChannelUniform {
     radius: f32,
 }
 
+// Depth of the host's picture.
 @group(0) @binding(1) var host_depth: HostDepth;
+// Camera and picture of the draw.
 @group(0) @binding(7) var<uniform> channel: ChannelUniform;
 
 // Whether the host gives depth.

@@ -42,6 +42,7 @@ const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
 const DECK: Units = Units { samples: 0.1, texels: 0.0, bytes: 0.0 };
 
 impl CloudMethod {
+    /// Returns the cost of the method.
     fn work(&self) -> Work {
         if self.model == CloudModel::Deck {
             return Work { pixel: DECK, ..Work::default() };

@@ -579,6 +579,7 @@ impl Live {
         volume.changed();
     }
 
+    /// Returns the state of the field.
     pub fn report(&self) -> WindFieldReport {
         WindFieldReport {
             time_s: self.time_s,

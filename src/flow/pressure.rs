@@ -39,6 +39,7 @@ impl PressureMethod {
         (2.0 / (1.0 + libm::sin(std::f64::consts::PI / f64::from(n.max(2))))) as f32
     }
 
+    /// Checks that the numbers of the method are in their ranges.
     pub(super) fn check(&self) -> Result<()> {
         match *self {
             Self::Multigrid { max_cycles } => {

@@ -86,6 +86,7 @@ pub(super) struct SavedField {
 }
 
 impl SavedDesc {
+    /// Creates the saved form of a description.
     fn of(d: &WindFieldDesc) -> Self {
         Self {
             floor_center_m: d.floor_center.to_array(),
@@ -97,6 +98,7 @@ impl SavedDesc {
         }
     }
 
+    /// Returns the description, checked.
     fn desc(&self) -> Result<WindFieldDesc> {
         let desc = WindFieldDesc {
             floor_center: DVec3::from(self.floor_center_m),
@@ -112,16 +114,19 @@ impl SavedDesc {
 }
 
 impl SavedChange {
+    /// Creates the saved form of a change.
     pub fn of(c: &FieldChange) -> Self {
         Self { start_s: c.start_s, desc: c.desc.as_ref().map(SavedDesc::of) }
     }
 
+    /// Returns the change, checked.
     pub fn change(&self) -> Result<FieldChange> {
         Ok(FieldChange { start_s: self.start_s, desc: self.desc.map(|d| d.desc()).transpose()? })
     }
 }
 
 impl SavedField {
+    /// Creates the saved form of a field.
     pub fn of(live: &Live) -> Self {
         let (last_dt_s, last_change_m_s) = live.field.last_step();
         Self {

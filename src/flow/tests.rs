@@ -12,10 +12,12 @@ use super::{
 };
 use crate::error::Status;
 
+/// Whether the long cases run too.
 fn is_long() -> bool {
     std::env::var_os("WELKIN_ACCEPT").is_some()
 }
 
+/// Creates a field that must be valid.
 fn field(settings: &FlowSettings, obstacles: &FlowObstacles, wind: impl Fn(DVec3) -> DVec3) -> FlowField {
     FlowField::new(settings, obstacles, wind).expect("a field")
 }
@@ -60,7 +62,7 @@ fn a_lid_drives_the_cavity_as_published() {
 #[test]
 fn whirls_keep_their_energy() {
     // Scheme, CFL number and bounds of the share of kinetic energy that is kept. The bounds of the default scheme are a
-    // promise; those of the others enclose the values in `truth.md`, which a spectral projection gave.
+    // promise; those of the others enclose values that were computed with a spectral projection.
     let cases = [
         (Scheme::Reflection, 1.0, 0.98, 1.005),
         (Scheme::Reflection, 4.0, 0.95, 1.005),
@@ -115,6 +117,7 @@ fn shear_layers_roll_up_as_on_a_finer_grid() {
     }
 }
 
+/// Returns three boxes: a block turned by 30 degrees, a thin wall, and a box that floats.
 fn town_boxes() -> [FlowBox<'static>; 3] {
     [
         FlowBox::level(dvec3(20.3, 25.1, 4.0), dvec3(5.0, 4.0, 8.0), 30.0),
@@ -123,10 +126,12 @@ fn town_boxes() -> [FlowBox<'static>; 3] {
     ]
 }
 
+/// Returns the height of hills at a place, m.
 fn hills(p: DVec2) -> f64 {
     4.0 + 3.0 * (0.11 * p.x).sin() * (0.09 * p.y).cos()
 }
 
+/// Creates a field around hills and the boxes of [`town_boxes`], in a wind of 8 m/s and more.
 fn town(scheme: Scheme) -> FlowField {
     let cell_m = dvec3(2.0, 2.0, 1.5);
     let settings = FlowSettings { cells: [30, 21, 14], cell_m, scheme, ..Default::default() };

@@ -67,6 +67,7 @@ impl FogMethod {
         Law::Compatibility(CompatibilityLaw { curve, distance: DistanceKind::Plane, colour: None, sky_band: 0.35 })
     }
 
+    /// Returns the cost of the method.
     fn work(self) -> Work {
         let sample = |samples: f64| Work { pixel: Units { samples, texels: 0.0, bytes: 8.0 }, ..Work::default() };
         match self {

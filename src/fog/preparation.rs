@@ -47,6 +47,7 @@ impl FogScattering {
     /// not matter.
     const OF_FALLING: Self = Self { angstrom: 0.0, albedo: [1.0; 3], phase: Phase::HenyeyGreenstein { g: 0.0 } };
 
+    /// Returns the scattering of a layer.
     fn of(layer: &FogLayer) -> Self {
         Self { angstrom: layer.angstrom, albedo: layer.albedo, phase: layer.phase }
     }

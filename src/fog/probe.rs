@@ -132,6 +132,7 @@ fn draw(
     readback::rgba(device, &target)
 }
 
+/// Creates the layout of the probe's bind group.
 fn layout(gpu: &wgpu::Device) -> wgpu::BindGroupLayout {
     let slots = [
         (0, Slot::Uniform(size_of::<DepthUniform>())),

@@ -105,6 +105,7 @@ impl Ladder {
         Self { parts, first }
     }
 
+    /// Returns the number of all steps.
     #[cfg(test)]
     pub fn len(&self) -> usize {
         self.first[self.parts.len()]

@@ -62,6 +62,7 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Creates a plan that draws everything.
     fn of(parts: &'static [Part]) -> Self {
         let part = |part| PartPlan {
             part,
@@ -291,10 +292,12 @@ impl<U: Unseen> Planner<U> {
         asked
     }
 
+    /// Returns the limits and wishes of the host.
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
 
+    /// Returns the plan of the last frame.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

@@ -28,6 +28,7 @@ fn shades_apart(device: &Device) -> bool {
     device.caps().software && device.adapter.get_downlevel_capabilities().flags.contains(can)
 }
 
+/// Creates a texture of `layers` layers, to be drawn into and read.
 fn texture(device: &Device, (width, height): (u32, u32), format: wgpu::TextureFormat, layers: u32) -> wgpu::Texture {
     device.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("clouds"),

@@ -65,6 +65,7 @@ pub(crate) struct Pipelines {
     resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,
 }
 
+/// Creates a full-screen pipeline with one target for each of `formats`.
 fn make(
     device: &Device,
     (shader, entry): (&str, &str),
@@ -166,6 +167,7 @@ impl Pipelines {
         Ok(&self.resolve[made].1)
     }
 
+    /// Creates the pipelines that resolve a picture: one, or two where the shadows are drawn apart.
     fn make_resolve(&self, device: &Device, wanted: Resolve) -> Result<Vec<wgpu::RenderPipeline>> {
         let shader = if wanted.is_multisampled { "clouds/resolve.wgsl:multi" } else { "clouds/resolve.wgsl" };
         let layouts = [&self.picture_layout, &self.shadow_layouts[usize::from(wanted.is_multisampled)]];
@@ -195,6 +197,7 @@ impl Pipelines {
     }
 }
 
+/// Returns the attachment of a view without depth, whose content is stored.
 fn attachment(
     view: &wgpu::TextureView,
     load: wgpu::LoadOp<wgpu::Color>,

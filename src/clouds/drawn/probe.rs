@@ -50,6 +50,7 @@ pub struct EvenCloud {
 }
 
 impl EvenCloud {
+    /// Checks that every field is in its range.
     fn check(&self) -> Result<()> {
         check_range("tau", self.depths[2], 0.0, 1e3, "")?;
         check_range("g", self.asymmetry, 0.0, 0.95, "")?;
@@ -57,10 +58,12 @@ impl EvenCloud {
         check_range("albedo", self.albedo, 0.0, 1.0, "")
     }
 
+    /// Whether the cloud is a slab, which has no sides.
     fn is_slab(&self) -> bool {
         self.depths[0].is_infinite()
     }
 
+    /// Returns the block of the cloud for shaders.
     fn uniform(&self, scattering: &Scattering) -> CloudsUniform {
         let [x, y, z] = self.depths;
         let side = |depth: f64| if self.is_slab() { WIDE * THICKNESS_M } else { depth / z * THICKNESS_M };

@@ -29,6 +29,7 @@ const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Counters of the work on these tables: number of updates, and their time.
 const COUNTED: [DeviceWork; 2] = [DeviceWork::CloudTables, DeviceWork::CloudTableTime];
 
+/// Creates a texture that shaders read and the CPU fills.
 fn texture(
     device: &Device,
     label: &str,
@@ -85,6 +86,7 @@ fn placed(device: &Device, label: &str, (width, height): (u32, u32)) -> wgpu::Te
     texture(device, label, wgpu::TextureDimension::D2, [width, height, 1], (FORMAT, 1)).create_view(&Default::default())
 }
 
+/// Creates a sampler that interpolates linearly.
 pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Sampler {
     device.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
@@ -115,6 +117,7 @@ impl LightTables {
         Self { texture, media, under: None }
     }
 
+    /// Returns a view of all of the texture.
     pub fn view(&self) -> wgpu::TextureView {
         self.texture.create_view(&Default::default())
     }

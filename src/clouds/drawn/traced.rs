@@ -111,6 +111,7 @@ impl LitLayer {
         Ok(Self { shape, map: Map::new(seed), solid: Solid::new(seed)?, sources: Arc::new(sources), light })
     }
 
+    /// Returns the field of the layer's clouds.
     fn field(&self) -> Field<'_> {
         Field { shape: self.shape, map: &self.map, solid: &self.solid, placed: Default::default() }
     }

@@ -199,6 +199,7 @@ impl LayerUniform {
     }
 }
 
+/// Returns a vector with a fourth number.
 fn padded(v: [f64; 3], last: f64) -> [f32; 4] {
     [v[0], v[1], v[2], last].map(|v| v as f32)
 }

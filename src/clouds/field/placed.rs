@@ -37,6 +37,7 @@ pub struct AreaCells {
 }
 
 impl AreaCells {
+    /// Returns the cells that are in use.
     pub(crate) fn all(&self) -> &[AreaCell] {
         &self.cells[..self.count]
     }

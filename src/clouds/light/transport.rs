@@ -191,6 +191,7 @@ fn back_and_forth(a: DMat4, b: DMat4) -> DMat4 {
 }
 
 impl ScatterSlab {
+    /// No cloud: all light passes.
     const NONE: Self = Self { depth: 0.0, reflects: DMat4::ZERO, passes: DMat4::IDENTITY };
 
     /// Creates a slab so thin that nothing is scattered twice.

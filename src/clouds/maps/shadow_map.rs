@@ -67,6 +67,7 @@ fn texture(device: &Device, side: u32) -> wgpu::Texture {
     flat_texture(&device.device, "shadows of clouds", (side, side), FORMAT, usage)
 }
 
+/// Creates a full-screen pipeline that writes one map.
 fn pipeline(
     device: &Device,
     (shader, entry): (&str, &str),
