@@ -73,7 +73,7 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
         for (var n = 0u; n < DETOUR_PARTS; n++) {
             part += cos(phase + along * f32(2u * n + 1u) * h + dot(wave.xy, lags[n]));
         }
-        // Subtracts the wave without detours. Waves fade with the length of the whole ray, as in wave_mean.
+        // Subtracts the wave without detours. Waves fade with the length of the whole ray, not of this part.
         let half = 0.5 * (end - start);
         let free = cos(phase + along * half) * wave_sinc(along * half) * f32(DETOUR_PARTS);
         sum += (part * wave_sinc(along * h) - free) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));

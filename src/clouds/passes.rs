@@ -120,6 +120,7 @@ pub(super) struct CloudFrame<'a> {
 }
 
 impl CloudPasses {
+    /// Creates the passes with the noise of a seed.
     pub fn new((device, blocks): (&Arc<Device>, &Blocks), seed: u64) -> Result<Self> {
         let none = bind::nothing(&device.device, wgpu::TextureFormat::Rgba8Unorm);
         Ok(Self {

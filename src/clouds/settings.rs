@@ -19,6 +19,7 @@ pub struct CloudSettings {
 }
 
 impl Default for CloudSettings {
+    /// Returns the default settings.
     fn default() -> Self {
         Self { fineness: 2.0, square_side: 4, shafts: false }
     }

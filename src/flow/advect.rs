@@ -85,6 +85,7 @@ impl Scheme {
 }
 
 impl<'a> Carrier<'a> {
+    /// Creates the carrier of a wind with the range in which it may be looked up.
     pub(super) fn new(lattice: &'a Lattice, wind: &'a Faces, range: [Option<[f32; 2]>; 3]) -> Self {
         let is_flat = [0, 1, 2].map(|a| lattice.is_flat(a));
         let next = [0, 1, 2].map(|a| if is_flat[a] { 0 } else { lattice.stride[a] });
@@ -188,7 +189,7 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Returns the wind at a place in cells, m/s; outside the range that of the nearest place.
+    /// Returns the wind at a place in cells, m/s; outside the range the wind at the nearest place within it.
     pub(super) fn velocity_near(&self, place: [f32; 3]) -> Vec3 {
         self.velocity(self.moved(place, [0.0; 3], 0.0)).into()
     }

@@ -47,6 +47,7 @@ pub struct WindFieldDesc {
 }
 
 impl Default for WindFieldDesc {
+    /// Returns a field of 128 x 128 x 32 cells of 4 m around the origin.
     fn default() -> Self {
         Self {
             floor_center: DVec3::ZERO,

@@ -173,8 +173,8 @@ impl FlowField {
         0.5 * sum * cell
     }
 
-    /// Returns the velocity at a place, m/s (east, north, up), linear between faces; outside the box that of its
-    /// nearest place.
+    /// Returns the velocity at a place, m/s (east, north, up), linear between faces; outside the box the velocity at
+    /// the nearest place of the box.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
         let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
         carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()

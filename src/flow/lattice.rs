@@ -29,6 +29,7 @@ pub(super) struct Lattice {
 pub(super) type Faces = [Vec<f32>; 3];
 
 impl Lattice {
+    /// Creates a grid with these numbers of cells and this cell size, m.
     pub(super) fn new(cells: [u32; 3], cell_m: DVec3) -> Result<Self> {
         for (i, (n, h)) in cells.into_iter().zip(cell_m.to_array()).enumerate() {
             check_range(&format!("flow.cells[{i}]"), f64::from(n), 1.0, 4096.0, "")?;

@@ -89,6 +89,7 @@ struct SolidBox {
 }
 
 impl SolidBox {
+    /// Creates the planes of a box, made at least one cell thick.
     fn new(lattice: &Lattice, b: &FlowBox) -> Self {
         let h = DVec3::from(lattice.h.map(f64::from));
         let near = NEAR * h.min_element();

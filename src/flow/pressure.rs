@@ -109,6 +109,7 @@ fn add(x: &mut [f32], a: f64, y: &[f32]) {
 }
 
 impl Pressure {
+    /// Creates the equation on all grids from that on the finest one.
     pub(super) fn new(finest: GridLevel) -> Self {
         let count = finest.sum.len();
         let [r, before, z, p, q] = [0; 5].map(|_| vec![0.0; count]);

@@ -37,6 +37,7 @@ pub struct FlowSettings {
 }
 
 impl Default for FlowSettings {
+    /// Returns the default settings.
     fn default() -> Self {
         Self {
             cells: [128, 128, 32],

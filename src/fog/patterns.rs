@@ -42,7 +42,7 @@ fn detoured(m: &FogModel, detour: &Detour, (origin, direction): (DVec3, DVec3), 
         let lag = detour.lag_m(place).extend(0.0);
         let moved = |(wave, phase): &(DVec3, f64)| {
             let at = phase + wave.dot(place);
-            // Waves fade with the length of the whole ray, as in `wave_mean`.
+            // Waves fade with the length of the whole ray, not of this part.
             let row = PATCH_ROW / (PATCH_ROW + wave.length() * 0.5 * (last - first));
             ((at + wave.dot(lag)).cos() - at.cos()) * sinc(wave.dot(direction) * half) * row
         };

@@ -246,7 +246,8 @@ impl FogModel {
                 sky: light.sky_irradiance[i],
                 ground: light.ground_albedo[i],
             };
-            // Shaders add the terms in f32, so their solution is kept farther from the pole than that of queries.
+            // Shaders add the terms in f32, so their solution is kept farther from the pole than the solution for
+            // queries.
             self.set_source(i, &slab.solve_beside(1e-4));
             self.first[i] = scattering.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
             slab.solve()

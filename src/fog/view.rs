@@ -33,6 +33,7 @@ pub(crate) struct FogView {
 }
 
 impl FogView {
+    /// Creates the fog of a view, without fog at first.
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let block = blocks.block(device, size_of::<LowAirUniform>());
         Self { block, uniform: Box::default(), model: None, variant: None, software: device.caps().software }

@@ -58,6 +58,7 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
 }
 
 impl ChannelPass {
+    /// Creates the resources of the pass.
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let parts = device.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("flashes"),

@@ -22,8 +22,8 @@ pub(super) struct Asked {
     pub milliseconds: Option<f64>,
     /// Importance of each part.
     pub importance: [f64; MOST_PARTS],
-    /// Steps of the pinned parts, which the choice does not change: all of their steps, and those of them that are
-    /// taken.
+    /// Two sets of steps that the choice does not change: all steps of the pinned parts, and the steps of these parts
+    /// that are taken.
     pub pinned: (Set, Set),
 }
 
@@ -46,6 +46,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
+    /// Creates the choices for a list of parts, without findings.
     pub fn new(parts: &'static [Part]) -> Self {
         Self {
             ladder: Ladder::new(parts),

@@ -78,6 +78,7 @@ pub(crate) struct Gauge {
 }
 
 impl Gauge {
+    /// Creates the target and the staging buffer.
     pub fn new(device: &Device) -> Self {
         let target = flat_texture(
             &device.device,

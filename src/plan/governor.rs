@@ -254,7 +254,8 @@ mod tests {
             }
             assert_eq!(gave_way == GaveWay::Nothing, set == 0, "{frame}");
         }
-        // Parts go in two or three steps as the median follows, and return likewise, without oscillation.
+        // Parts go in two or three steps as the median follows, and come back in two or three steps, without
+        // oscillation.
         assert!((2..=5).contains(&switches.len()), "{switches:?}");
         assert!(switches.iter().all(|f| (30..40).contains(f) || (90..100).contains(f)), "{switches:?}");
     }

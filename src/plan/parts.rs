@@ -98,6 +98,7 @@ pub(super) struct Ladder {
 }
 
 impl Ladder {
+    /// Numbers the steps of a list of parts.
     pub fn new(parts: &'static [Part]) -> Self {
         let mut first = vec![0];
         parts.iter().for_each(|p| first.push(first[first.len() - 1] + p.rungs.len() - 1));

@@ -50,7 +50,7 @@ pub struct Drift {
 pub struct Blowing {
     /// Displacement of the air.
     pub drift: Drift,
-    /// Mean wind, as in the conditions.
+    /// Mean wind of the conditions at that time.
     pub mean_m_s: DVec2,
     /// Change of the mean wind by its wandering direction.
     pub turned_m_s: DVec2,
@@ -139,8 +139,8 @@ impl<'a> Walk<'a> {
         active.iter().map(Change::end_s).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the mean wind at `t` under the `active` changes, and the mean of their speeds. Gusts travel with the
-    /// latter, which does not drop while the wind turns.
+    /// Returns the mean wind at `t` under the `active` changes, and the speed that results where their speeds are
+    /// blended instead of their velocities. Gusts travel with this speed, which does not drop while the wind turns.
     fn wind_at(&self, active: &[Change], t: f64) -> (WindProfile, f64) {
         active.iter().fold((self.base, self.base.speed_m_s()), |(wind, speed), change| {
             let share = change.share(t);

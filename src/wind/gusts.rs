@@ -134,6 +134,7 @@ pub(super) struct Stirred {
 }
 
 impl Gusts {
+    /// Creates the gusts of a seed.
     pub fn new(seed: u64) -> Self {
         // A constant of its own keeps the gusts independent of everything else that uses the seed.
         let mut stream = RandomStream::seeded(seed ^ 0x7769_6e64_2067_7573);

@@ -3,8 +3,8 @@
 //! A layer moves with the mean wind at its height, or with its own wind
 //! ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its drift is counted in distances from cloud to cloud, and
 //! time in lives, so that a weather with wider or longer-lived clouds does not shift the existing ones. Both are
-//! integrals over the timeline, computed between the starts and ends of changes by eight points of Gauss and Legendre,
-//! as in [`Drift`](super::Drift). Any sequence of updates therefore gives the same bits.
+//! integrals over the timeline, computed between the starts and ends of changes by eight points of Gauss and Legendre.
+//! Any sequence of updates therefore gives the same bits.
 
 use glam::{DMat2, DVec2};
 

@@ -189,7 +189,7 @@ impl<'a> CloudRays<'a> {
     }
 
     /// Returns the distances at which a ray of direction `d` crosses a height above the sea, nearer one first, m. Both
-    /// are equal if it does not. `d` is a unit vector (east, north, up), as in all functions here.
+    /// are equal if the ray does not cross it. `d` is a unit vector (east, north, up).
     fn crossings(&self, d: DVec3, height_m: f64) -> [f64; 2] {
         let (r, rise) = (self.radius_m + self.place_m.z, height_m - self.place_m.z);
         let b = r * d.z;

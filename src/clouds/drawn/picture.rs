@@ -60,6 +60,7 @@ pub(crate) struct Whole {
 }
 
 impl Whole {
+    /// Creates the textures of a picture of `size` pixels.
     fn new(device: &Device, size: (u32, u32)) -> Self {
         let texture = texture(device, with_round(size), SEEN, LAYERS);
         let layers = bind::as_layers(&texture);
@@ -119,8 +120,8 @@ impl Picture {
         }
     }
 
-    /// Returns the index in `whole` that the next draw writes. `is_begun` says that an earlier call of the frame has
-    /// written the newest; the draw then writes the newest again, else the other.
+    /// Returns the index in `whole` that the next draw writes. If an earlier call of the frame has written the newest
+    /// picture (`is_begun`), the draw writes the newest again; otherwise it writes the older one.
     pub fn to_make(&self, is_begun: bool) -> usize {
         if is_begun { self.newest } else { 1 - self.newest }
     }

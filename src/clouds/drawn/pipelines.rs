@@ -78,6 +78,7 @@ fn make(
 }
 
 impl Pipelines {
+    /// Creates the layouts and the pipeline that reprojects; the others are created at first use.
     pub fn new(device: &Device, sky: &wgpu::BindGroupLayout) -> Result<Self> {
         let layout =
             |slots: &[(u32, Slot)]| bind::layout(&device.device, "clouds", wgpu::ShaderStages::FRAGMENT, slots);

@@ -111,6 +111,7 @@ pub(crate) struct LightTables {
 }
 
 impl LightTables {
+    /// Creates empty tables for two media: droplets and ice.
     pub fn new(device: &Device, media: [Arc<Transport>; 2]) -> Self {
         let size = [3 * DEPTHS as u32, 2 * DEPTHS as u32, LEAKS as u32];
         let texture = texture(device, "light in clouds", wgpu::TextureDimension::D3, size, (FORMAT, 1));

@@ -159,6 +159,7 @@ pub(crate) struct ShadowUniform {
 }
 
 impl MediumUniform {
+    /// Creates the uniform of a medium.
     pub fn new(scattering: &Scattering) -> Self {
         let l = &scattering.lobes;
         Self {

@@ -30,6 +30,7 @@ pub struct LayerMap {
 }
 
 impl LayerMap {
+    /// Creates the local thresholds of a layer from its slab and the map of its cover.
     pub(crate) fn new(slab: &CloudSlab, map: &Arc<CloudMap>) -> Self {
         // Nodes are dense where thresholds change fast: near 0 and 1.
         let node = |i: usize| (0.5 * PI * i as f64 / STEPS as f64).sin().powi(2);

@@ -59,7 +59,7 @@ fn volume_share(scene: &Scene, lowest: &CloudSlab) -> f64 {
     near.max(1.0 - smoothstep(DISC_PALES[0], DISC_PALES[1], depth))
 }
 
-/// Width of a pixel's filter, pixels. `shaders/clouds` has the same number, and that of [`BLUR_FROM`].
+/// Width of a pixel's filter, pixels. `shaders/clouds` repeats this number and [`BLUR_FROM`].
 pub(crate) const PIXEL_BLUR: f64 = 1.4;
 /// Width of a pixel, in distances from cloud to cloud, above which clouds are blurred.
 pub(crate) const BLUR_FROM: f64 = 0.15;

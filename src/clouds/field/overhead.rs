@@ -30,7 +30,8 @@ const ANVIL_WIDER: f64 = 2.2;
 /// Ratio of a cell's thickness to the distance from cloud to cloud above which the heads (bulges) of its clouds grow in
 /// proportion to its thickness. With smaller heads, the sides of so deep a cell would look like hanging curtains.
 const HEADS: f64 = 2.0;
-/// Largest [`Shape::rough`] to which larger heads raise that of a cell: amplitude of the solid noise, as an excess.
+/// Largest value to which larger heads raise the [`Shape::rough`] of a cell: amplitude of the solid noise, as an
+/// excess.
 const MOST_ROUGH: f64 = 2.1;
 
 /// Query for the layers of cloud at a place and a time.

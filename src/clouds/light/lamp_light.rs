@@ -92,7 +92,8 @@ pub fn scattered(
     share * inside + (1.0 - share) * outside
 }
 
-/// Returns the light of a source inside the cloud that a place scatters, as in [`scattered`].
+/// Returns the light that a place scatters into `direction` from a source inside the cloud, in the unit of
+/// [`scattered`].
 fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, direction: DVec3, to_eye: f64) -> f64 {
     let d = shine.distance;
     let (turning, albedo) = (scattering.turning(), scattering.scaled_albedo());
@@ -130,7 +131,8 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     once + albedo * 3.0 / (4.0 * PI) * mean * (turning - (1.0 - turning) * grows).max(0.0)
 }
 
-/// Returns the light of a source outside the cloud that a place scatters, as in [`scattered`].
+/// Returns the light that a place scatters into `direction` from a source outside the cloud, in the unit of
+/// [`scattered`].
 fn from_outside(scattering: &Scattering, sky: &Table, depths: &Depths, shine: &Shine, direction: DVec3) -> f64 {
     let d = shine.distance;
     let turning = scattering.turning();

@@ -156,7 +156,8 @@ impl Scattering {
 }
 
 /// Returns the rate at which light leaks through the sides of a box of these scaled widths, per scaled depth, divided
-/// by the rate of scattering; see the module. `turning` is [`Scattering::turning`].
+/// by the rate of scattering: sum over both widths w of (pi / (w + 1.42 / turning))^2, divided by 3 turning. `turning`
+/// is [`Scattering::turning`].
 pub fn leak_rate(widths: [f64; 2], turning: f64) -> f64 {
     let one = |width: f64| (PI / (width + 1.42 / turning)).powi(2);
     (one(widths[0]) + one(widths[1])) / (3.0 * turning)

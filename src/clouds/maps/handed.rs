@@ -46,6 +46,7 @@ pub(crate) struct HostShadowTexture {
 }
 
 impl HostShadowTexture {
+    /// Creates the mapping of a texture, without weight until the first frame.
     pub fn new(texture: wgpu::Texture) -> Self {
         let none = [DVec4::ZERO; 2];
         let shadows = CloudShadows {
