@@ -7,7 +7,7 @@
 const SUN_STEPS: u32 = 5u;
 // Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: u32 = 3u;
-// Ends of the intervals, in distances from cloud to cloud.
+// Ends of the intervals of the path to the sun, in distances from cloud to cloud.
 const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
 // Largest slope of the map that rays assume when they skip clear air, per distance from cloud to cloud. Steeper places
 // are too small to matter.
@@ -105,7 +105,8 @@ fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f)
     return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
 }
 
-// `cloud_skip` for a gap that falls by at most `steep` per metre, apart from the change by the noise.
+// Distance along a ray from a place outside clouds within which there is no cloud, m, if the gap falls by at most
+// `steep` per metre, apart from the change by the noise.
 fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
     let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (steep + 1e-6);
     let by_noise = here.frayed_gap / (steep + SOLID_SKIP * layer.shape.z * layer.medium.w);

@@ -75,7 +75,7 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
     return min(box_exit(box_place(layer, at), box_sides(layer), toward), most);
 }
 
-// The layer is the same everywhere.
+// Layer at a place: the same everywhere in the box.
 struct CloudLocal {
     layer: CloudLayer,
 }

@@ -31,7 +31,7 @@ struct CloudLayer {
     // of the first two, m.
     lean: vec4f,
     // Host's map of the layer (placed.wgsl): position of the camera (east, north), in cells from the middle of the
-    // first one; 1/side of a cell, 1/m; row of the map's first texels.
+    // first cell; 1/side of a cell, 1/m; row of the map's first texels.
     mapped: vec4f,
     // Number of the map's cells east and north, 0 without a map; growth of the domes times the dome squared; largest
     // change of the threshold per metre.
@@ -74,7 +74,7 @@ struct CloudsUniform {
     unused: f32,
     // Scattering of droplets (0) and ice (1).
     media: array<CloudMedium, 2>,
-    // Layers, of which the first `layer_count` count.
+    // Layers, of which the first `layer_count` are in use.
     layers: array<CloudLayer, 16>,
     // Cells of cloud over rain areas.
     areas: array<CloudArea, 16>,

@@ -73,7 +73,7 @@ const SOLID_DEVIATION: f32 = 0.107;
 // Width of a pixel up to which clouds are not blurred, in distances from cloud to cloud.
 const BLUR_FROM: f32 = 0.15;
 
-// Share of the variance that a mean over `width` removes, by one of the laws above.
+// Share of the variance that a mean over `width` removes, by a law of EVEN_BLUR and the two constants after it.
 fn cloud_lost(width: f32, law: vec2f) -> f32 {
     return 1.0 - exp(-pow(width / law.x, law.y));
 }

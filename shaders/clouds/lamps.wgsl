@@ -23,7 +23,7 @@ struct CloudLamps {
     row: f32,
     // Width and height of the glow's picture, texels.
     size: vec2f,
-    // Lamps and flashes, of which the first `count` count.
+    // Lamps and flashes, of which the first `count` are in use.
     lamps: array<CloudLamp, 16>,
 }
 

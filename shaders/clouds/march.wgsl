@@ -4,7 +4,7 @@
 //!include "clouds/halo.wgsl"
 //!include "clouds/lit.wgsl"
 
-// Number of steps relative to that given by the following values.
+// Factor on the number of steps that follows from the limits below.
 override CLOUD_FINENESS: f32 = 1.0;
 // Largest number of steps in one layer.
 override CLOUD_STEPS: u32 = 96u;
@@ -29,8 +29,8 @@ struct CloudSeen {
     reach: vec2f,
 }
 
-// Distances at which a ray crosses a sphere `height` above the planet's ground, in order. Both are the same if it does
-// not.
+// Distances at which a ray crosses a sphere `height` above the planet's ground, in order. Both are the same if the ray
+// does not cross it.
 fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
     let r = clouds.radius + cloud_eye();
     let rise = height - cloud_eye();
@@ -91,14 +91,13 @@ fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     return vec2f(all - cloudy, cloudy);
 }
 
-// Purposes for which the next place on a ray is looked up.
-// To find cloud.
+// Purpose of the look-up of a ray's next place: to find cloud.
 const CLOUD_SEEKS: u32 = 0u;
-// To begin the first step at the face of a cloud that was found.
+// Purpose of a look-up: to begin the first step at the face of a cloud that was found.
 const CLOUD_AT_FACE: u32 = 1u;
-// For the light of a thick step, at its mean visible place.
+// Purpose of a look-up: to compute the light of a thick step at its mean visible place.
 const CLOUD_WITHIN: u32 = 2u;
-// The step needs no other place.
+// No look-up: the step needs no other place.
 const CLOUD_FOUND: u32 = 3u;
 
 // State of a step along a ray.

@@ -2,7 +2,7 @@
 //! `shaders/clouds/about.wgsl`, with finer steps.
 //!
 //! # Error
-//! Pictures are compared with this by `cargo test --test clouds radiance -- --nocapture`.
+//! `cargo test --test clouds radiance -- --nocapture` compares pictures with these rays.
 
 use std::sync::{Arc, OnceLock};
 
@@ -292,7 +292,7 @@ impl<'a> CloudRays<'a> {
     }
 
     /// Returns the light that a place scatters into a direction per unit of scaled depth, cd/m^2. `transmittance` is
-    /// that from the eye to the place.
+    /// the transmittance of the clouds from the eye to the place.
     fn scattered(&self, place: &AtPlace<'_>, direction: DVec3, transmittance: f64) -> DVec3 {
         let sources = self.light.of(place.layer.medium);
         let s = sources.scattered(&place.depths(sources.to_sun), direction, -transmittance.ln());

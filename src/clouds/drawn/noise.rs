@@ -17,7 +17,7 @@ use crate::{
 pub(crate) struct CloudNoise {
     /// Map of where clouds grow.
     pub map: Map,
-    /// Solid noise that frays their edges.
+    /// Solid noise that frays the edges of clouds.
     pub solid: Solid,
     /// Light that was last computed for droplets, and for ice.
     lit: [Mutex<Option<LitMedium>>; 2],

@@ -6,7 +6,8 @@
 pub(crate) struct MapRows {
     /// Index of the row to refresh next.
     next: u32,
-    /// Rows refreshed since the map's inputs last changed. Once it is all rows, there is nothing left to do.
+    /// Rows refreshed since the map's inputs last changed. Once this is the number of all rows, there is nothing left
+    /// to do.
     made: u32,
     /// Number of rows that have become old, estimated from the changes of the inputs. No row is refreshed until this
     /// number reaches the number of rows that one frame refreshes.

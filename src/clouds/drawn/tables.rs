@@ -157,7 +157,7 @@ impl LightTables {
 pub(crate) struct CloudTables {
     /// Map of where clouds grow.
     pub map: wgpu::TextureView,
-    /// Solid noise that frays their edges.
+    /// Solid noise that frays the edges of clouds.
     pub solid: NoiseTexture,
     /// Tables of light scattered more than once.
     pub light: LightTables,

@@ -233,7 +233,7 @@ pub struct Case {
     pub kind: CloudKind,
     /// Cover, 0 to 1.
     pub cover: f64,
-    /// Base, m.
+    /// Altitude of the base, m.
     pub base_m: f64,
     /// Height of the eye above the sea, m.
     pub height_m: f64,

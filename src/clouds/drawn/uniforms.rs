@@ -1,4 +1,4 @@
-//! Uniforms of a frame's clouds. Their fields are described in `shaders/clouds/`: `block.wgsl`, `picture.wgsl` and
+//! Uniforms of a frame's clouds. They have the layouts of `shaders/clouds/`: `block.wgsl`, `picture.wgsl` and
 //! `shadow_map.wgsl`.
 
 use std::sync::Arc;
@@ -55,7 +55,7 @@ pub(crate) struct LayerUniform {
     /// Distance that the top lies downwind of the base (east, north), m; least excess that has an anvil above it;
     /// length of the first two, m.
     pub lean: [f32; 4],
-    /// Host's map: position of the camera (east, north), in cells from the middle of the first one; 1/side of a cell,
+    /// Host's map: position of the camera (east, north), in cells from the middle of the first cell; 1/side of a cell,
     /// 1/m; row of the map's first texels.
     pub mapped: [f32; 4],
     /// Number of the map's cells east and north, 0 without a map; growth of the domes times the dome squared; largest
@@ -105,7 +105,7 @@ pub(crate) struct CloudsUniform {
     pub unused: f32,
     /// Scattering of droplets (0) and ice (1).
     pub media: [MediumUniform; 2],
-    /// Layers, of which the first `layer_count` count.
+    /// Layers, of which the first `layer_count` are in use.
     pub layers: [LayerUniform; MAX_CLOUD_LAYERS],
     /// Cells of cloud over rain areas.
     pub areas: [AreaUniform; MAX_AREAS],

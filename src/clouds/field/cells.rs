@@ -7,9 +7,9 @@
 //! of an area's rain. Otherwise the base is that top. Under a closed layer there are no cells, because it hides the
 //! sky.
 //!
-//! The light at a place is that under one layer of the cells' cloud, whose cover is the share of the sky that the cells
-//! take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from level
-//! ground (Hamilton and Morgan 1952). The disc lies at the horizontal distance r |d / s| from the place: r is the
+//! The light at a place equals the light under one layer of the cells' cloud, whose cover is the share of the sky that
+//! the cells take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from
+//! level ground (Hamilton and Morgan 1952). The disc lies at the horizontal distance r |d / s| from the place: r is the
 //! disc's radius, d the vector to the cell's middle along the cell's axes, and s the cell's half widths.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};

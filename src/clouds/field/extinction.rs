@@ -21,9 +21,9 @@ pub(crate) const MOST_FRAYED: f64 = 0.8;
 pub struct Field<'a> {
     /// Shape of the clouds.
     pub shape: Shape,
-    /// Map of where they grow.
+    /// Map of where clouds grow.
     pub map: &'a Map,
-    /// Solid noise that frays their edges.
+    /// Solid noise that frays the edges of clouds.
     pub solid: &'a Solid,
     /// Local cover that overrides the layer's own.
     pub(crate) placed: LocalCover,

@@ -41,7 +41,7 @@ pub(crate) struct CloudLayers {
     pub liquid_um: f64,
     /// How far the wind has carried the layers.
     pub drifts: LayerDrifts,
-    /// Cover maps of the layers that the host gives one ([`super::placed`]).
+    /// Cover map of each layer for which the host gives one ([`super::placed`]).
     pub maps: [Option<Arc<LayerMap>>; MAX_CLOUD_LAYERS],
     /// Cells over rain areas.
     pub areas: Option<AreaCells>,

@@ -93,11 +93,11 @@ const MAP_SLOPE: f64 = 4.0;
 /// Amount of cloud above, below and beside a place, as metres of cloud at full extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudAround {
-    /// Straight up.
+    /// Cloud straight up, m.
     pub above_m: f64,
-    /// Straight down.
+    /// Cloud straight down, m.
     pub below_m: f64,
-    /// Horizontally, to the nearer edge.
+    /// Cloud horizontally, to the nearer edge, m.
     pub edge_m: f64,
 }
 
@@ -114,8 +114,8 @@ pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
     height.min(full) + (ramp(height.clamp(full, end)) - ramp(full)).max(0.0) + anvil
 }
 
-/// Returns the amount of cloud around a place at a height, for edges that are not frayed. `excess` is that over the
-/// threshold alone, with no dome taken off.
+/// Returns the amount of cloud around a place at a height, for edges that are not frayed. `excess` is the map's number
+/// less the threshold, before the dome is subtracted.
 pub fn about(shape: &Shape, excess: f64, height: f64) -> CloudAround {
     let below = filled_below(shape, excess, height);
     // An anvil reaches further than its tower.

@@ -56,7 +56,7 @@ pub struct Shine {
     pub between: f64,
     /// Scaled depths of the layer's cloud above and below the source.
     pub within: [f64; 2],
-    /// Whether it shines inside a cloud, whatever lies on the path.
+    /// Whether the source shines inside a cloud, whatever lies on the path.
     pub is_buried: bool,
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct LampsUniform {
     pub row: f32,
     /// Width and height of the glow's picture, texels.
     pub size: [f32; 2],
-    /// Lamps and flashes, of which the first `count` count.
+    /// Lamps and flashes, of which the first `count` are in use.
     pub lamps: [CloudLampUniform; LAMPS],
 }
 

@@ -14,19 +14,19 @@ const PART_RATE: f64 = 1.0;
 /// Scaled optical depths of cloud around a place; [`super::transport`] has the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depths {
-    /// Straight up.
+    /// Depth straight up.
     pub above: f64,
-    /// Straight down.
+    /// Depth straight down.
     pub below: f64,
-    /// Towards the sun.
+    /// Depth towards the sun.
     pub to_sun: f64,
-    /// Horizontally, to the side where the sun stands.
+    /// Level depth towards the side where the sun stands.
     pub near: f64,
-    /// Horizontally, away from the sun.
+    /// Level depth away from the sun.
     pub far: f64,
-    /// Horizontally, across the sun's direction, to the nearer edge of the cloud.
+    /// Level depth across the sun's direction, to the nearer edge of the cloud.
     pub left: f64,
-    /// Horizontally, across the sun's direction, to the farther edge of the cloud.
+    /// Level depth across the sun's direction, to the farther edge of the cloud.
     pub right: f64,
 }
 

@@ -19,7 +19,7 @@ use crate::{
 /// Rows refreshed in a frame, once as many are old.
 const ROWS: u32 = 12;
 /// Changes that make the whole panorama old: distance that the camera or the clouds move, m, which turns a cloud 500 m
-/// up by one texel; factor by which it ages faster than the shadow map; change of the exposure (logarithm).
+/// up by one texel; factor by which the panorama ages faster than the shadow map; change of the exposure (logarithm).
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
 /// Changes after which the whole panorama is out of date: distance that the camera moves between two frames, m; change
 /// of the exposure (logarithm).
