@@ -102,9 +102,13 @@ enum LightWithin<'a> {
     Given(Arc<Sources>),
     /// Tables computed when a ray first meets cloud of a medium; most rays meet none.
     Asked {
+        /// Noise of the clouds, which caches the tables of the last query.
         grown: &'a CloudNoise,
+        /// Media: droplets (0) and ice (1).
         media: [Arc<Transport>; 2],
+        /// Unit vector towards the sun (east, north, up).
         to_sun: DVec3,
+        /// Tables of each medium, once they are computed.
         made: [OnceLock<Arc<Sources>>; 2],
     },
 }
