@@ -14,7 +14,7 @@ use welkin::{
 };
 use welkin_support::{
     coarse_sky::coarse_sky,
-    processor::{median, processor_ns},
+    processor::{holds, median, processor_ns},
     textures::texture,
 };
 
@@ -59,14 +59,11 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_little_more() {
             let [with, without] = spent;
             median(&mut with.iter().zip(&without).map(|(a, b)| a / b).collect::<Vec<_>>())
         };
-        let ratio = median(&mut (0..5).map(trial).collect::<Vec<_>>());
-        println!("{turn_rad}: {ratio:.3} of the processor time without stars");
-        ratio
+        median(&mut (0..5).map(trial).collect::<Vec<_>>())
     };
-    // While the camera stands still, and while it turns.
-    let [still, turning] = [ratio(0.0), ratio(1e-3)];
     // Processors and runs differ: ten took 1.04 to 1.10 with the camera still, and 1.13 to 1.18 while it turns. The
     // narrow bounds are for a machine with nothing else to do; the wide ones still refuse stars of twice the cost.
     let most = if std::env::var_os("WELKIN_ACCEPT").is_some() { [1.12, 1.2] } else { [1.17, 1.26] };
-    assert!(still <= most[0] && turning <= most[1], "{still} and {turning}, at most {most:?}");
+    // While the camera stands still, and while it turns.
+    holds("processor time over that without stars", &most, || vec![ratio(0.0), ratio(1e-3)]);
 }

@@ -17,8 +17,11 @@ const SLOW: f64 = 1.5;
 /// Frames that are named for each segment, the slowest first.
 const NAMED: usize = 3;
 
-/// Clocks of the report.
-const CLOCKS: [(&str, fn(&Times) -> f64); 2] = [("wall", |t| t.wall_ms), ("processor", |t| t.processor_ms)];
+/// Clock of a frame's times, ms.
+type Clock = fn(&Times) -> f64;
+
+/// Clocks of the report, with their names.
+const CLOCKS: [(&str, Clock); 2] = [("wall", |t| t.wall_ms), ("processor", |t| t.processor_ms)];
 
 /// All that was measured.
 pub struct Day {
@@ -44,7 +47,7 @@ impl Day {
 
     /// Returns the time of a frame at rest to which those of a segment are compared: the longer of the medians in its
     /// weather and in the one before.
-    fn base(&self, segment: usize, clock: fn(&Times) -> f64) -> f64 {
+    fn base(&self, segment: usize, clock: Clock) -> f64 {
         clock(&self.rest[segment]).max(clock(&self.rest[segment.saturating_sub(1)]))
     }
 
