@@ -3,13 +3,13 @@
 use super::laws;
 use crate::weather::{Conditions, Falling};
 
-/// Units per kg/m^2 of mass, and per metre of depth.
+/// Units per kg/m^2 of mass, and per metre of depth: 2^24.
 pub(super) const UNITS: f64 = 16_777_216.0;
-/// Units of an albedo of 1.
+/// Units per albedo of 1: 2^30.
 const ALBEDO_UNITS: f64 = 1_073_741_824.0;
 /// Step of the densities for which settling is tabulated, kg/m^3.
 const DENSITY_STEP: f64 = 4.0;
-/// Number of those densities.
+/// Number of densities for which settling is tabulated: they reach past that of ice, [`laws::ICE_KG_M3`].
 const DENSITIES: usize = 232;
 
 /// Snow over a square metre. A column without ice holds no snow, and all its values are 0.
@@ -25,7 +25,7 @@ pub(super) struct Column {
     pub albedo: i64,
 }
 
-/// Snow that moves from one column to another.
+/// Snow that moves from one column to another: ice and water in units of mass, depth in units of depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SnowParcel {
     pub ice: i64,
@@ -39,7 +39,8 @@ impl SnowParcel {
     }
 }
 
-/// Mass that a column gained and lost in a step, in units of mass.
+/// Mass that a column exchanged in a step, in units of mass: gained by snow and rain that fell, lost by water that ran
+/// off and by sublimation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct MassExchange {
     pub fallen: i64,
@@ -54,20 +55,25 @@ pub(super) struct ColumnForcing {
     ice: i64,
     /// Depth of that ice as it lands, in units of depth.
     depth: i64,
-    /// Share by which the albedo approaches that of new snow.
+    /// Share of the difference to the albedo of new snow that the snowfall removes, 0 to 1.
     renewed: f64,
+    /// Rain that falls, in units of mass.
     rain: i64,
     /// Melt without sunlight, in units of mass.
     melt: f64,
     /// Additional melt by sunlight for an albedo of 0, in units of mass.
     melt_by_sun: f64,
+    /// Largest mass of liquid water that refreezes, in units of mass.
     refreezing: i64,
+    /// Largest mass of ice that sublimates, in units of mass.
     sublimation: i64,
+    /// Share of the albedo's excess over that of old snow that is left after the step, 0 to 1.
     albedo_kept: f64,
 }
 
-/// Settling in a step, tabulated by density: the relative loss of depth by metamorphism of dry grains, and the loss by
-/// load per unit of the column's mass.
+/// Settling in a step, tabulated by density in steps of `DENSITY_STEP` from 0: [a, b] of the factor exp(-(a w + b M))
+/// on the depth. a is the effect of metamorphism, with w = 1 in dry snow and 2 in wet snow. b is that of the load, with
+/// M the column's mass in units; half of the column counts as load.
 #[derive(Clone, Debug)]
 pub(super) struct Settling(Box<[[f64; 2]; DENSITIES]>);
 
@@ -86,17 +92,20 @@ impl Settling {
     }
 }
 
+/// Converts kg/m^2 or m to units.
 fn units(amount: f64) -> i64 {
     (amount * UNITS).round() as i64
 }
 
-/// Returns the share `part / whole` of a number, rounded down. This is exact enough for depths, which have no balance.
+/// Returns `number` x `part` / `whole`, rounded down. Its error as a floating-point number is harmless for depths,
+/// which enter no balance.
 fn share(number: i64, part: i64, whole: i64) -> i64 {
     (number as f64 * (part as f64 / whole as f64)) as i64
 }
 
 impl ColumnForcing {
-    /// Creates the forcing for a weather in which `falling` falls, under sunlight in W/m^2.
+    /// Creates the forcing for a step of `seconds` in the weather `c`, with the precipitation `falling` instead of that
+    /// of `c`, under `sunlight_w_m2` on level ground.
     pub fn new(c: &Conditions, falling: &Falling, sunlight_w_m2: f64, seconds: f64) -> Self {
         let hours = seconds / 3600.0;
         let (t, wind) = (c.air.temperature_c, c.wind.speed_m_s());
@@ -164,7 +173,7 @@ impl Column {
         self.albedo as f64 / ALBEDO_UNITS
     }
 
-    /// Steps the column. The share `open` of the precipitation arrives on it.
+    /// Advances the column by a step. The share `open` of the precipitation arrives on it, 0 to 1.
     pub fn step(&mut self, f: &ColumnForcing, settling: &Settling, open: f64) -> MassExchange {
         let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
@@ -187,7 +196,7 @@ impl Column {
         gone
     }
 
-    /// Lets the snow settle under half of its own load, and moves its albedo towards that of old snow.
+    /// Lets the snow settle ([`Settling`]), and moves its albedo towards that of old snow.
     fn settle(&mut self, f: &ColumnForcing, settling: &Settling) {
         if self.depth == 0 {
             return;
@@ -201,6 +210,7 @@ impl Column {
         self.albedo = old + ((self.albedo - old) as f64 * f.albedo_kept) as i64;
     }
 
+    /// Adds new snow of this mass and depth. The albedo approaches that of new snow by the share `renewed`.
     fn land(&mut self, ice: i64, depth: i64, renewed: f64) {
         let new = (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64;
         let bare = self.ice == 0;
@@ -209,7 +219,7 @@ impl Column {
         self.depth += depth;
     }
 
-    /// Removes ice with its share of the depth. Returns the amount removed.
+    /// Removes up to `wanted` units of ice, and the same share of the depth. Returns the ice removed.
     fn lose(&mut self, wanted: i64) -> i64 {
         let lost = wanted.min(self.ice);
         if lost > 0 {
@@ -219,6 +229,7 @@ impl Column {
         lost
     }
 
+    /// Melts ice to water, then freezes water to ice.
     fn thaw(&mut self, f: &ColumnForcing) {
         let melt = f.melt + f.melt_by_sun * (1.0 - self.albedo());
         self.water += self.lose(melt as i64);
@@ -254,7 +265,8 @@ impl Column {
         lost
     }
 
-    /// Adds snow from elsewhere; `albedo` is its albedo there.
+    /// Adds snow from another column. `albedo` is that column's, in units; the column's albedo becomes the mean by
+    /// mass.
     pub fn add(&mut self, part: SnowParcel, albedo: i64) {
         let mass = self.mass() + part.mass();
         if mass > 0 && part.mass() > 0 {
@@ -266,7 +278,7 @@ impl Column {
         self.tidy();
     }
 
-    /// Presses the share `covered` of the column to this density, if it is less dense.
+    /// Presses the share `covered` of the column's area to this density, if its snow is less dense.
     pub fn press(&mut self, density_kg_m3: f64, covered: f64) {
         let pressed = (self.mass() as f64 / density_kg_m3) as i64;
         if pressed < self.depth {
@@ -282,7 +294,8 @@ impl Column {
         within && (0..=ALBEDO_UNITS as i64).contains(&self.albedo) && (self.mass() == 0) == (self.depth == 0)
     }
 
-    /// Albedo of dry snow that the wind lays down: that of new snow, since the wind breaks its grains.
+    /// Returns the albedo of dry snow that the wind lays down, in units: that of new snow, since the wind breaks its
+    /// grains.
     pub fn drifted_albedo() -> i64 {
         (laws::NEW_ALBEDO * ALBEDO_UNITS) as i64
     }

@@ -10,12 +10,13 @@
 //! at five heights before a wall and three fifths at one height. The drift there ends up half as high as the wall, as
 //! is found on the windward side of fences (Tabler 1980, J. Glaciol. 26, 405).
 //!
-//! **Transport.** Along the wind the flux approaches what the wind can carry ([`saltation_kg_m_s`]): it grows over the
-//! length [`ERODING_M`] where there is loose snow, and falls over [`LANDING_M`]. One sweep down the wind does this for
-//! a whole step, for any length of step and size of cells. Snow that leaves a cell enters the next ones, and snow that
-//! leaves the last ones is blown out. The country around the field supplies as much as its own snow yields. Saltating
-//! ([`saltation_kg_m_s`]) and suspended snow ([`suspension_kg_m_s`]) are carried separately: suspended snow grows over
-//! [`LIFTING_M`] and lands over [`SINKING_M`], so it reaches farther into a lee.
+//! **Transport.** Along the wind the flux Q approaches the capacity Qc of the wind: dQ/dx = (Qc - Q) / L. L is
+//! [`ERODING_M`] if Q < Qc and there is loose snow, and [`LANDING_M`] if Q > Qc. One sweep down the wind solves this
+//! for a whole step, of any length and with cells of any size. Snow that leaves a cell enters the next ones, and snow
+//! that leaves the last ones is blown out. The country around the field supplies as much as its own snow yields.
+//! Saltating ([`saltation_kg_m_s`]) and suspended snow ([`suspension_kg_m_s`]) are carried separately: suspended snow
+//! grows over [`LIFTING_M`] and lands over [`SINKING_M`], so it reaches farther into a lee. Their capacities are the
+//! fluxes that these functions return.
 //!
 //! The sweep goes from patch to patch down the wind as it does from cell to cell: the snow that leaves the last cells
 //! of one patch, and the lee's line over them, enter the next. Patches are left out if they have no snow, receive none
@@ -34,34 +35,37 @@ use super::{
 
 use crate::numerics::smoothstep;
 
-/// Length over which the gap between the flux of saltating snow and what the wind can carry falls to 1/e, m.
+/// Length over which the lack of saltating snow against the wind's capacity falls to 1/e, m.
 const ERODING_M: f64 = 30.0;
 /// Length over which an excess of saltating snow falls to 1/e, m.
 const LANDING_M: f64 = 3.0;
-/// Length over which the same gap for suspended snow falls to 1/e, m: the flux is fully developed after some 500 to
-/// 1000 m (Takeuchi 1980).
+/// Length over which the lack of suspended snow against the wind's capacity falls to 1/e, m: the flux is fully
+/// developed after some 500 to 1000 m (Takeuchi 1980).
 const LIFTING_M: f64 = 250.0;
-/// Length over which an excess of suspended snow falls to 1/e, m: it sinks half a metre at 0.4 m/s in a wind of 12 m/s.
+/// Length over which an excess of suspended snow falls to 1/e, m: snow that sinks 0.5 m at 0.4 m/s is carried 15 m by a
+/// wind of 12 m/s.
 const SINKING_M: f64 = 15.0;
 /// Horizontal run per unit of fall of the line below which the wind in a lee is calmed.
 const LEE_RUN: f64 = 12.0;
-/// Largest share of the wind that a calm takes away.
+/// Share of its speed that the wind loses at the foot of an obstacle.
 const CALMED: f64 = 0.85;
 /// Least height that is assumed for an object that casts a lee, m.
 const LEAST_M: f64 = 1.0;
-/// Distances over which the surface's slope and curvature are measured, m.
+/// Distances from a cell at which the surface's slope and curvature are measured, m.
 const SHAPES_M: [f64; 3] = [6.0, 10.0, 15.0];
 
 /// Direction of a sweep down the wind.
 struct Way {
-    /// Shares of the flux that go east or west, and north or south.
+    /// Shares of the flux that leave a cell across its east or west side, and across its north or south side; their sum
+    /// is 1.
     shares: [f64; 2],
     /// Whether the sweep goes west, and whether it goes south.
     back: [bool; 2],
     /// Unit vector along the wind.
     unit: DVec2,
+    /// Speed of the mean wind at 10 m, m/s.
     speed: f64,
-    /// Length of the path through a cell, m.
+    /// Mean length of the wind's paths through a cell, m.
     through_m: f64,
 }
 
@@ -79,7 +83,8 @@ impl Way {
         }
     }
 
-    /// Returns the neighbouring patch to leeward or to windward along an axis.
+    /// Returns the index of the neighbouring patch along an axis (0: rows, 1: columns), to leeward or to windward;
+    /// [`NONE`] without one.
     fn beside(&self, patch: &Patch, axis: usize, leeward: bool) -> u32 {
         patch.near[2 * axis + usize::from(self.back[axis] != leeward)]
     }
@@ -90,12 +95,14 @@ struct Sweep<'a> {
     way: &'a Way,
     /// Passage through a cell along the mean wind.
     mean: Through,
-    /// Units of mass that a flux of 1 kg/(m s) carries across the side of a cell in the step.
+    /// Mass that a flux of 1 kg/(m s) carries across a cell's side in the step, in units, spread over the cell's area.
     per_flux: f64,
     cell_m: f64,
+    /// Density of the snow that the wind lays down, kg/m^3.
     landing_kg_m3: f64,
     /// Whether the wind varies in space and is given for each cell.
     is_local: bool,
+    /// Revision for patches whose snow changes.
     revision: u64,
 }
 
@@ -104,10 +111,10 @@ struct Sweep<'a> {
 struct Through {
     /// Sum of the absolute components of its unit direction.
     sum: f64,
-    /// Share of the flux that goes east or west.
+    /// Share of the flux that leaves the cell across its east or west side.
     across: f64,
-    /// Share by which the flux approaches its new value within a cell, when it grows and when it falls: for saltating
-    /// and for suspended snow.
+    /// Shares 1 - exp(-x / L) by which the flux approaches the capacity over the path x through a cell: first for
+    /// saltating, then for suspended snow, each with L for a growing and for a falling flux.
     grown: [[f64; 2]; 2],
 }
 
@@ -121,8 +128,9 @@ impl Through {
     }
 }
 
-/// Returns the height of ground and snow, m, at `cells` cells along an axis from a cell, and the number of cells
-/// actually gone: fewer at the edge of the ground, and 0 if that cell is blocked.
+/// Returns the height of ground and snow, m, at the cell that lies `cells` cells along an axis (0: east, 1: north) from
+/// a cell, given by the index of its patch and its column and row. Also returns the number of cells actually gone:
+/// fewer at the edge of the ground, and 0 if the cell there is blocked.
 fn along(
     field: &SnowField,
     (patch, place): (usize, [usize; 2]),
@@ -148,8 +156,9 @@ fn along(
     if patch.is_blocked(cell) { (f64::NAN, 0) } else { (patch.surface_m(cell), cells - left) }
 }
 
-/// Returns the factor on the wind at a cell by the surface's slope and curvature, averaged over several distances: with
-/// a single distance each drift would repeat itself at that distance upwind.
+/// Returns the factor 1 + 0.58 s + 2 H / L on the wind at a cell (see the head of this file), with 0.58 s of at most
+/// 0.29 and 2 H / L of at most 0.4 in magnitude. Both are means over the distances `SHAPES_M`: with a single one, each
+/// drift would cause another at that distance upwind.
 fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
@@ -173,8 +182,8 @@ fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f6
 }
 
 /// Returns the line over a cell below which an object calms the wind: the height of the line, m, and the height of the
-/// object, m. The line continues those over the two neighbouring cells on the object's side, and falls over the path
-/// through the cell.
+/// object, m. It is the mean of the lines over the two neighbouring cells on the object's side (`neighbours`), lowered
+/// by the fall over the path through the cell. `None` if neither of them has a line.
 fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
     for (share, known) in way.shares.into_iter().zip(neighbours).filter_map(|(share, known)| Some((share, known?))) {
@@ -185,7 +194,8 @@ fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     (sum > 0.0).then(|| [line / sum - way.through_m / LEE_RUN, caster / sum])
 }
 
-/// Returns the factor on the wind at a cell by the lee of an object to windward, and the lee's line over the cell.
+/// Returns the factor on the wind at a cell by the lee of an object to windward, 1 - [`CALMED`] smoothstep(d / H), and
+/// the lee's line over the cell. d is the depth below the line and H the object's height.
 fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, windward.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
@@ -199,8 +209,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f
     }
 }
 
-/// Returns the factor on the wind at a cell by the calm in front of an object to leeward, and the calm's line over the
-/// cell.
+/// Returns the factor on the wind at a cell by the calm in front of an object to leeward, 1 - [`CALMED`] (d / H)^4, and
+/// the calm's line over the cell. d is the depth below the line and H the object's height.
 fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, leeward);
     if patch.is_hole(cell) {
@@ -256,7 +266,8 @@ impl DriftSweep {
         }
     }
 
-    /// Sorts the patches down the wind, and finds those that snow may reach and those with such patches to their lee.
+    /// Sorts the patches down the wind. Marks the patches that snow may lie on or reach (`has_snow`), and those with
+    /// such a patch to leeward (`has_lee`). `comes_in` says whether snow drifts in over the field's border.
     fn choose(&mut self, field: &mut SnowField, way: &Way, comes_in: bool) {
         self.order.clear();
         self.order.extend(0..field.patches.len() as u32);
@@ -282,7 +293,7 @@ impl DriftSweep {
         }
     }
 
-    /// Finds the wind over the cells that snow may reach. Returns the highest speed, m/s.
+    /// Finds the wind over the cells that snow may reach. Returns an upper bound of its speed, m/s.
     fn winds(&self, field: &mut SnowField, step: &SnowStep<'_>, way: &Way) -> f64 {
         let mut strongest: f64 = if step.wind.local.is_some() { 0.0 } else { 1.7 * way.speed };
         let columns = field.size[0];
@@ -299,7 +310,7 @@ impl DriftSweep {
                 let on = [0, 1].map(|i| patch.key[i] * field.size[i] as i32 + place[i] as i32);
                 let found = local(on, patch.surface_m(cell));
                 strongest = strongest.max(found.length());
-                // Against the mean wind nothing is carried: there the air recirculates behind an object.
+                // Carries no snow against the mean wind: air that flows against it recirculates behind an object.
                 let along = |axis: usize| (if way.back[axis] { -found[axis] } else { found[axis] }).max(0.0);
                 [along(0), along(1)]
             }));
@@ -342,7 +353,8 @@ impl DriftSweep {
         }
     }
 
-    /// Finds the fluxes that enter a patch: from the patches to windward, or from the country around the field.
+    /// Finds the fluxes that enter a patch from the patches to windward. Without such a patch it is `inflow`, from the
+    /// country around the field.
     fn come(&mut self, field: &mut SnowField, patch: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for (axis, inflow) in inflow.into_iter().enumerate() {
             let before = way.beside(&field.patches[patch], axis, false);
@@ -359,7 +371,8 @@ impl DriftSweep {
         }
     }
 
-    /// Sweeps over a patch: turns the fluxes that enter it into those that leave it.
+    /// Goes over a patch's cells down the wind: exchanges snow between air and columns, and stores the fluxes that
+    /// leave the patch.
     fn sweep(&mut self, field: &mut SnowField, patch: usize, sweep: &Sweep<'_>) {
         let way = sweep.way;
         let [nx, ny] = field.size;
@@ -391,9 +404,9 @@ impl DriftSweep {
 }
 
 impl Sweep<'_> {
-    /// Exchanges snow between the air over a cell and its column. Returns the snow that leaves the cell along the row
-    /// and along the column, each saltating and suspended; the lee's line over the cell; and whether its column has
-    /// changed.
+    /// Exchanges snow between the air over a cell and its column. `windward` has the fluxes that enter along the row
+    /// and along the column. Returns the snow that leaves the cell along the row and along the column, each saltating
+    /// and suspended, in units of mass; the lee's line over the cell; and whether its column has changed.
     fn cell(
         &self,
         patch: &mut Patch,
@@ -407,7 +420,7 @@ impl Sweep<'_> {
         }
         let (speed, through) = self.wind(patch.edges.wind[cell], calm);
         let mut changes = false;
-        // Over obstacles and holes the snow only passes.
+        // Snow passes over obstacles and holes without landing.
         if !patch.is_blocked(cell) {
             let mut column = patch.column(cell);
             for (kind, flux) in [saltation_kg_m_s, suspension_kg_m_s].into_iter().enumerate() {
@@ -425,8 +438,9 @@ impl Sweep<'_> {
         ([across, [leaving[0] - across[0], leaving[1] - across[1]]], lee, changes)
     }
 
-    /// Returns the speed of the wind over a cell, m/s, and its passage through the cell: along the local wind, or along
-    /// the mean wind.
+    /// Returns the speed of the wind over a cell, m/s, and its passage through the cell. `own` is the cell's entry of
+    /// [`Edges::wind`](super::drift_state::Edges), and `calm` the factor by a lee, which counts only for a uniform
+    /// wind.
     fn wind(&self, own: [f64; 2], calm: f64) -> (f64, Through) {
         if !self.is_local {
             return (self.way.speed * calm * own[0], self.mean);
@@ -436,7 +450,8 @@ impl Sweep<'_> {
     }
 }
 
-/// Returns the snow that the surrounding country supplies to each row and each column of cells at the field's border.
+/// Returns the snow that drifts in the step from the surrounding country into each row (first) and each column (second)
+/// of cells at the field's border: saltating and suspended, in units of mass.
 fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     let country = step.country;
     let threshold = threshold_m_s(country.is_wet(), country.density_kg_m3());
@@ -448,8 +463,9 @@ fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     [way.unit.x.abs(), way.unit.y.abs()].map(|part| fluxes.map(|flux| (flux * part) as i64))
 }
 
-/// Erodes a column if the air lacks snow (`lacking` above 0), or lands snow if it has too much. Returns the gain of the
-/// air.
+/// Erodes a column if the air carries less than its capacity (`lacking` > 0), or lands snow if it carries more.
+/// `eroded` and `landed` are the shares of the difference that move within the cell. Returns the gain of the air, in
+/// units of mass.
 fn exchange(column: &mut Column, lacking: i64, speed: f64, [eroded, landed]: [f64; 2], landing_kg_m3: f64) -> i64 {
     if lacking > 0 {
         let loose = column.ice > 0 && speed > threshold_m_s(column.is_wet(), column.density_kg_m3());

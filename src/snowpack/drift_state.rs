@@ -1,11 +1,12 @@
 //! State of drifting snow: fluxes across the borders of cells and patches, and scratch space for a sweep.
 
-/// Snow and lee that cross a cell's border with the wind.
+/// Snow that crosses a cell's border with the wind, and the line of the lee there.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DriftFlux {
     /// Saltating and suspended snow, in units of mass.
     pub snow: [i64; 2],
-    /// Height of the lee's line there, and of the object that casts it, m; `None` at the edge of the ground.
+    /// Height of the line below which the lee calms the wind, and of the object that casts the lee, m; `None` at the
+    /// edge of the ground.
     pub lee: Option<[f64; 2]>,
 }
 
@@ -15,8 +16,8 @@ pub(super) struct Edges {
     /// Fluxes that have left the patch down the wind: along each row to the east or west, along each column to the
     /// north or south.
     pub left: [Vec<DriftFlux>; 2],
-    /// Wind over each cell. A wind that varies in space is given by its components along the sweep, m/s; else the first
-    /// number is its ratio to the mean wind, and the second is 0.
+    /// Wind over each cell. A wind that varies in space is given by its components along the sweep, m/s; otherwise the
+    /// first number is its ratio to the mean wind, and the second is 0.
     pub wind: Vec<[f64; 2]>,
     /// Line of the calm in front of obstacles to leeward, where the wind enters each row and each column: height of the
     /// line and of the obstacle that casts it, m. Empty if no obstacle stands there.
@@ -32,11 +33,13 @@ pub(super) struct Edges {
 /// Scratch space of a sweep.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DriftSweep {
-    /// Numbers of the patches, from windward to leeward.
+    /// Indices of the patches, from windward to leeward.
     pub order: Vec<u32>,
     /// Fluxes that enter a patch: along each row, and along each column.
     pub coming: [Vec<DriftFlux>; 2],
-    /// Fronts of the patches to leeward; see [`Edges`].
+    /// Lines of the calm in front of obstacles, at the leeward border of the patch in work: for each row and each
+    /// column, as in [`Edges::fronts`].
     pub fronts: [Vec<Option<[f64; 2]>>; 2],
+    /// Number of sweeps so far.
     pub sweeps: u64,
 }

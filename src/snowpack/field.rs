@@ -14,16 +14,22 @@ use super::{
     patch::{NONE, Patch},
 };
 
-/// Mass balance of a field since it began, in units of mass times cells.
+/// Mass balance of a field since it began: sums over cells, in units of mass ([`super::column::UNITS`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Books {
     /// Mass that lay on ground when it was set.
     pub began: i64,
+    /// Snow and ice that fell, and rain that fell on snow.
     pub fallen: i64,
+    /// Snow that the wind blew in over the field's border.
     pub blown_in: i64,
+    /// Snow that the wind blew out over the field's border.
     pub blown_out: i64,
+    /// Melt water and rain that ran off to the ground.
     pub ran_off: i64,
+    /// Snow that sublimated into the air.
     pub sublimated: i64,
+    /// Snow that the host took away, also by removed ground and by boxes that were set on it.
     pub taken: i64,
 }
 
@@ -36,7 +42,7 @@ impl Books {
         Self { began, fallen, blown_in, blown_out, ran_off, sublimated, taken }
     }
 
-    /// Returns the mass that lies according to the balance.
+    /// Returns the lying mass that follows from the balance; it equals [`SnowField::lying`].
     pub fn balance(&self) -> i64 {
         self.began + self.fallen + self.blown_in - self.blown_out - self.ran_off - self.sublimated - self.taken
     }
@@ -48,7 +54,7 @@ pub(super) struct SnowField {
     /// Number of cells of a patch, east and north.
     pub size: [usize; 2],
     pub cell_m: f64,
-    /// Lattice of tiles: its origin and cell size, m. `None` for a grid.
+    /// Lattice of tiles: x, y and z of its origin in the host's world, and its cell size, m. `None` for a grid.
     pub lattice: Option<[f64; 4]>,
     /// Patches, sorted by key: rows from the south, each from the west.
     #[expect(clippy::vec_box, reason = "a new one is put among the others, which are many and large")]
@@ -58,10 +64,10 @@ pub(super) struct SnowField {
     pub runoff_mm_h: f64,
     /// Share of the ground under snow after the last step.
     pub cover: f64,
-    /// Whether all patches know their present neighbours.
+    /// Whether `near` of all patches is up to date.
     joined: bool,
     pub drift: DriftSweep,
-    /// Scratch space for sliding snow.
+    /// Scratch space for sliding snow: patch and cell whose snow may slide.
     pub moving: Vec<(u32, u32)>,
 }
 
@@ -87,7 +93,7 @@ impl SnowField {
         self.patches.len() * self.size[0] * self.size[1]
     }
 
-    /// Returns the mass that lies, in units of mass times cells.
+    /// Returns the lying mass, summed over cells, in units of mass.
     pub fn lying(&self) -> i64 {
         self.patches.iter().map(|p| p.lying()).sum()
     }
@@ -97,7 +103,7 @@ impl SnowField {
         self.patches.binary_search_by_key(&[key[1], key[0]], |p| [p.key[1], p.key[0]])
     }
 
-    /// Adds a patch if there is none at its place. Its snow counts as lying there from the beginning.
+    /// Adds a patch unless one with its key exists. Its snow counts as lying there from the beginning.
     pub fn add(&mut self, patch: Patch) {
         if let Err(at) = self.find(patch.key) {
             self.books.began += patch.lying();
@@ -112,7 +118,8 @@ impl SnowField {
         self.joined = false;
     }
 
-    /// Returns the patch and the cell at a place of the lattice, if there is ground.
+    /// Returns the index of the patch and of the cell at a place of the lattice, in cells east and north; `None`
+    /// without ground.
     pub fn cell_at(&self, place: [i32; 2]) -> Option<(usize, usize)> {
         let size = self.size.map(|n| n as i32);
         let at = self.find([0, 1].map(|i| place[i].div_euclid(size[i]))).ok()?;

@@ -1,4 +1,4 @@
-//! Lying snow as a context holds it: as the weather reports it, or simulated over the timeline if the host asks for it.
+//! Lying snow of a context: as the weather reports it, or simulated over the timeline if the host asks for it.
 
 use std::sync::Arc;
 
@@ -47,21 +47,26 @@ pub(crate) struct HeldSnow {
     pub model: LyingSnowModel,
     /// Whether updates are done in fast-forward.
     pub is_fast: bool,
+    /// Simulated snow; `None` with reported snow, and before the first update.
     state: Option<SnowState>,
+    /// Host's terrain under the snow, once there is one.
     site: Option<Site>,
     /// Tiles that changed while steps remained, each with the terrain after the change.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
-    /// Grounds that the host has set since the snow was last settled on one, in order: either one ground, or none
-    /// followed by one.
+    /// Grounds that the host has set since the snow was last adapted to one, in order: one ground that keeps the snow,
+    /// or an empty ground, which removes it, and then a new one.
     grounds: Vec<SnowGround>,
+    /// Table of settling for the step in progress.
     settling: Settling,
     /// End of the time that is simulated in fast-forward, s.
     coarse_until_s: f64,
+    /// Incremented whenever the snow may have changed.
     revision: u64,
+    /// Revision that was last published to the world; 0 before.
     published: u64,
     /// Meltwater from the snow since it was last published: beginning and length of each step, s, and its water.
     melts: Vec<(f64, f64, Meltwater)>,
-    /// Whether the meltwater published before is that of a state that a loaded one has replaced.
+    /// Whether the meltwater published so far belongs to a state that a loaded one has replaced; it is then deleted.
     forgets: bool,
 }
 
@@ -116,7 +121,7 @@ impl HeldSnow {
         }
     }
 
-    /// Returns site and snow field of the host's terrain, if there are any.
+    /// Returns the site and the snow field of the host's terrain; `None` without a terrain or without simulated snow.
     pub(super) fn field(&self) -> Option<(&Site, &SnowField)> {
         Some((self.site.as_ref()?, self.state.as_ref()?.field.as_ref()?))
     }
@@ -140,7 +145,7 @@ impl HeldSnow {
         self.revision += 1;
     }
 
-    /// Creates the state if it is missing, and settles it on the world's terrain.
+    /// Creates the state if it is missing, and adapts it to the world's terrain.
     pub(super) fn be_there(&mut self, world: &World) -> Result<()> {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
@@ -159,7 +164,8 @@ impl HeldSnow {
         }
     }
 
-    /// Adapts the snow to a terrain: it stays on cells that stay; new ones start with the depth on level ground.
+    /// Adapts the snow to a terrain. Cells that stay keep their snow; new cells start with the snow of level, open
+    /// ground.
     fn settle_on(&mut self, ground: &SnowGround) {
         match (&ground.grid, &ground.tiles) {
             (Some(grid), _) => {
@@ -177,6 +183,7 @@ impl HeldSnow {
         }
     }
 
+    /// Adapts the snow to tiles: first to the changes that waited for steps, then to all others.
     fn settle_on_tiles(&mut self, terrain: &Terrain) {
         let mut waiting = std::mem::take(&mut self.waiting);
         waiting.retain(|(key, then)| {
@@ -231,7 +238,7 @@ impl HeldSnow {
         self.publish(world);
     }
 
-    /// Steps the snow.
+    /// Advances the snow to `end_s`, in one step.
     fn step(&mut self, world: &World, end_s: f64) -> Result<()> {
         let Some(state) = &mut self.state else { return Ok(()) };
         let (from_s, seconds) = (state.time_s, end_s - state.time_s);
@@ -260,7 +267,7 @@ impl HeldSnow {
         };
         if let (Some(site), Some(field)) = (&mut self.site, &mut state.field) {
             let revision = self.revision + 1;
-            // The wind is that at the end of the step: a solved field has no earlier one.
+            // Takes the wind at the end of the step: a solved wind field has no earlier state.
             let air = site.air(world, end_s, &c);
             if site.shade(field, &c, &world.set.shelters, air.as_ref()) {
                 field.clear_blocked(revision);
@@ -326,15 +333,15 @@ impl HeldEffect for HeldSnow {
         if self.is_fast || time_s - world.time_s > LONGEST_S {
             self.coarse_until_s = time_s;
         }
-        // Before this, time passes without steps. The start is on the grid of long steps, so leaps that end at slightly
-        // different times start alike.
+        // Time before `earliest_s` passes without steps. The start is on the grid of long steps, so leaps that end at
+        // slightly different times start alike.
         let earliest_s = ((time_s - MOST_S) / COARSE_STEP_S).floor() * COARSE_STEP_S;
         state.time_s = state.time_s.max(earliest_s);
         Ok(())
     }
 
     fn settle(&mut self, world: &World) {
-        // All are applied in turn: if the first ground is set again at the end, its snow is still lost in between.
+        // Applies all in turn: a ground that is removed and set again loses its snow.
         for ground in std::mem::take(&mut self.grounds) {
             self.settle_on(&ground);
         }

@@ -4,18 +4,19 @@ use glam::DVec2;
 
 use super::column::{Column, ColumnForcing, Settling};
 
-/// Function that returns the forcing at a place of the lattice from the height of its ground, m.
+/// Function that returns the forcing at a cell of the lattice, given by its index east and north, and the height of its
+/// ground, m.
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 
-/// Function that returns the wind at 10 m over a place of the lattice, m/s east and north, from the height of the
-/// snow's surface there, m.
+/// Function that returns the wind at 10 m, m/s east and north, over a cell of the lattice, given by its index east and
+/// north, and the height of the snow's surface there, m.
 pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
 /// Wind at 10 m over a field, m/s east and north.
 #[derive(Clone, Copy)]
 pub(super) struct FieldWind<'a> {
     pub mean: DVec2,
-    /// Wind at each place, if it varies in space; else it follows from the mean wind and the surface's shape.
+    /// Wind over each cell, if the wind varies in space. `None`: drift derives it from `mean` and the surface's shape.
     pub local: Option<CellWind<'a>>,
 }
 
@@ -24,7 +25,7 @@ pub(super) struct SnowStep<'a> {
     pub seconds: f64,
     /// Forcing of all cells.
     pub even: &'a ColumnForcing,
-    /// Function that replaces `even` where the forcing varies from place to place.
+    /// Forcing of single cells, which replaces `even` if precipitation varies from place to place.
     pub falls: Option<FallsAt<'a>>,
     pub settling: &'a Settling,
     pub wind: FieldWind<'a>,

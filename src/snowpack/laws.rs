@@ -1,5 +1,5 @@
 //! Laws of lying snow, in f64: the density of new snow; settling, melt and refreezing; the winds that move snow, and
-//! the fluxes.
+//! the mass fluxes of drifting snow.
 //!
 //! Each law is a closed form with its source. The columns (`column.rs`) and the drift (`drift.rs`) convert its results
 //! to whole units of mass, so no mass is lost to rounding.

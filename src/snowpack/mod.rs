@@ -3,13 +3,15 @@
 //! **A column** (`column.rs`) has ice, liquid water, depth and an albedo. Mass and depth are whole numbers of 2^-24
 //! kg/m^2 and m, so nothing is lost to rounding. New snow lands with a density by temperature and wind (Pahaut 1976).
 //! The snow settles as its grains change and under its own load (Anderson 1976). It melts by temperature, sun and rain
-//! (Pellicciotti et al. 2005; US Army Corps of Engineers 1956), holds a tenth of its mass as water, refreezes
-//! (Bergstroem 1976), and gives the rest of the water to the ground. `laws.rs` has these laws, each with its equation.
+//! (Pellicciotti et al. 2005; US Army Corps of Engineers 1956), holds liquid water up to a tenth of its ice's mass,
+//! refreezes (Bergstroem 1976), and gives the rest of the water to the ground. `laws.rs` has these laws, each with its
+//! equation.
 //!
 //! **A field** (`field.rs`) has a column for each node of the terrain. It consists of one patch for a grid, or of a
 //! patch for each tile; patches without snow are skipped. Wind above the threshold (Li and Pomeroy 1997) carries snow
 //! along (`drift.rs`; Pomeroy and Gray 1990), and snow steeper than 38 degrees slides (`slides.rs`). Boxes that stand
-//! still keep snowfall off, stop the wind, and cast lees. Only `site.rs` knows where heights, boxes and wind come from.
+//! still keep snowfall off, stop the wind, and cast lees. Only `site.rs` reads heights, boxes and wind from the host's
+//! data.
 //!
 //! Steps of [`STEP_S`] begin at whole multiples of it, so the state does not depend on how often it is updated.
 //! Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state records how much time was covered

@@ -4,10 +4,10 @@ use std::sync::OnceLock;
 
 use super::{column::Column, drift_state::Edges};
 
-/// Number that stands for no patch.
+/// Index that stands for no patch.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Rectangle of ground and the snow on it, by rows from the south-west.
+/// Rectangle of ground and the snow on it. Cells are in rows from the south, each from the west.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Patch {
     /// Position on the lattice, in patches east and north.
@@ -16,7 +16,7 @@ pub(super) struct Patch {
     pub tile_revision: u64,
     /// Height of each cell, m. Empty until the ground is known.
     pub heights_m: Vec<f32>,
-    /// Lower bound of the heights, m.
+    /// Lowest height of a cell, m.
     pub lowest_m: f64,
     /// Whether each cell is a hole in the ground; empty if there are no holes.
     pub holes: Vec<bool>,
@@ -30,9 +30,9 @@ pub(super) struct Patch {
     pub columns: Vec<Column>,
     /// Revision of the snow, changed whenever the snow may have changed.
     pub revision: u64,
-    /// Neighbours to the west, east, south and north.
+    /// Indices of the neighbouring patches to the west, east, south and north; [`NONE`] without one.
     pub near: [u32; 4],
-    /// Snow that the wind carries over the borders, and the wind's speed.
+    /// State of the drift: snow that the wind carries over the patch's borders, and the wind over its cells.
     pub edges: Edges,
     hash: OnceLock<u64>,
 }
@@ -49,7 +49,7 @@ impl Patch {
         patch
     }
 
-    /// Creates a patch of saved snow, whose ground is not known yet.
+    /// Creates a patch of saved snow; [`Self::set_ground`] sets its ground later.
     pub fn loaded(key: [i32; 2], columns: Vec<Column>) -> Self {
         Self { key, columns, ..Self::default() }
     }
@@ -75,6 +75,7 @@ impl Patch {
         self.columns[cell] = column;
     }
 
+    /// Allocates columns if the patch has none.
     pub fn wake(&mut self) {
         if self.columns.is_empty() {
             self.columns.resize(self.heights_m.len(), Column::default());
@@ -98,6 +99,7 @@ impl Patch {
         self.obstacle_m(cell) > 0.0 || self.is_hole(cell)
     }
 
+    /// Returns the share of the precipitation that reaches a cell: 0 if it is sheltered, else 1.
     pub fn open(&self, cell: usize) -> f64 {
         if self.sheltered.get(cell).copied().unwrap_or(false) { 0.0 } else { 1.0 }
     }
@@ -107,6 +109,7 @@ impl Patch {
         f64::from(self.heights_m[cell]) + self.columns.get(cell).map_or(0.0, Column::depth_m)
     }
 
+    /// Returns the lying mass, summed over cells, in units of mass.
     pub fn lying(&self) -> i64 {
         self.columns.iter().map(Column::mass).sum()
     }

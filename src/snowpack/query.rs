@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{error::Result, surroundings::SnowHere, weather::snow_cover, world::World};
 
-/// Class of the grip that snow leaves to a wheel. Conditions are tested in the order bare, slush, ice, packed; snow
-/// that meets none of them is loose.
+/// Class of a wheel's grip on snow. Conditions are tested in the order bare, slush, ice, packed; snow that meets none
+/// of them is loose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u32)]
 pub enum SnowFriction {
@@ -96,7 +96,8 @@ impl SnowAt {
 }
 
 impl HeldSnow {
-    /// Snow at a place; see [`Context::snow_at`](crate::context::Context::snow_at).
+    /// Returns the snow at a place, for [`Context::snow_at`](crate::context::Context::snow_at): between cells, the
+    /// bilinear mean of their depth and mass, and the mean by mass of wetness and albedo.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if `position` is not finite, farther than 1e12 m from the world's origin, or
@@ -128,7 +129,7 @@ impl HeldSnow {
         Ok(SnowAt::of(here, mass, site.position(local)))
     }
 
-    /// Mass balance of the snow on the host's terrain; `None` without a terrain.
+    /// Returns the mass balance of the snow on the host's terrain; `None` without a terrain.
     pub fn books(&self) -> Option<SnowBalance> {
         let (_, field) = self.field()?;
         let kg = |units: i64| units as f64 / UNITS * field.cell_m * field.cell_m;

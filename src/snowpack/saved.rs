@@ -1,4 +1,5 @@
-//! Saved form of lying snow as text. Amounts are whole numbers; a run of equal ones is written as "bits*times".
+//! Saved form of lying snow as text. Amounts are whole numbers; a run of n equal numbers v is written as "v*n", with v
+//! in hexadecimal.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +17,7 @@ use crate::{
 /// Largest number of cells of a terrain.
 const MOST_CELLS: usize = 1 << 26;
 
-/// Saved state.
+/// Saved state: the fields of [`SnowState`]. A column is its ice, water, depth and albedo, in units.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSnow {
@@ -41,7 +42,7 @@ struct SavedCells {
     columns: Option<[String; 4]>,
     books: [i64; 7],
     melted: [f64; 2],
-    /// Lattice of tiles: its origin and cell size, m.
+    /// Lattice of tiles: x, y and z of its origin in the host's world, and its cell size, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     lattice: Option<[f64; 4]>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -20,17 +20,18 @@ use crate::{
     world::World,
 };
 
-/// Height above the ground at which shelter is tested, m.
+/// Height above the ground of the point for which shelter from falling snow is tested, m.
 const SURFACE_M: f64 = 0.02;
-/// Height of a box's underside above the ground from which on it lets the wind through, m.
+/// Largest height of a box's underside above the ground at which the box still stands on it, m. Wind and snow pass
+/// under a higher one.
 const GAP_M: f64 = 0.3;
-/// Height above the snow from which on a queried place counts as being on an object, m.
+/// Height above the ground above which a queried position counts as being on an object, m.
 const ABOVE_M: f64 = 3.0;
-/// Height over the snow at which a wind that varies in space is sampled, m.
+/// Least height over the snow at which a wind that varies in space is sampled, m.
 const ASKED_M: f64 = 2.0;
-/// Number of steps in which a flake's path is followed back from the ground to the top of a box in calm air.
+/// Number of steps in which a flake's path is traced back from the ground to the top of a box if the air is calm.
 const WAY_PARTS: f64 = 12.0;
-/// Limit of these steps in wind.
+/// Largest number of steps in which a flake's path is traced back.
 const MOST_PARTS: u32 = 24;
 /// Diameter of the flakes whose paths decide which cells boxes shelter, mm.
 const FLAKE_MM: f64 = 4.0;

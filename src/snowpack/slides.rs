@@ -1,11 +1,12 @@
-//! Sliding of steep snow, until no slope exceeds the angle of repose. Snow slides to the steepest lower neighbour, by
-//! half of the excess height. Cells are visited in the order of the lattice's rows, across patches.
+//! Sliding of steep snow, until no slope exceeds the angle of repose. Snow slides to the lower neighbour with the
+//! largest excess height: the difference in height less the largest stable one, distance x tan(angle of repose). Half
+//! of the excess slides. Cells are visited in the order of the lattice's rows, across patches.
 
 use super::{column::UNITS, field::SnowField, laws::REPOSE_DEG, patch::NONE};
 
-/// Excess heights below this are tolerated, m.
+/// Largest excess height at which snow stays, m.
 const SLACK_M: f64 = 5e-4;
-/// Limit of moves per cell of the field; the rest slides in the next call.
+/// Largest number of moves in a call, per cell of the field; the rest slides in the next call.
 const MOST_MOVES: usize = 40;
 
 /// Offsets of the eight neighbours, and their distances in cells.
@@ -20,7 +21,8 @@ const AROUND: [([i32; 2], f64); 8] = [
     ([1, -1], std::f64::consts::SQRT_2),
 ];
 
-/// Returns the cell at an offset from another, in whichever patch it lies.
+/// Returns the cell at an offset, in cells east and north, from another: index of its patch and index in the patch.
+/// `None` without a patch there.
 fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
     let size = field.size.map(|n| n as i32);
     let (x, y) = (cell as i32 % size[0] + dx, cell as i32 / size[0] + dy);
@@ -49,7 +51,8 @@ fn surface_m(field: &SnowField, (patch, cell): (u32, u32)) -> f64 {
     field.patches[patch as usize].surface_m(cell as usize)
 }
 
-/// Returns the neighbour to which the snow of a cell slides, and the excess height, m.
+/// Returns the neighbour to which the snow of a cell slides, and the excess height, m; `None` if the snow rests. `rise`
+/// is the tangent of the angle of repose.
 fn steepest(field: &SnowField, cell: (u32, u32), rise: f64) -> Option<((u32, u32), f64)> {
     let here = surface_m(field, cell);
     let over = |(to, way): ((u32, u32), f64)| (to, here - surface_m(field, to) - rise * way);
@@ -57,8 +60,8 @@ fn steepest(field: &SnowField, cell: (u32, u32), rise: f64) -> Option<((u32, u32
     found.reduce(|a, b| if b.1 > a.1 { b } else { a })
 }
 
-/// Lets the snow of a cell slide, and then the snow that loses its hold. Returns whether all of it has come to rest
-/// before `left` moves are used up.
+/// Lets the snow of the cells in `moving` slide, and then the snow that this makes too steep. Returns whether all of it
+/// has come to rest before `left` moves are used up.
 fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: &mut usize, revision: u64) -> bool {
     while let Some(cell) = moving.pop() {
         let column = field.patches[cell.0 as usize].column(cell.1 as usize);
@@ -79,7 +82,7 @@ fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: 
             patch.put(at.1 as usize, column);
             patch.changed(revision);
         }
-        // Both may slide on, and the snow above the cell has lost its hold.
+        // Tests both cells and the neighbours again: the move has changed their slopes.
         moving.push(to);
         moving.push(cell);
         moving.extend(around(field, cell).map(|(above, _)| above));

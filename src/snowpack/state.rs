@@ -15,11 +15,13 @@ const REPORTED_KG_M3: f64 = 250.0;
 /// Simulated snow, and the values that its next step needs.
 #[derive(Clone, Debug)]
 pub(super) struct SnowState {
+    /// Time to which the snow is simulated, s.
     pub time_s: f64,
     /// Sunlight on level ground at its last update, W/m^2.
     pub sunlight_w_m2: f64,
-    /// Snow on level, open ground.
+    /// Snow on level, open ground; it also lies around the host's terrain.
     pub country: Column,
+    /// Meltwater of the last step.
     pub melted: Meltwater,
     /// Time that was simulated in fast-forward, s.
     pub coarse_s: f64,
@@ -27,11 +29,13 @@ pub(super) struct SnowState {
     pub field: Option<SnowField>,
 }
 
+/// Returns snow of a depth that the weather reports, m.
 pub(super) fn reported(depth_m: f64) -> Column {
     Column::of(depth_m, REPORTED_KG_M3)
 }
 
 impl SnowState {
+    /// Creates the state that begins at `time_s` with the reported depth.
     pub fn first(world: &World, time_s: f64) -> Result<Self> {
         Ok(Self {
             time_s,
@@ -43,7 +47,7 @@ impl SnowState {
         })
     }
 
-    /// Returns the end of the next step, s.
+    /// Returns the end of the next step, s: a fast-forward step if it ends by `coarse_until_s`.
     pub fn next_s(&self, coarse_until_s: f64) -> f64 {
         let after = |length: f64| ((self.time_s / length).floor() + 1.0) * length;
         let coarse = after(COARSE_STEP_S);

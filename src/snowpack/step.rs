@@ -9,18 +9,18 @@ use super::{
 };
 use crate::weather::snow_cover;
 
-/// Side of the square blocks of cells that share one evaluation of the precipitation on them.
+/// Side length, in cells, of the squares that share one evaluation of precipitation that varies in space.
 const BLOCK: usize = 16;
-/// Integer units of a share of 1: sums of integers do not depend on their order.
+/// Units per share of 1: 2^32. Sums of whole numbers do not depend on their order.
 const SHARE_UNITS: f64 = 4_294_967_296.0;
 
-/// Sums over the columns of a field.
+/// Sums over the columns of a field, in units of mass.
 #[derive(Default)]
 struct Sums {
     fallen: i64,
     ran_off: i64,
     sublimated: i64,
-    /// Sum of the cover, in [`SHARE_UNITS`].
+    /// Sum of the shares of each cell that snow covers, in units of [`SHARE_UNITS`].
     covered: i64,
 }
 

@@ -47,7 +47,8 @@ impl SnowStrip {
     }
 }
 
-/// Whether a place lies on a path of this half width. The ends of the path are cut straight; its bends are round.
+/// Whether a point lies on a path of this half width, all in m east and north. The path ends at right angles to its
+/// direction; its bends are round.
 fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     let along = path.windows(2).any(|ends| {
         let (way, from) = (ends[1] - ends[0], p - ends[0]);
@@ -58,7 +59,7 @@ fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
 }
 
 /// Applies `act` to each column under a strip, with the share of the cell that the strip covers. Returns the sum of the
-/// results of `act`. Patches on which it has acted get this revision.
+/// results of `act`. Patches with such columns get this revision.
 fn each_under(
     (site, field): (&Site, &mut SnowField),
     strip: &SnowStrip,
@@ -100,7 +101,7 @@ fn each_under(
 }
 
 impl HeldSnow {
-    /// Returns the terrain's snow, to be changed by the host.
+    /// Checks the strip and returns the terrain's snow for a change by the host.
     fn field_for_change(&mut self, world: &World, strip: &SnowStrip) -> Result<(&Site, &mut SnowField)> {
         strip.validate()?;
         let wanted = "lying snow is changed on the host's terrain, where WK_LYING_SNOW_SIMULATED leads it";
