@@ -2,9 +2,10 @@
 // table.
 //!include "ground/normal.wgsl"
 
-// Look of water on vegetation, as in src/ground/class.rs.
+// Look of water on vegetation. Its values are those in src/ground/class.rs.
 const PLANTS: SurfaceLook = SurfaceLook(0.15, 0.0, 0.6, 50.0, 0.4, 0.0, 0.0, 1.0);
 
+// Returns the linear mix of two looks.
 fn mix_looks(a: SurfaceLook, b: SurfaceLook, share: f32) -> SurfaceLook {
     return SurfaceLook(
         mix(a.soaks, b.soaks, share),
@@ -25,7 +26,7 @@ fn plants(albedo: vec3f) -> f32 {
     return smoothstep(0.08, 0.3, excess);
 }
 
-// Returns the look of the class of this number; `unspecified` if there is none.
+// Returns the look of the class with this number; `unspecified` if there is none.
 fn look_of(number: u32, unspecified: SurfaceLook) -> SurfaceLook {
     if number == 0u || number >= SURFACE_CLASSES {
         return unspecified;

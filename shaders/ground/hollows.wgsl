@@ -4,7 +4,7 @@
 
 // Side of a cell of the rings' grid, m.
 const RING_CELL: f32 = 0.2;
-// Number of cells in a period of the pattern.
+// Number of cells along an axis in a period of the pattern, 10 km.
 const RING_CELLS: u32 = 50000u;
 // Length of a time slot, s.
 const RING_SLOT: f32 = 0.6;
@@ -16,7 +16,7 @@ const RING_LIFE: f32 = 0.6;
 const RING_SPEED: f32 = 0.22;
 // Wavelength of a ring, m.
 const RING_WAVE: f32 = 0.02;
-// Largest slope of a ring.
+// Slope of a ring's steepest wave at its start, for the largest drop.
 const RING_SLOPE: f32 = 0.35;
 
 // Returns the sines of angles in turns, within 2e-4, by an odd polynomial over a quarter turn.
@@ -46,12 +46,13 @@ const WAVES_AMPLITUDE: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.3162278, 0.3162278, 0.3162278, 0.3162278),
 );
 
-// Returns the depth of four waves, averaged over a pixel whose sides on the ground are `across` and `along`, and the
-// variance that is left by this averaging.
+// Returns the depth of four waves at the place `at`, averaged over a pixel whose sides on the ground are the vectors
+// `across` and `along`, m, and the variance that this averaging leaves.
 fn four_waves(east: vec4f, north: vec4f, amplitude: vec4f, phases: vec4f, at: vec2f, across: vec2f, along: vec2f) -> vec2f {
     let x = east * across.x + north * across.y;
     let y = east * along.x + north * along.y;
-    // The average over the pixel is that of a Gaussian with the variance of a box, 1/12: exp(-(2 pi)^2 x^2 / 24).
+    // Averages as a Gaussian with the variance of a box, 1/12: the factor exp(-q) for q = (2 pi)^2 (x^2 + y^2) / 24,
+    // approximated by 1 / (1 + q + q^2 / 2).
     let q = (x * x + y * y) * 1.6449341;
     let keep = amplitude / (1.0 + q * (1.0 + 0.5 * q));
     return vec2f(dot(keep, sines(phases + east * at.x + north * at.y)), 0.5 * dot(keep, keep));
@@ -64,7 +65,7 @@ fn hollow_depth(at: vec2f, across: vec2f, along: vec2f, wanted: bool) -> vec2f {
     if !wanted {
         return vec2f(0.0, 1.0);
     }
-    // With constant indices: a variable index would copy the tables.
+    // Uses constant indices: a variable index would copy the tables.
     let sum = four_waves(WAVES_EAST[0], WAVES_NORTH[0], WAVES_AMPLITUDE[0], ground.phases[0], at, across, along)
         + four_waves(WAVES_EAST[1], WAVES_NORTH[1], WAVES_AMPLITUDE[1], ground.phases[1], at, across, along)
         + four_waves(WAVES_EAST[2], WAVES_NORTH[2], WAVES_AMPLITUDE[2], ground.phases[2], at, across, along)
@@ -80,7 +81,7 @@ fn normal_share(x: f32) -> f32 {
 
 // Largest depth of the hollows, in units of their root mean square.
 const FARTHEST_LEVEL: f32 = 6.0;
-// Level that is deeper than any hollow: nothing lies in them.
+// Level that is deeper than any hollow: no water or snow lies there.
 const NO_LEVEL: f32 = 1000.0;
 
 // Returns the level above which the share `covered` of the hollows lies: the inverse of `normal_share`. It solves the
@@ -95,7 +96,7 @@ fn level_of(covered: f32) -> f32 {
 
 // Width of the edge of a puddle, in units of the hollows' depth.
 const PUDDLE_EDGE: f32 = 0.06;
-// Width of the edge of a film, in the same units.
+// Width of the edge of a film, in units of the hollows' depth.
 const FILM_EDGE: f32 = 0.5;
 
 // Returns the share of a pixel in which the hollows are deeper than `level` and thus filled. `hollow` is a result of
@@ -117,7 +118,8 @@ fn ring_chances(cell: vec2u, slot: u32) -> vec3f {
     return vec3f(v >> vec3u(8u)) / 16777216.0;
 }
 
-// Returns the slope of the water by one layer of rings. In each time slot at most one drop falls in a cell.
+// Returns the slope of the water by one layer of rings, along the two axes of the pattern. In each time slot at most
+// one drop falls in a cell.
 fn ring_slope(at: vec2f, layer: u32) -> vec2f {
     let t = ground.slot_share + f32(layer) / f32(RING_LAYERS);
     let slot = (ground.slot + u32(t)) * RING_LAYERS + layer;
@@ -143,7 +145,8 @@ fn ring_slope(at: vec2f, layer: u32) -> vec2f {
     return from_middle / max(r, 1e-4) * (height * sin(x * 6.28318531));
 }
 
-// Returns the slope of standing water by rings. `layers` is RING_LAYERS, or 0 for no rings.
+// Returns the slope of standing water by rings, along the two axes of the pattern. `layers` is RING_LAYERS, or 0 for no
+// rings.
 fn ring_slopes(at: vec2f, layers: u32) -> vec2f {
     var slope = vec2f(0.0);
     for (var layer = 0u; layer < layers; layer++) {

@@ -3,7 +3,7 @@
 //!include "common/guarded.wgsl"
 //!include "ground/terrain.wgsl"
 
-// Host's data about the surface that a pixel shows.
+// Normal and class of the surface that a pixel shows, from the host's depth and images.
 struct HostSurface {
     // Normal from the depth.
     facing: Facing,

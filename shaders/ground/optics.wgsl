@@ -25,8 +25,9 @@ fn wet_share(albedo: vec3f, entering: f32) -> vec3f {
 }
 
 // Returns the mean slope, towards the eye, of the facets that the eye sees on a rough surface. `slope` is the root mean
-// square slope along one axis, normally distributed; `tangent` is that of the eye's zenith angle. For steep views the
-// mean is slope^2 tan; for grazing views it is the mean of a half-normal distribution.
+// square slope along one axis, normally distributed; `tangent` is the tangent of the eye's zenith angle. For steep
+// views the mean is slope^2 tangent; for grazing views it is sqrt(pi / 2) slope, the mean of the facets that face the
+// eye, weighted by their own slope.
 fn seen_slope(slope: f32, tangent: f32) -> f32 {
     let t = slope * tangent * 0.797884561;
     return slope * slope * tangent / sqrt(1.0 + t * t);

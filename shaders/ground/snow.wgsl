@@ -5,14 +5,14 @@
 
 // Albedo of snow relative to that in green: ice absorbs a little red (Warren 1982).
 const SNOW_COLOR: vec3f = vec3f(0.985, 1.0, 1.012);
-// Share of the albedo that is lost if water fills the space between grains.
+// Share of the albedo that snow loses if it holds all the liquid water that it can.
 const WET_SNOW: f32 = 0.15;
 // Extent of light beyond the shadow's edge by scattering within the snow, as a cosine.
 const SNOW_WRAP: f32 = 0.12;
-// Width of the edges of patches, in units of the hollows' depth.
+// Width of the edges of patches of snow, in units of the hollows' root mean square depth.
 const SNOW_EDGE: f32 = 0.35;
-// Apparent albedo of the host's ground in full light. Ground that appears darker than x, as no outdoor ground is,
-// counts as in the lamp's shadow; ground brighter than y counts as lit.
+// Limits of the albedo that the host's colour would have in full light. Below x, lower than any outdoor ground, the
+// ground counts as in the lamp's shadow; above y it counts as lit.
 const SHADOWED: vec2f = vec2f(0.015, 0.05);
 // Number of halvings from a cell of the rings' grid to the finest cells of glints.
 const FINEST_GLINT: f32 = 6.0;
@@ -25,14 +25,15 @@ fn snow_level(depth: f32) -> f32 {
     return select(level_of(tanh(min(depth / 0.025, 10.0))), NO_LEVEL, depth <= 0.0);
 }
 
-// Returns the share of a pixel under snow that fills all hollows deeper than `level`. `cosine` is that of the slope.
+// Returns the share of a pixel under snow that fills all hollows deeper than `level`. `pattern` is a result of
+// `hollow_depth`, `cosine` the cosine of the slope.
 fn snow_share(level: f32, pattern: vec2f, cosine: f32) -> f32 {
     // Snow lies up to its angle of repose, and thinly on somewhat steeper slopes.
     return covered_share(pattern, level, SNOW_EDGE) * smoothstep(0.6, 0.82, cosine);
 }
 
-// Returns the glints of one cell size. Each cell of the ground has one grain, and few grains reflect the lamp to the
-// eye.
+// Returns the brightness of glints in cells of the size RING_CELL / 2^level. Each cell of the ground has one grain, and
+// few grains reflect the lamp to the eye.
 fn glints_of(at: vec2f, level: f32, half_way: vec2f) -> f32 {
     let cells = exp2(level);
     let place = (at + vec2f(ground.place_u, ground.place_v)) / RING_CELL * cells;
@@ -55,8 +56,8 @@ fn snow_glints(at: vec2f, side: f32, to_eye: vec3f) -> f32 {
     return both * (1.0 - smoothstep(0.005, 0.06, side));
 }
 
-// Returns the light of snow towards the eye, cd/m^2. `seen` is the albedo that the host's colour would have in full
-// light; `lamps` is the illuminance from the host's lamps.
+// Returns the light of snow towards the eye, cd/m^2. `snow.y` is the wetness, `snow.z` the albedo. `seen` is the albedo
+// that the host's colour would have in full light; `lamps` is the illuminance from the host's lamps.
 fn snow_light(snow: vec3f, normal: vec3f, up: vec3f, seen: vec3f, lamps: vec3f, glints: f32) -> vec3f {
     let cosine = dot(normal, ground.to_lamp);
     let lit = smoothstep(SHADOWED.x, SHADOWED.y, dot(seen, vec3f(0.2126, 0.7152, 0.0722)));
@@ -66,13 +67,15 @@ fn snow_light(snow: vec3f, normal: vec3f, up: vec3f, seen: vec3f, lamps: vec3f, 
     return albedo * (lamp * (1.0 + glints) + sky + lamps) / SKY_PI;
 }
 
+// Snow that a pixel shows.
 struct SnowSeen {
+    // Light of the snow towards the eye, cd/m^2.
     light: vec3f,
     // Share of the pixel's surface under snow.
     share: f32,
 }
 
-// Returns the snow of a spot. `normal_given`: whether the host's image has the surface's normal.
+// Returns the snow of a spot. `normal_given` says whether the host's image has the surface's normal.
 fn snow_on(spot: Spot, normal_given: bool) -> SnowSeen {
     let here = spot.terrain;
     var snow = ground.snow.xyz;

@@ -8,7 +8,7 @@
 //!include "surroundings/lights_binding.wgsl"
 //!include "surroundings/shelter.wgsl"
 
-// Illuminance from the host's lamps.
+// Returns the illuminance from the host's lamps on a surface at `at`, lux.
 fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     var lux = vec3f(0.0);
     if LAMPS {
@@ -21,7 +21,8 @@ fn host_lamps(at: vec3f, normal: vec3f) -> vec3f {
     return lux / frame.exposure;
 }
 
-// Albedo of the ground, from its luminance and the light that falls on it.
+// Returns the albedo of the ground from its luminance, cd/m^2, and the light that falls on it. `lamps` is the
+// illuminance from the host's lamps, lux.
 fn dry_albedo(luminance: vec3f, normal: vec3f, up: vec3f, lamps: vec3f) -> vec3f {
     let lamp = ground.lamp_lux * max(dot(normal, ground.to_lamp), 0.0);
     let light = lamp + ground.sky_lux * (0.5 + 0.5 * dot(normal, up)) + lamps;
@@ -38,9 +39,9 @@ fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
     return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
 }
 
-// Returns for each twelfth of the water whether occluder maps keep it off `p`. The maps are tested for the slowest and
-// the fastest drops and for two speeds between. Where two of these neighbours differ, bisection finds the twelfth at
-// which the answer changes.
+// Returns for each twelfth of the water, from the slowest drops to the fastest, 1 if occluder maps keep it off `p`,
+// else 0. The maps are tested for the slowest and the fastest drops and for two speeds between. Where two of these
+// neighbours differ, bisection finds the twelfth at which the answer changes.
 fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     let falls = ground.falls;
     let ends = vec4f(
@@ -72,9 +73,10 @@ fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     );
 }
 
-// Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Where a roof's
-// underside and edge bound a drop's path, the time in the box times the fall speed is linear in the fall speed. Four
-// tests, with interpolation between them, therefore show which twelfths of the water pass the boxes.
+// Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Under a roof,
+// where its underside and its edge bound a drop's path, (time in the box) x (fall speed) is linear in the fall speed.
+// The values at four fall speeds therefore suffice: between them the product is interpolated, and a twelfth of the
+// water reaches `p` where it is negative.
 fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);
@@ -140,7 +142,7 @@ struct Spot {
     place: vec2f,
     // Share of the rain and snow in the open that reaches the place.
     gets: f32,
-    // Depth of the pattern of hollows, and its variance that is too small for the pixel to show.
+    // Depth of the pattern of hollows, and the share of its variance in waves too small for the pixel (`hollow_depth`).
     pattern: vec2f,
 }
 

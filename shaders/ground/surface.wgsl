@@ -1,4 +1,5 @@
-// Water and snow on a surface seen by the camera: the host's colour times transmittance plus light, before air and fog.
+// Water and snow on a surface seen by the camera, as a veil: the new colour is the host's colour times transmittance,
+// plus light. Air and fog are added later.
 //!include "ground/snow.wgsl"
 //!include "ground/water.wgsl"
 

@@ -7,6 +7,7 @@ override TERRAIN: bool = false;
 // Whether snow lies anywhere.
 override SNOW: bool = false;
 
+// Terrain of the host at a point of a surface.
 struct TerrainPoint {
     // 1 on the terrain; 0 beyond it and on objects that stand on it.
     share: f32,
@@ -16,17 +17,19 @@ struct TerrainPoint {
     classes: vec4f,
     // Place of the point between the nodes, 0 to 1 east and north.
     part: vec2f,
-    // Depth of the snow, m; 1 where there is snow, else 0; its wetness; its albedo.
+    // x: depth of the snow, m. y: 1 where there is snow, else 0, or a value between near its edge. z: wetness. w:
+    // albedo.
     snow: vec4f,
-    // Gradient of the snow's depth, (east, north, up).
+    // Gradient of the snow's depth, m per m, (east, north, up).
     drift: vec3f,
 }
 
+// Returns the values of a point that is not on the terrain.
 fn no_terrain() -> TerrainPoint {
     return TerrainPoint(0.0, WelkinGround(0.0, 0.0, 0.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), vec4f(0.0), vec2f(0.0), vec4f(0.0), vec3f(0.0));
 }
 
-// Returns depth of the snow at a node, and 1, wetness and albedo if there is any.
+// Returns (depth in m, 1, wetness, albedo) of the snow at a node; all 0 without snow.
 fn snow_of(node: vec2i) -> vec4f {
     let snow = textureLoad(terrain_surface, node, 0);
     return vec4f(snow.x, vec3f(1.0, snow.zw) * select(0.0, 1.0, snow.x > 0.0));

@@ -1,8 +1,9 @@
 // Uniform block of the ground in a frame.
 
-// Number of surface classes, and the look of water on one (src/ground/class.rs).
+// Number of surface classes (src/ground/class.rs).
 const SURFACE_CLASSES: u32 = 7u;
 
+// Look of water on a surface class; twin of `SurfaceLook` in src/ground/class.rs.
 struct SurfaceLook {
     // Share of the darkening of wet ground that the class shows.
     soaks: f32,
@@ -10,7 +11,7 @@ struct SurfaceLook {
     film: f32,
     // Root mean square slope of the ground under the film, beyond the film's own slope.
     slope: f32,
-    // Depth at which standing water is level over most of the ground, mm; 0 keeps no standing water.
+    // Depth at which standing water covers most of the ground's relief, mm; with 0 no standing water is drawn.
     relief_mm: f32,
     // Upper limit of the albedo estimated from the host's colour.
     most_albedo: f32,
@@ -29,7 +30,7 @@ struct GroundUniform {
     soaked: f32,
     // Illuminance of the lamp on a surface that faces it, lux per channel.
     lamp_lux: vec3f,
-    // Level of standing water in the hollows, in units of their root mean square depth.
+    // Level of standing water: hollows deeper than this hold water, in units of their root mean square depth.
     level: f32,
     // Illuminance of sky, clouds and fog on level ground, lux per channel.
     sky_lux: vec3f,
@@ -37,9 +38,10 @@ struct GroundUniform {
     entering: f32,
     // Luminance of the lit ground around, cd/m^2 per channel, which downward reflections show.
     ground_light: vec3f,
-    // Level of the film, as `level`: ground above it is bare.
+    // Level of the film, in units of the hollows' root mean square depth: ground above it is bare.
     film_level: f32,
-    // Axes of the pattern of hollows; and the place of the camera in its cell of the rings' grid, m.
+    // Axes of the pattern of hollows, (east, north, up), and the camera's place along each in its cell of the rings'
+    // grid, m.
     axis_u: vec3f,
     place_u: f32,
     axis_v: vec3f,
@@ -55,7 +57,7 @@ struct GroundUniform {
     water_slope: f32,
     // Chance that a drop falls into a cell of the rings' grid in a time slot.
     ring_chance: f32,
-    // Limit of the light that is added, cd/m^2: the largest that a half float holds.
+    // Limit of the light that is added, cd/m^2: the value at which the host's target, as half floats, nearly overflows.
     most: f32,
     // Steps in normalised device coordinates to the next pixel to the right and below.
     pixel: vec2f,
@@ -70,7 +72,7 @@ struct GroundUniform {
     disc2: f32,
     // Share of level ground under clear ice.
     glaze: f32,
-    // Velocity of the air that carries the rain, m/s.
+    // Velocity of the air that carries the rain, (east, north, up), m/s.
     wind: vec3f,
     // Optical depth of the fog straight up.
     fog_depth: f32,
@@ -81,7 +83,7 @@ struct GroundUniform {
     terrain_x: vec4f,
     terrain_y: vec4f,
     terrain_z: vec4f,
-    // Last node of the terrain.
+    // Indices of the terrain's last node, east and north.
     terrain_last: vec2f,
     // Width of the border zone in which the terrain fades into the world's ground, cells.
     terrain_rim: f32,

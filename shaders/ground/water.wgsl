@@ -26,12 +26,17 @@ struct Film {
     slope: f32,
 }
 
+// Reflection of a film.
 struct Mirror {
+    // Share of the light from `direction` that is reflected.
     share: f32,
+    // Unit vector towards the reflected part of the sky.
     direction: vec3f,
+    // Reflected light of the sun or moon, cd/m^2.
     lamp: vec3f,
 }
 
+// Returns the reflection of a film towards the eye.
 fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     let cosine = clamp(dot(film.normal, to_eye), 1e-3, 1.0);
     let sine = sqrt(1.0 - cosine * cosine);
@@ -45,14 +50,16 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
-// Root mean square slopes of thin and closed films. Their twins are in src/ground/uniform.rs.
+// Root mean square slopes, along one axis, of a film that covers none (thin) and all (closed) of the ground. Their
+// twins are in src/ground/uniform.rs.
 const THIN_FILM_SLOPE: f32 = 0.3;
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
 // Root mean square slope of the clear ice that freezing rain leaves.
 const GLAZE_SLOPE: f32 = 0.04;
 
-// Slope up to which ground surely holds the pattern's puddles (upper end of the `smoothstep` of its cosine).
+// Slope up to which ground holds the pattern's puddles in full: the slope of the cosine 0.997, the upper end of the
+// `smoothstep` in `water_at`.
 const POOL_SLOPE: f32 = 0.08;
 
 // Radius that is assumed for a lamp of the host, m.
@@ -84,7 +91,7 @@ struct Water {
     pool: Film,
     // Share of the surface under standing water.
     pooled: f32,
-    // Share of the rest under the film.
+    // Share of the ground outside standing water that is under the film.
     filmed: f32,
     // Share of the darkening of wet ground.
     soaked: f32,
@@ -104,6 +111,7 @@ fn pool_at(spot: Spot, pooled: f32) -> Film {
     return Film(normal, sqrt(slope2));
 }
 
+// Returns the water on a spot.
 fn water_at(spot: Spot) -> Water {
     let here = spot.terrain;
     let facing = spot.ground.facing;

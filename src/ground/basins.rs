@@ -1,7 +1,7 @@
 //! Hollows of a terrain as a tree, and the pit to which each cell drains.
 //!
-//! A pit fills until its water meets that of another pit at a saddle. From there on both are one larger hollow, up to
-//! the height at which that one spills, and so on until the water finds the grid's border. This is the depression
+//! A pit fills until its water meets that of another pit at a saddle. From there on both are one larger hollow, which
+//! fills up to the height at which it spills, and so on until the water finds the grid's border. This is the depression
 //! hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow spills is that of the
 //! priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal heights by cell number,
 //! so every cell except a pit has a lower neighbour that has been visited. Run-off takes the steepest of the eight
@@ -9,7 +9,7 @@
 
 /// Index that stands for no hollow: water that drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
-/// Owner of a cell that has not been visited yet.
+/// Mark in [`Rising::owner`] of a cell that has not been visited yet.
 const UNSEEN: u32 = u32::MAX - 1;
 
 /// Hollow of a terrain. Its water is counted in millimetres times cells.
@@ -25,23 +25,25 @@ pub(super) struct Basin {
     pub next: u32,
     /// Height at which the hollow begins, mm: its pit, or the saddle where its parts meet.
     birth_mm: f64,
-    /// Number of the cells of its parts, which are all under water.
+    /// Number of cells of its parts, which are all under water while the hollow itself holds water.
     pub below: f64,
-    /// Water that its parts hold.
+    /// Water that its parts hold when they are full.
     pub base: f64,
     /// Water in the hollow when it spills, including that of its parts.
     pub capacity: f64,
-    /// Range of its own cells in [`Basins::cells`], in ascending order of height.
+    /// Range in [`Basins::cells`] of the cells that belong to the hollow but to none of its parts, in ascending order
+    /// of height.
     own: std::ops::Range<usize>,
 }
 
-/// Hollows of a terrain; parts come before their whole.
+/// Hollows of a terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Basins {
+    /// Hollows; each comes after its parts.
     pub list: Vec<Basin>,
     /// Pit in which the run-off of each cell ends, or [`OUT`].
     pub drains_to: Vec<u32>,
-    /// Cells of the hollows, hollow by hollow.
+    /// Own cells of the hollows ([`Basin::own`]), hollow by hollow.
     cells: Vec<u32>,
     /// Heights of these cells, mm.
     levels_mm: Vec<f64>,
@@ -49,6 +51,7 @@ pub(super) struct Basins {
     held: Vec<f64>,
 }
 
+/// Returns the up to eight neighbours of a cell, and whether each lies diagonally.
 fn neighbours(cell: usize, columns: usize, rows: usize) -> impl Iterator<Item = (usize, bool)> {
     const AROUND: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
     let (x, y) = ((cell % columns) as isize, (cell / columns) as isize);
@@ -71,20 +74,24 @@ fn whole_of(wholes: &mut [u32], mut basin: u32) -> u32 {
     basin
 }
 
-/// State of the pass through the cells from the lowest up.
+/// State of the visit of all cells from the lowest up.
 struct Rising<'a> {
     heights_mm: &'a [f64],
     list: Vec<Basin>,
+    /// Larger hollow of each hollow so far; the hollow itself while it has none, [`OUT`] once it has met the border.
     wholes: Vec<u32>,
+    /// Hollow in which each cell lies; [`OUT`] for ground that drains off the grid.
     owner: Vec<u32>,
     drains_to: Vec<u32>,
 }
 
 impl Rising<'_> {
+    /// Whether cell `a` lies lower than `b`; of equal heights, the cell with the lower index.
     fn lower(&self, a: usize, b: usize) -> bool {
         (self.heights_mm[a], a) < (self.heights_mm[b], b)
     }
 
+    /// Adds a hollow that begins at this height. Returns its index.
     fn begin(&mut self, birth_mm: f64) -> u32 {
         let id = self.list.len() as u32;
         self.list.push(Basin {
@@ -102,7 +109,7 @@ impl Rising<'_> {
         id
     }
 
-    /// Visits the next cell up.
+    /// Visits the next higher cell: it becomes a pit, a part of a hollow, a saddle, or ground that drains off the grid.
     fn take(&mut self, cell: usize, (columns, rows): (usize, usize)) {
         let mut met = [OUT; 8];
         let mut count = 0;
@@ -142,7 +149,7 @@ impl Rising<'_> {
     }
 
     /// Handles a cell where several hollows meet and returns its owner. If ground that drains off the grid is among
-    /// them, each hollow ends there; else they join, two at a time.
+    /// them, each hollow ends there; otherwise they join, two at a time.
     fn saddle(&mut self, cell: usize, met: &[u32], size: (usize, usize)) -> u32 {
         if met.contains(&OUT) {
             let to = self.lowest_of(cell, OUT, size);
@@ -171,14 +178,14 @@ impl Rising<'_> {
         lowest.map_or(OUT, |l| self.drains_to[l])
     }
 
-    /// Ends a hollow at the saddle `cell`.
+    /// Ends a hollow at the saddle `cell`, where it becomes part of `parent` and spills into the pit `spills_to`.
     fn close(&mut self, basin: u32, cell: usize, parent: u32, spills_to: u32) {
         self.wholes[basin as usize] = parent;
         let next = match parent {
             OUT => OUT,
             whole => std::mem::replace(&mut self.list[whole as usize].first_child, basin),
         };
-        // The capacity holds only the height until the cells are known.
+        // Stores the saddle's height in `capacity`; [`Basins::lay_out`] replaces it by the volume.
         let capacity = self.heights_mm[cell];
         let ended = &mut self.list[basin as usize];
         *ended = Basin { parent, spills_to, next, capacity, ..ended.clone() };
@@ -208,7 +215,7 @@ impl Basins {
         basins
     }
 
-    /// Sorts the cells by hollow and sums up the hollows' volumes.
+    /// Sorts the cells by hollow, and computes the volume of water at each cell's height and at the saddle.
     fn lay_out(&mut self, heights_mm: &[f64], order: &[u32], owner: &[u32]) {
         let mut starts = vec![0usize; self.list.len() + 1];
         owner.iter().filter(|o| **o != OUT).for_each(|o| starts[*o as usize + 1] += 1);

@@ -11,7 +11,7 @@
 //!
 //! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), the same for soil and
 //! asphalt: dark soils have an albedo of 0.05 when wet, and light ones 0.4 when dry (Oke 1987, table 1.1). The shares
-//! of film and the slopes are chosen: no measurements of reflection from wet soil, rock and roofs were found.
+//! of film and the slopes are estimates: no measurements of reflection from wet soil, rock and roofs were found.
 
 pub(crate) use crate::terrain::CLASSES;
 pub use crate::terrain::SurfaceClass;
@@ -22,7 +22,7 @@ impl SurfaceClass {
         self.surface_look().hollows > 0.0
     }
 
-    /// Returns how water shows on the class. [`Self::Unspecified`] counts as soil.
+    /// Returns the look of water on the class. [`Self::Unspecified`] counts as soil.
     pub(crate) fn surface_look(self) -> SurfaceLook {
         let look = |soaks, film, slope, relief_mm, most_albedo| SurfaceLook {
             soaks,
@@ -55,7 +55,7 @@ pub(crate) struct SurfaceLook {
     pub film: f32,
     /// Root mean square slope, along one axis, of the ground under the film, beyond the film's own slope.
     pub slope: f32,
-    /// Depth at which standing water is level over most of the ground, mm; 0 keeps no standing water.
+    /// Depth at which standing water covers most of the ground's relief, mm; with 0 no standing water is drawn.
     pub relief_mm: f32,
     /// Upper limit of the albedo estimated from the host's colour.
     pub most_albedo: f32,

@@ -9,13 +9,13 @@ use crate::error::{Error, Result, check_range};
 pub const MAX_GRID_NODES: u32 = 512;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
-/// Height above the terrain, m, above which a place counts as on an object that stands on it, such as a bridge or a
-/// roof.
+/// Height above the terrain, m, from which on a place counts as on an object that stands on the terrain, such as a
+/// bridge or a roof.
 pub(super) const ABOVE_M: f64 = 3.0;
 
 /// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the
-/// square cell around it and has its own water; between nodes the water is interpolated linearly. Outside the nodes the
-/// ground is the world's own ([`GroundModel`](crate::ground::GroundModel)).
+/// square cell around it and has its own water; between nodes the water is interpolated bilinearly. Outside the nodes
+/// the ground is the world's own ([`GroundModel`](crate::ground::GroundModel)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundGrid {
     /// South-west corner node in the host's world; `heights_m` count from its height.
@@ -67,8 +67,8 @@ impl GroundGrid {
         self.nodes[0] as usize * self.nodes[1] as usize
     }
 
-    /// Returns `position` (in the host's world) in cells east and north of the origin, and its height over the origin,
-    /// m. `to_enu` turns the host's axes to east, north, up at the origin.
+    /// Returns the place of `position` (in the host's world): cells east and north of the origin, and height over the
+    /// origin, m. `to_enu` turns the host's axes to east, north, up at the origin.
     pub(crate) fn cells_at(&self, position: DVec3, to_enu: DMat3) -> (DVec2, f64) {
         let p = to_enu * (position - self.origin);
         (p.truncate() / self.cell_m, p.z)
@@ -134,7 +134,7 @@ impl GroundGrid {
     }
 }
 
-/// Cells of a grid or of a tile: their places and heights.
+/// Places and heights of the cells of a grid or of a tile.
 #[derive(Clone, Copy)]
 pub(super) struct CellGrid<'a> {
     /// First node in the host's world; heights count from its height.

@@ -1,5 +1,5 @@
-//! Water on the ground as a context holds it for all its views. It is the water that the weather reports or, if the
-//! host asks for it, a simulation over the timeline: on level, open ground, and for each cell of the host's terrain.
+//! Water on the ground of a context, shared by its views: the water that the weather reports or, if the host asks for
+//! it, a simulation over the timeline: on level, open ground, and for each cell of the host's terrain.
 
 use std::sync::{Arc, Mutex};
 
@@ -30,15 +30,14 @@ use glam::{DMat3, DVec2, DVec3};
 /// Water at a place on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundAt {
-    /// Depth of water, mm: the film plus the standing water of a hollow. For tyre models.
+    /// Depth of water, mm: the film plus the standing water of a hollow. Tyre models can use it.
     pub water_mm: f64,
     /// Film on level ground outside hollows, mm; on the host's terrain the film at the place.
     pub film_mm: f64,
     /// Wetness of the ground in general; on the host's terrain that of the place. 0 is dry, 0.3 damp, 1 under a closed
     /// film.
     pub wetness: f64,
-    /// Share of the ground under standing water: of the host's terrain for a place on it, else of the ground in
-    /// general.
+    /// Share of the host's terrain under standing water, for a place on it; elsewhere, of the ground in general.
     pub puddles: f64,
     /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
@@ -57,6 +56,7 @@ pub(crate) struct HeldGround {
     /// Pattern of hollows in which water stands where heights are unknown.
     pub hollows: Hollows,
     state: Option<GroundState>,
+    /// Host's grid and the water on it.
     pub(super) host: Option<Box<HostGround>>,
     /// Incremented whenever the water of the cells has changed.
     pub revision: u64,
@@ -68,11 +68,13 @@ pub(crate) struct HeldGround {
     pub surface_class: SurfaceClass,
     /// Time at which the terrain was set, s; steps before it leave the terrain out.
     terrain_from_s: f64,
+    /// Textures of the host's grid and of the water on it.
     pub(super) textures: Mutex<TerrainTextures>,
     /// Water on the host's tiles.
     pub(super) tiled: Option<Box<TiledWater>>,
-    /// Changes of the tiles that the water has yet to follow, each with the terrain after it.
+    /// Changes of the tiles that the water has yet to take over, each with the terrain after the change.
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
+    /// Recent changes of the tiles, which the windows of tile textures take over.
     pub(super) recent: RecentChanges,
     /// Window of tile textures for the host's own shaders, once it has asked for one.
     pub(super) host_window: Option<Box<TerrainWindow>>,
@@ -190,7 +192,7 @@ impl HeldGround {
         self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
     }
 
-    /// Whether steps remain before the present.
+    /// Whether a step of the water ends at or before the present time.
     fn is_behind(&self, world: &World) -> bool {
         self.state.is_some_and(|state| state.next_s() <= world.time_s)
     }
@@ -208,8 +210,8 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover that weather has left on the ground up to now: `reported`, with the simulated water instead of
-    /// the reported.
+    /// Returns the cover of the ground now: `reported`, with the wetness and puddles of the simulated water if there is
+    /// one.
     fn cover(&self, world: &World, reported: SurfaceCover) -> SurfaceCover {
         match self.water(world).map(|w| w.cover()) {
             Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
@@ -217,7 +219,8 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover at a place. In a rain area the ground is at least as wet as the area's present rain keeps it.
+    /// Returns the cover at a place. In a rain area the ground is at least as wet as the steady rain there would keep
+    /// it.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
         let weather = world.timeline.at(world.time_s);
@@ -255,7 +258,8 @@ impl HeldGround {
     /// Returns the water on the ground at a place; see [`Context::ground_at`](crate::context::Context::ground_at).
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if the position is no place of the world.
+    /// [`Status::InvalidArgument`] if the position is not finite, farther than 1e12 m from the world's origin, or not
+    /// at an altitude in \[-1e4, 1e9\] m.
     pub fn at(&self, world: &World, position: DVec3) -> Result<GroundAt> {
         let frame = world.frame.place_at("position", position)?;
         let surface_class = self.surface_class_at(world, position);
@@ -296,7 +300,7 @@ impl HeldGround {
     /// [`Status::Parse`] for values that cannot be a ground of this context.
     pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
-        // All keys are removed first: the caller then finds only the world's own, even if a value here is wrong.
+        // Removes all keys first: even if a value here is wrong, the table is left without the ground's keys.
         let [state, terrain, class, tiles] =
             [STATE_KEY, TERRAIN_KEY, CLASS_KEY, TILES_KEY].map(|key| saved.remove(key));
         let simulated = self.model == GroundModel::Simulated;

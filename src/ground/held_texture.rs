@@ -59,7 +59,8 @@ impl HeldGround {
     /// [`Context::terrain_texture`](crate::context::Context::terrain_texture).
     ///
     /// # Errors
-    /// As for that function.
+    /// [`Status::InvalidArgument`] for a `center` outside the world, [`Status::WrongOrder`] if no tile reaches into the
+    /// window, [`Status::DeviceLost`], or a GPU fault.
     pub fn terrain_texture(&mut self, device: &Arc<Device>, world: &World, center: DVec3) -> Result<GroundTexture> {
         world.frame.place_at("center", center)?;
         let none = || {
@@ -117,7 +118,7 @@ impl HeldGround {
     }
 
     fn locked(&self) -> MutexGuard<'_, TerrainTextures> {
-        // Textures that a panic left half-written are only written again.
+        // A panic may have left textures half-written; they are then written again.
         self.textures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,4 +1,4 @@
-//! Tiles of the host's terrain as a context holds them, and the water on them.
+//! Tiles of the host's terrain in a context, and the water on them.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ impl HeldGround {
     /// [`Context::set_terrain`](crate::context::Context::set_terrain).
     ///
     /// # Errors
-    /// As for that function; nothing changes then.
+    /// [`Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_terrain(&mut self, world: &mut World, desc: Option<TerrainDesc>) -> Result<()> {
         if world.set.tiles.as_ref().map(|t| t.desc) == desc {
             return Ok(());
@@ -49,7 +49,7 @@ impl HeldGround {
     }
 
     /// Changes the tiles by `change`, which returns the cells that it touched. If `waits`, steps from before the change
-    /// are still to be done, and the water follows the change later.
+    /// are still to be done, and the water takes over the change later.
     fn change(
         &mut self,
         world: &mut World,
@@ -81,7 +81,7 @@ impl HeldGround {
     /// Sets a tile; see [`Context::set_terrain_tile`](crate::context::Context::set_terrain_tile).
     ///
     /// # Errors
-    /// As for that function; nothing changes then.
+    /// [`Status::WrongOrder`] without a terrain, [`Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
         self.change(world, waits, false, |terrain| terrain.set_tile(cells))
     }
@@ -89,7 +89,7 @@ impl HeldGround {
     /// Updates cells of a tile; see [`Context::update_terrain`](crate::context::Context::update_terrain).
     ///
     /// # Errors
-    /// As for that function; nothing changes then.
+    /// [`Status::WrongOrder`] without a terrain, [`Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn update_tile(&mut self, world: &mut World, waits: bool, cells: &TerrainCells<'_>) -> Result<()> {
         self.change(world, waits, false, |terrain| terrain.update(cells))
     }
@@ -97,24 +97,25 @@ impl HeldGround {
     /// Removes a tile; see [`Context::remove_terrain_tile`](crate::context::Context::remove_terrain_tile).
     ///
     /// # Errors
-    /// As for that function; nothing changes then.
+    /// [`Status::WrongOrder`] without a terrain, [`Status::InvalidArgument`] if the tile is not set; nothing changes
+    /// then.
     pub fn remove_tile(&mut self, world: &mut World, waits: bool, key: TileKey) -> Result<()> {
         self.change(world, waits, true, |terrain| terrain.remove(key).map(Some))
     }
 
-    /// Updates the water after the changes that had to wait, each on the terrain as it was then, up to the world's
-    /// present terrain.
+    /// Updates the water after the changes that had to wait, up to the world's present terrain. Each change is applied
+    /// on the terrain as it was right after it.
     pub(super) fn follow_late(&mut self, world: &World) {
         let Some(now) = world.set.tiles.as_ref().filter(|_| !self.waiting.is_empty()) else { return };
         let count = self.waiting.iter().take_while(|(changed, _)| changed.revision <= now.revision).count();
         for (changed, terrain) in self.waiting.drain(..count).collect::<Vec<_>>() {
             self.follow_change(&changed, &terrain);
         }
-        // Windows already show the new ground, but with the old water.
+        // Marks all water as changed: windows already have the new ground, but the old water.
         self.tiled.iter_mut().for_each(|tiled| tiled.count_version());
     }
 
-    /// Steps the water on the tiles, or on some of them within the budget. Returns whether the step is complete.
+    /// Advances the water on the tiles by a step, or on some of them within the budget. Returns whether all are done.
     pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: UpdateBudget) -> Result<bool> {
         let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
         if !tiled.is_of(terrain) {

@@ -2,8 +2,8 @@
 //! twin of `shaders/ground/hollows.wgsl`.
 //!
 //! Waves have two advantages over noise on a lattice. The average of each over a pixel is known exactly, so distant
-//! puddles fade to their mean without flicker. And their sum is normally distributed, so the water level follows from
-//! the share of ground under water.
+//! puddles fade to their mean without flicker. The sum of the waves is normally distributed, so the water level follows
+//! from the share of ground under water.
 
 use std::f64::consts::TAU;
 
@@ -15,9 +15,9 @@ use crate::chance::RandomStream;
 pub const PERIOD_M: f64 = 1e4;
 /// Number of waves in the pattern.
 pub const WAVES: usize = 16;
-/// Turns of each wave along both axes in [`PERIOD_M`], whole numbers. They are the same in all worlds; only the phases
-/// depend on the seed. The shader can therefore have them as constants: some software drivers take longer to read a
-/// uniform block than to add a wave.
+/// Turns of each wave in [`PERIOD_M`] along the first and the second axis of the pattern ([`pattern_axes`]), whole
+/// numbers. They are the same in all worlds; only the phases depend on the seed. The shader has them as constants: some
+/// software drivers take longer to read a uniform block than to add a wave.
 ///
 /// The waves form three bands, with wavelengths of 17 to 7 m, 5.3 to 2.2 m and 1.7 to 0.8 m. Each band has enough waves
 /// to look irregular even where pixels are too coarse for the shorter bands. The directions of successive waves differ
@@ -80,7 +80,8 @@ impl Hollows {
         Self { phases }
     }
 
-    /// Returns the depth below the mean ground at a place of the pattern, in units of its root mean square.
+    /// Returns the depth below the mean ground at a place of the pattern (m along its axes), in units of the depth's
+    /// root mean square.
     pub fn depth(&self, place: DVec2) -> f64 {
         (0..WAVES).map(|k| amplitude(k) * libm::sin(TAU * self.turns_at(k, place).fract())).sum()
     }
@@ -93,7 +94,7 @@ impl Hollows {
 
     /// Returns the phase of a wave at a place, turns.
     fn turns_at(&self, wave: usize, place: DVec2) -> f64 {
-        // Whole periods are dropped first: large coordinates would cost precision.
+        // Removes whole periods first: large coordinates would cost precision.
         let place = place.rem_euclid(DVec2::splat(PERIOD_M)) / PERIOD_M;
         self.phases[wave] + turns(wave).dot(place)
     }

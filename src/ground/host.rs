@@ -40,8 +40,9 @@ pub(super) struct HostGround {
     pub to_enu: DMat3,
     pub rain: GridRain,
     pub water: TerrainWater,
-    /// Whether `water` is a simulated state; else it is derived from `shown`.
+    /// Whether `water` is a simulated state; otherwise it is derived from `shown`.
     pub begun: bool,
+    /// Inputs from which `water` was derived last; `None` if it must be derived anew.
     shown: Option<CellInputs>,
 }
 
@@ -52,7 +53,9 @@ struct CellInputs {
     falling: Falling,
     wind: DVec2,
     humidity: f64,
+    /// Begin of the 10-s slot of the present, s, if there are rain areas, which move; otherwise 0.
     slot: f64,
+    /// Revision of the rain areas and shelters.
     surroundings: u64,
 }
 
@@ -70,7 +73,7 @@ impl HostGround {
         self.rain.ice(cell)
     }
 
-    /// Steps the water. Returns whether it may have changed.
+    /// Advances the water by a step. Returns whether it may have changed.
     fn step(&mut self, now: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) -> bool {
         let rains = overs.rain(now.forcing);
         if !rains && self.water.is_dry() {
@@ -87,13 +90,13 @@ impl HostGround {
         true
     }
 
-    /// Sets the water that the weather reports for all ground, less where boxes shelter the cell.
+    /// Sets each cell to `water`, the water of level, open ground; to less under boxes, and to more in rain areas.
     fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let cells = self.rain.first_water(&self.terrain.grid.cells(), (c, water), overs, shelters);
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
     }
 
-    /// Steps the water together with that of level, open ground. Returns whether it may have changed.
+    /// Advances the water by the step `step` of level, open ground. Returns whether it may have changed.
     pub fn advance(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
         let GroundStep { from_s, seconds, conditions, forcing, water } = *step;
         let overs = self.rain.overs(world, from_s + 0.5 * seconds, conditions)?;

@@ -1,4 +1,4 @@
-//! Rain areas over a grid, and the bounds of its cells from which the areas' shares are found.
+//! Rain areas over a grid, and bounds of groups of its cells, for which an area's share may be the same.
 
 use std::ops::Range;
 
@@ -20,8 +20,8 @@ pub(super) struct AreaOverGrid {
     pub liquid_mm_h: f64,
 }
 
-/// Share of each area, and the share of its rain that has left its cloud, where both are the same all over a part of
-/// the grid; `None` where they vary.
+/// Uniform values of each area over a part of the grid: the area's share in the precipitation, and the share of its
+/// rain that has left its cloud. `None` for an area whose values vary there.
 pub(super) type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Rain areas over a grid, in the order of the world's list.
@@ -56,8 +56,8 @@ pub(super) fn liquid(f: &Falling) -> f64 {
     f.rain_mm_h + f.drizzle_mm_h
 }
 
-/// Bounds of some cells of a grid: their middle in the host's world, the radius around it, and the lowest and highest
-/// altitude, m.
+/// Bounds of some cells of a grid: their middle in the host's world, the radius around it within which they lie, m, and
+/// their lowest and highest altitude, m.
 pub(super) struct CellBounds {
     middle: DVec3,
     reach_m: f64,
@@ -75,7 +75,7 @@ impl CellBounds {
         });
         Self {
             middle: grid.origin + to_enu.transpose() * (0.5 * (low + high)),
-            // A small margin for rounding.
+            // Adds a small margin for rounding.
             reach_m: 0.5 * (high - low).length() * 1.000_001 + 1e-6,
             altitudes_m: [low.z, high.z].map(|z| altitude_m + z),
         }
@@ -87,7 +87,7 @@ impl CellBounds {
         (Self::new(grid, frame, 0..grid.len()), (0..grid.len()).step_by(RUN).map(run).collect())
     }
 
-    /// Extends the bounds over `other`.
+    /// Extends the bounds so that they include `other`.
     pub fn reach_over(&mut self, other: &Self) {
         self.reach_m = self.reach_m.max((other.middle - self.middle).length() + other.reach_m);
         let [low, high] = other.altitudes_m;

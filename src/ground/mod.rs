@@ -6,17 +6,17 @@
 //! fixed to the host's world; its surface is level, and smooth but for the rings of drops.
 //!
 //! **Surface normals** come from the host's image of normals, else from its terrain, else from the depths around a
-//! pixel. The error of such a normal limits how strongly a surface mirrors: level ground fully, walls less, undersides
-//! not at all.
+//! pixel. The error of a normal from depths limits how strongly a surface mirrors. Level ground catches all rain, walls
+//! less, undersides none.
 //!
 //! **Surface classes** ([`SurfaceClass`]: what the ground is made of) come from an image, else from the terrain's
 //! cells, else from the context. A closed film and puddles belong to paved ground. The cost is one sky lookup a pixel,
 //! and nothing where it is dry.
 //!
 //! **Accuracy**. The result is right for a host that hands over scene-linear luminance: the albedo of the ground then
-//! follows from its luminance and the light on it. A surface in shadow is taken for a darker one and darkens too much.
-//! In display spaces the shown colour is taken for the albedo and darkened, and the mirrored light is added through the
-//! tone curve. Reflections show the sky and level ground, but no objects.
+//! follows from its luminance and the light on it. A surface in shadow is taken for a dark surface in the light, and
+//! darkens too much. In display spaces the shown colour is taken for the albedo and darkened, and the mirrored light is
+//! added through the tone curve. Reflections show the sky and level ground, but no objects.
 //!
 //! **Files**. There is no `passes.rs`: the composition draws the water, and `texture.rs` holds the terrain data that it
 //! reads. There is no `candidates.rs`: only one way to draw the water exists, and no plan leaves it out.

@@ -1,15 +1,17 @@
-//! Water in the hollows of a terrain. Water that is poured into a pit fills it, spills into the next and joins with it
-//! (after the fill-spill-merge of Barnes, Callaghan and Wickert 2021). Its level sinks by the losses through its
-//! surface. No water is lost in between.
+//! Water in the hollows of a terrain. Water that is poured into a pit fills it, spills into the next pit, and joins
+//! with the water there (after the fill-spill-merge of Barnes, Callaghan and Wickert 2021). Evaporation and leakage
+//! lower the level. All other steps conserve the water.
 
 use super::basins::{Basins, OUT};
 
 /// Mark in place of the volume of a hollow whose parts hold separate lakes.
 const APART: f64 = -1.0;
 
-/// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate lakes.
+/// Water in the hollows of a terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pools {
+    /// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate
+    /// lakes.
     pub held: Vec<f64>,
     /// Scratch space of [`Pools::sink`]: water that each part must lose, because its hollow lost more than it held
     /// above its parts.
@@ -48,7 +50,7 @@ impl Pools {
         parent != OUT && self.held[parent as usize] >= 0.0
     }
 
-    /// Pours water into a pit. Returns the amount that leaves the grid.
+    /// Pours water into a pit, mm times cells. Returns the part of it that leaves the grid.
     pub fn pour(&mut self, basins: &Basins, pit: u32, water: f64) -> f64 {
         let (mut to, mut left) = (pit, water);
         while to != OUT && left > 0.0 {
@@ -76,11 +78,11 @@ impl Pools {
         left
     }
 
-    /// Lowers every water by `depth_mm`. Returns the amount lost.
+    /// Lowers the level of all standing water by `depth_mm`. Returns the water lost, mm times cells.
     pub fn sink(&mut self, basins: &Basins, depth_mm: f64) -> f64 {
         let mut gone = 0.0;
-        // A hollow comes after its parts in the list, and is processed before them: what it loses beyond its own water
-        // is taken from them.
+        // Processes a hollow before its parts, which precede it in the list: the parts bear what it loses beyond its
+        // own water.
         for basin in (0..self.held.len()).rev() {
             let passed = std::mem::take(&mut self.passed[basin]);
             if self.held[basin] <= 0.0 || self.is_part(basins, basin) {
@@ -105,7 +107,8 @@ impl Pools {
         gone
     }
 
-    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the water that no part can give.
+    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the water that no part can give,
+    /// mm times cells.
     fn pass(&mut self, basins: &Basins, basin: usize, water: f64) -> f64 {
         // Parts without a capacity of their own have no water.
         let holding = || basins.parts(basin).filter(|part| basins.list[*part].capacity > 0.0);
@@ -122,7 +125,7 @@ impl Pools {
         (0..self.held.len()).filter(whole).map(|i| self.held[i]).sum()
     }
 
-    /// Returns the larger hollow that a hollow's water is part of.
+    /// Returns the larger hollow whose water includes that of a hollow; `None` if it has separate water.
     pub fn whole_of(&self, basins: &Basins, basin: usize) -> Option<usize> {
         self.is_part(basins, basin).then(|| basins.list[basin].parent as usize)
     }

@@ -17,31 +17,33 @@ use crate::{
     world::World,
 };
 
-/// Height above the ground up to which a place counts as the surface, m.
+/// Height above the ground of the point for which shelter from rain is tested, m.
 const SURFACE_M: f64 = 0.02;
 
 /// Number of thirds of the rain that the boxes keep off each cell.
 #[derive(Default)]
 struct Shadow {
+    /// Inputs of `thirds`: fall speeds, m/s, wind, east and north, m/s, and boxes.
     made_for: Option<([f64; 3], DVec2, Vec<Shelter>)>,
     /// Thirds kept off, by cell; empty if nothing is kept off anywhere.
     thirds: Vec<u8>,
 }
 
 impl Shadow {
+    /// Returns the share of the rain that reaches a cell.
     fn share(&self, cell: usize) -> f64 {
         self.thirds.get(cell).map_or(1.0, |t| f64::from(3 - t) / 3.0)
     }
 }
 
-/// Share of open ground under ice, and the freezing rain that boxes keep off, both by the weather of the moment.
+/// Ice of the present weather: the share of open ground under it, and the freezing rain that boxes keep off.
 #[derive(Default)]
 struct Glaze {
     ice: f64,
     shadow: Shadow,
 }
 
-/// Step in which rain falls on a grid.
+/// Inputs of a step in which rain falls on a grid.
 #[derive(Clone, Copy)]
 pub(super) struct RainStep<'a> {
     /// Weather in the middle of the step, and its effect on the ground.
@@ -63,9 +65,9 @@ pub(super) struct GridRain {
     range_m: (f64, f64),
     shadow: Shadow,
     glaze: Glaze,
-    /// Precipitation on every cell in this step, mm, before boxes; `None` if cells differ. Then `rates` has the
-    /// precipitation on each, mm.
+    /// Precipitation on every cell in this step, mm, before the part that boxes keep off; `None` if cells differ.
     even_mm: Option<f64>,
+    /// Precipitation on each cell in this step, mm, less the part that boxes keep off, if `even_mm` is `None`.
     rates: Vec<f64>,
 }
 
@@ -85,7 +87,7 @@ impl GridRain {
         }
     }
 
-    /// Takes over changed heights: renews the bounds of these runs and extends those of the whole grid.
+    /// Takes over changed heights: computes the bounds of these runs again and extends those of the whole grid.
     pub fn heights_changed(&mut self, grid: &CellGrid<'_>, runs: impl Iterator<Item = usize>) {
         for run in runs {
             let cells = run * RUN..((run + 1) * RUN).min(grid.len());
@@ -132,7 +134,7 @@ impl GridRain {
         true
     }
 
-    /// Finds the rain that boxes at rest keep off each cell in the weather `c`.
+    /// Updates the rain that boxes at rest keep off each cell in the weather `c`.
     fn shade_rain(&mut self, grid: &CellGrid<'_>, c: &Conditions, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let mut shadow = std::mem::take(&mut self.shadow);
         let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
@@ -140,8 +142,8 @@ impl GridRain {
         self.shadow = shadow;
     }
 
-    /// Takes over the ice of the weather; ice from freezing rain forms only where the rain arrives. Returns whether any
-    /// of it may have changed.
+    /// Takes over the ice of the weather `c`. Ice from freezing rain forms only where the rain arrives. Returns whether
+    /// the ice of any cell may have changed.
     pub fn ice_over(
         &mut self,
         grid: &CellGrid<'_>,
@@ -168,6 +170,7 @@ impl GridRain {
         (self.glaze.ice * self.glaze.shadow.share(cell)) as f32
     }
 
+    /// Adds 1 to each cell off which boxes keep drops of this velocity, (east, north, up), m/s.
     fn shade_third<'a>(
         &self,
         grid: &CellGrid<'_>,
@@ -177,7 +180,7 @@ impl GridRain {
     ) {
         let in_world = self.to_enu.transpose() * velocity;
         let columns = grid.nodes[0] as usize;
-        // Only cells in the possible shadow of a box are tested; a cell counts once.
+        // Tests only cells that a box's shadow may reach. A cell in the shadow of several boxes counts once.
         for (i, shelter) in shelters.clone().enumerate() {
             let Some([x, y]) = self.shadow_within(grid, shelter, velocity) else { continue };
             for (row, column) in (y[0]..=y[1]).flat_map(|row| (x[0]..=x[1]).map(move |column| (row, column))) {
@@ -234,7 +237,7 @@ impl GridRain {
         self.shade_rain(grid, c, overs, shelters);
         let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
-        // Meltwater of falling snow and ice is the same everywhere.
+        // Meltwater of falling snow and ice, mm/h, is the same everywhere.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
         let fallen_mm = |liquid: f64| ((liquid * liquid_stays + melting) * hours).max(0.0);

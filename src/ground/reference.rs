@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::falling::sizes::DropSizes;
 
-/// Refractive index of water relative to air, for visible light at 20 C (Hale & Querry 1973, rounded).
+/// Refractive index of water relative to air, for visible light at 20 C (Hale and Querry 1973, rounded).
 pub const WATER_INDEX: f64 = 1.333;
 /// Share of diffuse light from above that a level water surface reflects back up: Fresnel's law integrated over the
 /// hemisphere.
@@ -33,21 +33,24 @@ pub fn wet_share(albedo: f64, entering: f64) -> f64 {
     entering * (1.0 - WATER_INSIDE) / (1.0 - WATER_INSIDE * albedo)
 }
 
-/// Returns the albedo of a wet ground under light at normal incidence, including the reflection at its surface.
+/// Returns the albedo of a wet ground of this dry albedo under light at normal incidence, including the reflection at
+/// the water's surface.
 pub fn wet_albedo(albedo: f64) -> f64 {
     let mirrored = fresnel_water(1.0);
     mirrored + albedo * wet_share(albedo, 1.0 - mirrored)
 }
 
 /// Returns the mean slope, towards the eye, of the facets that the eye sees. `slope` is the root mean square slope of
-/// the surface along one axis, normally distributed; `tangent` is that of the eye's zenith angle. For steep views the
-/// mean is slope^2 tan; for grazing views it is sqrt(pi / 2) slope, the mean of the facets weighted by their own slope.
+/// the surface along one axis, normally distributed; `tangent` is the tangent of the eye's zenith angle. For steep
+/// views the mean is slope^2 tan; for grazing views it is sqrt(pi / 2) slope, the mean of the facets weighted by their
+/// own slope.
 pub fn seen_slope(slope: f64, tangent: f64) -> f64 {
     let t = slope * tangent * (2.0 / PI).sqrt();
     slope * slope * tangent / (1.0 + t * t).sqrt()
 }
 
-/// Returns the projected area of a unit of rough surface in a direction with this zenith cosine.
+/// Returns the projected area of a unit of rough surface in a direction with the zenith cosine c: sqrt(c^2 + (0.4
+/// slope)^2 (1 - c^2)). The second term is that of tilted facets at grazing views.
 pub fn seen_area(slope: f64, cosine: f64) -> f64 {
     let c = cosine.max(0.0);
     (c * c + 0.16 * slope * slope * (1.0 - c * c)).sqrt()

@@ -1,5 +1,5 @@
-//! Saved form of a terrain and its water as text. Each number is the hexadecimal word of its bits; a run of equal
-//! numbers is written as "bits*times".
+//! Saved form of a terrain and its water as text. Each number is the hexadecimal word of its bits; a run of n equal
+//! numbers is written as "bits*n".
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ use crate::{
     world::{values, words},
 };
 
-/// Saved terrain, with its water if that is a simulated state.
+/// Saved grid, with its water if the water is a simulated state.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedGround {

@@ -5,8 +5,9 @@ use crate::{surroundings::SnowHere, weather::SurfaceCover};
 
 /// State of a context's ground around a camera.
 pub(crate) struct GroundSeen<'a> {
-    /// Cover that weather has left on the ground at the camera.
+    /// Wetness, puddles, ice and snow of the ground at the camera.
     pub cover: SurfaceCover,
+    /// Pattern of hollows in which water stands where heights are unknown.
     pub hollows: &'a Hollows,
     /// Terrain of the host around the camera.
     pub terrain: Option<DrawnTerrain>,

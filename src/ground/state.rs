@@ -1,4 +1,4 @@
-//! State of the water on level, open ground: where it comes from, and the values that are stepped through time.
+//! State of the water on level, open ground: its source, and the values that are simulated.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,8 +8,8 @@ use crate::{error::Result, weather::Conditions, world::World};
 /// Source of the ground's wetness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundModel {
-    /// Wetness from the weather of the moment: as reported, or as the rain of the moment keeps it. There is no state:
-    /// when rain ends, the ground is dry.
+    /// Wetness from the present weather: as reported, or as the present rain keeps it. There is no state: when rain
+    /// ends, the ground is dry at once.
     #[default]
     Reported,
     /// Simulated state: rain fills it; it drains, and dries by wind, sun and humidity ([`crate::ground::water`]). It
@@ -23,6 +23,7 @@ pub enum GroundModel {
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroundState {
     pub time_s: f64,
+    /// Values of [`GroundWater`] at `time_s`.
     film_mm: f64,
     soaked_mm: f64,
     hollows_mm: f64,
@@ -59,7 +60,7 @@ impl GroundState {
     }
 }
 
-/// Step of level, open ground, for the grid and the tiles that are stepped with it.
+/// Inputs of a step of level, open ground, in which the grid and the tiles are advanced too.
 #[derive(Clone, Copy)]
 pub(super) struct GroundStep<'a> {
     pub from_s: f64,

@@ -15,9 +15,10 @@ use super::{
     water::{GroundWater, PORES_MM, Step, SurfaceWater, wetness_of},
 };
 
-/// Number of cells in a run: they are stepped together, or skipped together where nothing falls, flows or dries.
+/// Number of cells in a run. A run is skipped in a step if nothing falls, flows or dries on any of its cells.
 pub(crate) const RUN: usize = 64;
-/// Standing water of a cell in a dry hollow, mm. It sets how far the edges of puddles extend between cells.
+/// Standing water, mm, of a cell in a dry hollow or in no hollow. Interpolation towards a cell under water puts the
+/// puddle's edge nearer to the water for a more negative value.
 const BARE_MM: f32 = -50.0;
 
 /// Terrain of the host and its hollows.
@@ -34,12 +35,14 @@ impl GridTerrain {
     }
 }
 
-/// Water that a step added and removed, mm times cells.
+/// Water that a step added (rain) or removed, mm times cells.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Flows {
     pub rain: f64,
     pub evaporated: f64,
+    /// Water that leaked into the ground below.
     pub leaked: f64,
+    /// Run-off that left at the border.
     pub drained: f64,
 }
 
@@ -69,7 +72,7 @@ impl CellWater {
 /// Water on a terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TerrainWater {
-    /// Film and pores, mm.
+    /// Water of each cell in its film and in its pores, mm.
     pub top: Vec<[f64; 2]>,
     pools: Pools,
     /// Depths as in [`CellWater::standing_mm`].
@@ -78,23 +81,24 @@ pub(crate) struct TerrainWater {
     /// Whether a step without rain may change a cell, for each run: true if a cell has a film, or wet pores that are
     /// not under water.
     awake: Vec<bool>,
-    /// Water level of each hollow, and the volume for which it was computed.
+    /// Cached water level of each hollow.
     levels: Vec<WaterLevel>,
     /// Scratch space for a step: the water that flows into each pit.
     inflow: Vec<f64>,
 }
 
-/// Cached level of the water in a hollow, mm, and the volume it was computed for; `None` if the pool has merged into
-/// another.
+/// Cached water level in a hollow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WaterLevel {
+    /// Height of the level, in the frame of the cells' heights, mm.
     mm: f64,
+    /// Volume for which `mm` was computed, mm times cells; `None` if the water is part of a larger hollow's.
     of: Option<f64>,
 }
 
 impl TerrainWater {
     /// Creates the water of a terrain on which each cell is as wet as `water` says for open, level ground. The water in
-    /// hollows is gathered from the cells that drain to each pit, and stands in the terrain's own hollows.
+    /// hollows is gathered from the cells that drain to each pit, and then stands in these pits.
     pub fn new(terrain: &GridTerrain, water: impl Fn(usize) -> GroundWater) -> Self {
         let basins = &terrain.basins;
         let top: Vec<GroundWater> = (0..terrain.grid.len()).map(water).collect();
@@ -145,8 +149,8 @@ impl TerrainWater {
         self.dry
     }
 
-    /// Steps the water. `rain_mm` gives the rain on each cell, `rains` whether any falls on a run. Runs on which
-    /// nothing falls, flows or dries are skipped, which gives the same bits.
+    /// Advances the water by a step. `rain_mm` returns the rain on a cell, mm, `rains` whether any falls on a run. Runs
+    /// on which nothing falls, flows or dries are skipped; the result is the same to the bit.
     pub fn step(
         &mut self,
         terrain: &GridTerrain,
@@ -157,7 +161,7 @@ impl TerrainWater {
         let basins = &terrain.basins;
         let mut flows = Flows::default();
         let mut wet = false;
-        // Neighbours mostly have the same water and the same rain.
+        // Caches the last result: neighbours mostly have the same water and the same rain.
         let mut last: Option<([f64; 2], f64, bool, SurfaceWater)> = None;
         for (run, tops) in self.top.chunks_mut(RUN).enumerate() {
             if !self.awake[run] && !rains(run) {
@@ -201,7 +205,7 @@ impl TerrainWater {
 
     /// Updates the depths from the volumes in the hollows.
     fn level(&mut self, basins: &Basins) {
-        // In reverse order a whole comes before its parts, which take its level.
+        // Visits the list in reverse, so that a hollow comes before its parts, which take its level.
         for hollow in (0..self.levels.len()).rev() {
             let before = self.levels[hollow];
             let now = match self.pools.whole_of(basins, hollow) {
@@ -231,7 +235,7 @@ impl TerrainWater {
         CellWater { film_mm, soaked: soaked_mm / PORES_MM, standing_mm: f64::from(self.standing[cell]) }
     }
 
-    /// Returns the water between cells, with the weights of four of them.
+    /// Returns the mean water of four cells with these weights.
     pub fn between(&self, shares: &[(usize, f64); 4]) -> CellWater {
         shares.iter().fold(CellWater::default(), |sum, (cell, share)| {
             let c = self.cell(*cell);

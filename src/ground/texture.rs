@@ -2,9 +2,9 @@
 //! materials.
 //!
 //! There is one texel per node: rows from south to north, each row from west to east. Texels are half floats, which
-//! every graphics API can filter. Film, soaked share and standing water are exact to 1/2048 of their value, which is
-//! 0.05 mm at 100 mm. Standing water is negative at a node above the water's level. Interpolated between a node under
-//! water and one above it, it is 0 where the water's level meets the ground, which is the shore.
+//! every graphics API can filter. Film, soaked share and standing water are exact to 1/2048 of their value: 0.05 mm at
+//! 100 mm. Standing water is negative at a node above the water's level. Interpolated between a node under water and
+//! one above it, it is 0 where the water's level meets the ground, which is the shore.
 
 use glam::DVec4;
 
@@ -55,7 +55,8 @@ pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
 #[derive(Clone, Debug)]
 pub(crate) struct UploadedTerrain {
     pub water: wgpu::Texture,
-    /// Rows of the surface, followed by as many rows of the snow.
+    /// Texture of the surface ([`surface_texels`]), followed by as many rows of the snow: depth in m, density in
+    /// kg/m^3, wetness, albedo.
     surface: wgpu::Texture,
     /// Views for drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
@@ -75,9 +76,11 @@ pub(crate) struct UploadedTerrain {
 #[derive(Default)]
 pub(crate) struct TerrainTextures {
     filled: Option<UploadedTerrain>,
-    /// Whether the water or the host's snow was written since they were last handed over to the host.
+    /// Whether the water or the host's snow was written since the last transition to reading (`hand_over`).
     pub written: bool,
+    /// Scratch space for the texels of the water or of the host's snow.
     texels: Vec<[u16; 4]>,
+    /// Scratch space for the texels of the surface.
     surface: Vec<[f32; 4]>,
 }
 
@@ -87,8 +90,8 @@ impl TerrainTextures {
         self.filled.as_ref()
     }
 
-    /// Uploads the parts that have changed: surface and water if the grid was replaced, else only the changed one of
-    /// the two.
+    /// Uploads surface and water if the grid was replaced, otherwise only the one of them that has changed. The numbers
+    /// are the revisions of the grid, of the water and of the classes.
     pub fn upload(
         &mut self,
         device: &Device,

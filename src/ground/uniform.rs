@@ -22,12 +22,16 @@ use crate::{
     weather::{Falling, SurfaceCover, snow_cover},
 };
 
-/// Twins of the ring constants in `shaders/ground/hollows.wgsl`.
+/// Side of a cell of the rings' grid, m. This and the next two are twins of the constants in
+/// `shaders/ground/hollows.wgsl`.
 const RING_CELL_M: f64 = 0.2;
+/// Length of a time slot of the rings, s.
 const RING_SLOT_S: f64 = 0.6;
+/// Number of layers of rings.
 const RING_LAYERS: f64 = 4.0;
 
-/// Root mean square slope of a thin film, along one axis: it hardly fills the grain of asphalt.
+/// Root mean square slope of a thin film, along one axis. It is large because a thin film hardly fills the grain of
+/// asphalt.
 const THIN_FILM_SLOPE: f64 = 0.3;
 /// Root mean square slope of a closed film, along one axis.
 const CLOSED_FILM_SLOPE: f64 = 0.15;
@@ -37,6 +41,7 @@ const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
 /// Mean square slope of puddles by the rings of drops, per mm/h of rain.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
 
+/// Uniform block `GroundUniform` of `shaders/ground/uniform.wgsl`, whose comments describe each field.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct GroundUniform {
@@ -93,10 +98,11 @@ impl GroundUniform {
 /// Inputs of [`GroundUniform`] for a frame.
 pub(crate) struct WetScene<'a> {
     pub scene: &'a Scene,
+    /// Wetness and puddles of the ground at the camera.
     pub cover: &'a SurfaceCover,
     /// Snow on level, open ground.
     pub snow: SnowHere,
-    /// Whether the terrain's cells have snow of their own; else they have the snow of level, open ground.
+    /// Whether the terrain's cells have snow of their own; otherwise the snow of level, open ground lies on them.
     pub terrain_has_snow: bool,
     /// Precipitation on the ground.
     pub falling: Falling,
@@ -138,26 +144,29 @@ fn look_of(wetness: f64) -> (f64, f64) {
     (smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness))
 }
 
-/// Level that is deeper than any hollow: no water lies in them. Twin of the shader's constant.
+/// Level that is deeper than any hollow, in units of the root mean square depth: no water stands there. Twin of
+/// `NO_LEVEL` in `shaders/ground/hollows.wgsl`.
 const NO_LEVEL: f32 = 1000.0;
 
-/// Returns the depth of the hollows, in units of their root mean square, above which the share `covered` of the ground
-/// lies.
+/// Returns the level that the hollows exceed in depth on the share `covered` of the ground, in units of their root mean
+/// square depth.
 fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
 
 /// Cache of values that depend on the drop sizes alone, kept while the precipitation is unchanged: sums over all sizes
-/// would cost more than the rest of a frame's recording. Altitude does not matter to them: a rate makes equally many
-/// rings everywhere, and all fall speeds change by one factor.
+/// would cost more than the rest of a frame's recording. The values do not depend on altitude: a rain rate makes
+/// equally many rings everywhere, and one factor scales all fall speeds.
 #[derive(Default)]
 pub(crate) struct DropsKept {
+    /// Precipitation and its rate of rings, 1/(m^2 s).
     rings: Option<(Falling, f64)>,
+    /// Precipitation and the fall speeds of its twelfths at sea level, m/s.
     falls: Option<(Falling, [f64; 12])>,
 }
 
 impl DropsKept {
-    /// Returns the rate of rings; see [`ring_drops_per_m2_s`].
+    /// Returns the number of rings that drops make per square metre and second ([`ring_drops_per_m2_s`]).
     fn rings_per_m2_s(&mut self, falling: &Falling) -> f64 {
         let kept = self.rings.filter(|(of, _)| of == falling);
         kept.unwrap_or_else(|| *self.rings.insert((*falling, ring_drops_per_m2_s(&DropSizes::new(falling, 1.0))))).1
@@ -255,8 +264,8 @@ impl WetScene<'_> {
         }
     }
 
-    /// Returns the look of each class. The first entry is the context's default with a `level` of 0: nobody has marked
-    /// this ground as level, and it may be a hill.
+    /// Returns the look of each class. The first entry is the context's default class with a `level` of 0: ground that
+    /// the host has not classified may be a hill.
     fn looks(&self) -> [SurfaceLook; CLASSES] {
         let mut looks = SurfaceClass::ALL.map(SurfaceClass::surface_look);
         looks[0] = SurfaceLook { level: 0.0, ..self.surface_class.surface_look() };

@@ -22,7 +22,7 @@ use crate::{
     },
 };
 
-/// Limit for light in units of the host's target: the largest half float, with a margin for later passes.
+/// Limit for light in units of the host's target: the largest half float, 65 504, less a margin for later passes.
 const MOST_UNITS: f64 = 6e4;
 
 /// Ground of a view.
@@ -65,8 +65,8 @@ impl DrawnEffect for GroundView {
             let scene = wet_scene(now, (frame, color), &seen, glaze, given.fog_depth)?;
             self.block = Some(scene.uniform(&mut self.drops));
         }
-        // Texture views of the host's terrain, of its tiles around the camera or of its grid. They are updated only if
-        // the surface pass is drawn.
+        // Takes the textures of the host's tiles around the camera, or of its grid. They are updated only if the
+        // surface pass is drawn.
         let is_drawn = self.block.is_some() && context.asked.has(Stages::SURFACE);
         self.views = match held.shown_tiles(context.world, now.here.surface.ice) {
             Some(shown) if is_drawn => self.window.views(context.device, now.eye, &shown),
@@ -102,7 +102,7 @@ impl DrawnEffect for GroundView {
     }
 }
 
-/// Returns the share of level ground under clear ice, as the freezing rain of the moment keeps it.
+/// Returns the share of level ground under clear ice, which forms while freezing rain falls at the camera; otherwise 0.
 fn glaze(now: &SceneMoment<'_>) -> f64 {
     let falling = &now.here.precipitation;
     let falls = (falling.rain_mm_h + falling.drizzle_mm_h) * falling.freezing > 0.0;

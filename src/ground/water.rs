@@ -1,4 +1,4 @@
-//! Water on and in level, open ground as a state: a film, water in the pores, and water in hollows, all in mm over the
+//! Simulated water of level, open ground: a film, water in the pores, and water in hollows, all in mm averaged over the
 //! whole ground.
 //!
 //! The state advances in steps of [`STEP_S`] that begin at whole multiples of it, so the result does not depend on how
@@ -16,7 +16,7 @@ use crate::{
 /// Length of a step, s.
 pub const STEP_S: f64 = 10.0;
 
-/// Capacity of the pores of the uppermost ground, mm (for asphalt, initial losses are 0.3 to 0.6 mm).
+/// Capacity of the pores of the uppermost ground, mm: within the initial losses of rain on asphalt, 0.3 to 0.6 mm.
 pub(crate) const PORES_MM: f64 = 0.4;
 /// Time constant with which pores take up the water on them, s.
 const SOAK_S: f64 = 90.0;
@@ -31,7 +31,8 @@ const HOLLOW_MM: f64 = 6.0;
 const OVERFLOW_SHARE: f64 = 0.35;
 /// Leakage from hollows into the ground below, mm/h.
 const LEAK_MM_H: f64 = 0.4;
-/// Film at which the share 1 - 1/e of the ground is covered, mm: the depth of asphalt's texture.
+/// Scale of a film's depth F, mm, in the share of the ground that it covers, 1 - exp(-F / 0.15 mm): the depth of
+/// asphalt's texture.
 const FILM_MM: f64 = 0.15;
 /// Amount of water below which it counts as none, mm.
 const LEAST_MM: f64 = 1e-4;
@@ -79,8 +80,8 @@ impl Forcing {
 }
 
 /// Returns the evaporation of open water, mm/h: Penman (1948) in SI units (Shuttleworth 1993, eq. 4.2.31), with an
-/// albedo of 0.08 and Penman's net long-wave loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N). Here e is in mmHg,
-/// and n/N is the share of clear sky.
+/// albedo of 0.08 and Penman's net long-wave loss, sigma T^4 (0.56 - 0.092 sqrt(e)) (0.1 + 0.9 n/N), W/m^2. T is the
+/// air temperature, K; sigma = 5.67e-8 W/(m^2 K^4); e is the vapour pressure, mmHg; n/N is the share of clear sky.
 pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     let (t, humidity) = (c.air.temperature_c, c.air.relative_humidity);
     let saturated = 0.1 * saturation_pressure_hpa(t);
@@ -98,7 +99,8 @@ pub fn evaporation_mm_h(c: &Conditions, sunlight_w_m2: f64) -> f64 {
     (mm_a_day / 24.0).max(0.0)
 }
 
-/// Returns the water that stands in hollows, mm over all of the ground, if the share `covered` of it is under water.
+/// Returns the water that stands in hollows, mm over all of the ground, if the share c = `covered` of it is under
+/// water: [`HOLLOW_MM`] (phi(z) - z c). z is the level, the normal quantile of 1 - c, and phi the normal density.
 fn hollows_mm(covered: f64) -> f64 {
     if covered <= 0.0 {
         return 0.0;
@@ -133,7 +135,7 @@ impl GroundWater {
         }
     }
 
-    /// Returns the larger of the two for each kind of water.
+    /// Returns the larger film, the larger water in pores and the larger water in hollows of the two.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             film_mm: self.film_mm.max(other.film_mm),
@@ -158,23 +160,23 @@ impl GroundWater {
         let top = step.surface(self.film_mm, self.soaked_mm, forcing.liquid_mm_h * seconds / 3600.0);
         let hollows_mm = (self.hollows_mm + INTO_HOLLOWS * top.ran_off_mm).min(hollows_mm(OVERFLOW_SHARE));
         let left = (hollows_mm - (step.evaporated_mm + step.leaked_mm) * covered_by(hollows_mm)).max(0.0);
-        // A remainder below LEAST_MM counts as none: it is a film in a crack.
+        // Takes a remainder below LEAST_MM for none.
         Self { film_mm: top.film_mm, soaked_mm: top.soaked_mm, hollows_mm: if left < LEAST_MM { 0.0 } else { left } }
     }
 }
 
-/// Factors of a step that are the same for all places.
+/// Values of a step that are the same for all cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Step {
     /// Evaporation of open water, mm.
     pub evaporated_mm: f64,
     /// Leakage of standing water into the ground below, mm.
     pub leaked_mm: f64,
-    /// Share of their free capacity that pores fill.
+    /// Share of the pores' free capacity that fills in the step.
     soaking: f64,
     /// 2 k t, with the run-off coefficient k ([`RUN_OFF`]) and the length t of the step.
     run_off: f64,
-    /// Share of their water that pores keep where there is no film.
+    /// Share of the pores' water that is left after the step where there is no film.
     drying: f64,
 }
 
@@ -199,13 +201,14 @@ impl Step {
         }
     }
 
+    /// Returns the water that pores take up from a film, mm.
     fn soaked_up(&self, film_mm: f64, soaked_mm: f64) -> f64 {
         film_mm.min((PORES_MM - soaked_mm) * self.soaking)
     }
 
-    /// Steps open ground on which `rain_mm` falls.
+    /// Returns film and pores after the step on ground without standing water, on which `rain_mm` falls.
     pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
-        // Half of the rain falls before the run-off and half after it: second-order accurate.
+        // Adds half of the rain before the run-off and half after it, for second-order accuracy.
         let half = 0.5 * rain_mm;
         let up = self.soaked_up(film_mm + half, soaked_mm);
         let (film, soaked) = (film_mm + half - up, soaked_mm + up);
@@ -228,14 +231,15 @@ impl Step {
         }
     }
 
-    /// Steps ground under standing water, which takes all water that the pores do not.
+    /// Returns film and pores after the step under standing water, which takes all water that the pores do not.
     pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         let up = self.soaked_up(film_mm + rain_mm, soaked_mm);
         SurfaceWater { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
     }
 }
 
-/// Returns the wetness of film and pores, as [`SurfaceCover::wetness`].
+/// Returns the wetness of film F and pores S, as [`SurfaceCover::wetness`]: 0.3 S / [`PORES_MM`] + 0.7 (1 - exp(-F /
+/// [`FILM_MM`])).
 pub(crate) fn wetness_of(film_mm: f64, soaked_mm: f64) -> f64 {
     DAMP * soaked_mm / PORES_MM + (1.0 - DAMP) * (1.0 - libm::exp(-film_mm / FILM_MM))
 }

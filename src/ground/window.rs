@@ -1,5 +1,5 @@
-//! Textures of the part of a tiled terrain around a place: a camera, for the surface pass, or a place that the host
-//! names for its own shaders. [`super::texture`] does the same for a grid.
+//! Textures of the part of a tiled terrain around a camera, for the surface pass, or around a place that the host
+//! names, for its own shaders. [`super::texture`] does the same for a grid.
 //!
 //! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
 //! m the window reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only changed parts are
@@ -26,14 +26,14 @@ use crate::{
 const WINDOW: i32 = 512;
 /// Step by which a window moves, cells.
 const STEP: i32 = 64;
-/// Height stored for a hole, m, where no surface can lie.
+/// Height stored for a hole, m: so high that no surface of the host lies near it.
 const NOWHERE_M: f32 = 1e6;
 /// Standing water of a cell where none stands, mm.
 const BARE_MM: f64 = -50.0;
 /// Number of changes that are remembered. A window that has missed older ones is filled completely.
 const REMEMBERED: usize = 256;
 
-/// Nodes of a terrain that a frame draws.
+/// Grid of nodes that a frame draws: a whole grid, or a window of a tiled terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnTerrain {
     /// Position of the first node in the host's world, at the level from which heights count.
@@ -59,7 +59,7 @@ impl DrawnTerrain {
     }
 }
 
-/// Returns the cells of the window around a camera, if any tile reaches into it.
+/// Returns the cells of the window around a camera; `None` if no tile reaches into it.
 fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
     let (cells, _) = terrain.cells_at(eye);
     if !cells.is_finite() || cells.abs().max_element() > f64::from(1 << 29) {
@@ -82,7 +82,8 @@ impl RecentChanges {
         self.0.push_back(change);
     }
 
-    /// Returns the rectangles that changed since a revision; `None` if the changes since then are no longer remembered.
+    /// Returns the rectangles that changed after revision `revision`; `None` if some of these changes are no longer
+    /// remembered. `now` is the terrain's present revision.
     fn since(&self, revision: u64, now: u64) -> Option<impl Iterator<Item = CellRect> + '_> {
         let known = revision == now || self.0.front().is_some_and(|c| c.revision <= revision + 1);
         known.then(|| self.0.iter().filter(move |c| c.revision > revision).map(|c| c.rect))
@@ -103,7 +104,7 @@ pub(super) struct Shown<'a> {
     pub snow: Option<&'a LyingSnow>,
 }
 
-/// Identity of the contents of the textures.
+/// Inputs from which the textures were filled; a part is filled again if its inputs change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WindowContents {
     rect: CellRect,
@@ -175,7 +176,7 @@ impl TerrainWindow {
         if is_wet_anew {
             self.fill(device, shown, (rect, rect), WindowPart::Water);
         }
-        // A new texture has no snow.
+        // Fills the snow anew if it has changed; a new texture has none.
         if before.map_or(0, |f| f.snow) != now.snow {
             self.fill(device, shown, (rect, rect), WindowPart::Snow);
         }
@@ -247,7 +248,7 @@ impl TerrainWindow {
         }
     }
 
-    /// Reads the texels of a part of the terrain, by rows.
+    /// Reads the texels of the surface, of the water or of both in a part of the terrain, by rows.
     fn read(&mut self, shown: &Shown<'_>, part: CellRect, what: WindowPart) {
         let [surface, water] = [!matches!(what, WindowPart::Water), !matches!(what, WindowPart::Surface)];
         let width = (part.high[0] - part.low[0]) as usize;
@@ -285,8 +286,8 @@ impl TerrainWindow {
     }
 }
 
-/// Returns the highest water level beside a cell minus the cell's height, mm (negative). With it the shore between two
-/// cells lies at the right place.
+/// Returns the highest water level beside a cell minus the cell's height, mm (negative). Interpolated with it, the
+/// shore lies where the water's level meets the ground between the two cells.
 fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     if !shown.water.has_lakes_near(shown.terrain, cell) {
         return BARE_MM;
@@ -297,7 +298,8 @@ fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     beside.fold(BARE_MM, |highest, level| highest.max(level - own)).min(0.0)
 }
 
-/// Returns rise over run to the east and the north: a central difference, one-sided where one neighbour is no ground.
+/// Returns the slope at a cell, rise over run to the east and the north: a central difference, one-sided where a
+/// neighbour has no ground.
 fn slope(terrain: &Terrain, [x, y]: [i32; 2], own: f32) -> [f32; 2] {
     let height = |at: [i32; 2]| terrain.cell_at(at).map(|cell| terrain.height(cell));
     [[1, 0], [0, 1]].map(|[dx, dy]| {
@@ -307,6 +309,7 @@ fn slope(terrain: &Terrain, [x, y]: [i32; 2], own: f32) -> [f32; 2] {
     })
 }
 
+/// Converts to half floats; larger values are clamped to their range.
 fn half4(values: [f32; 4]) -> [u16; 4] {
     values.map(|v| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits())
 }

@@ -5,9 +5,9 @@
 
 use crate::terrain::{AROUND, CellId, CellRect, Terrain, TileKey};
 
-/// Cells along a side of a block; the side of a tile is a multiple of it.
+/// Side of a block, cells; the side of a tile is a multiple of it.
 const BLOCK: usize = 32;
-/// Sink number of a cell whose path is not known yet.
+/// Mark of a cell whose path has not been traced yet.
 const UNKNOWN: u16 = u16::MAX;
 
 /// End of the run-off of a cell within its block.
@@ -21,18 +21,23 @@ pub(super) enum Sink {
     Out,
 }
 
-/// Sinks of a block's cells, and the water that has reached each in this step, mm times cells.
+/// Block of cells: their sinks, and the water that has reached each sink in this step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrainBlock {
+    /// Sinks, in the order in which they were found.
     pub sinks: Vec<Sink>,
+    /// Water that has reached each sink in this step, mm times cells.
     pub inflow: Vec<f64>,
+    /// Whether any `inflow` is above 0.
     pub gets: bool,
 }
 
 /// Sinks of a tile's cells.
 #[derive(Clone, Debug)]
 pub(super) struct Drains {
+    /// Binary logarithm of the tile's side in cells.
     bits: u32,
+    /// Index of each cell's sink in its block's list.
     of_cell: Vec<u16>,
     pub blocks: Vec<DrainBlock>,
 }
@@ -48,7 +53,7 @@ pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     (ay, ax) < (by, bx)
 }
 
-/// Returns the neighbour that is steepest downhill.
+/// Returns the sink of a cell's first step: its steepest lower neighbour, itself if it is a pit, or out of the terrain.
 fn below(terrain: &Terrain, cell: CellId) -> Sink {
     let height = f64::from(terrain.height(cell));
     let (mut steepest, mut down) = (f64::NEG_INFINITY, Sink::Pit(cell));
@@ -77,13 +82,14 @@ impl Drains {
         }
     }
 
+    /// Returns the index of a cell's block in `blocks`.
     fn block_of(&self, cell: usize) -> usize {
         let side = 1 << self.bits;
         let (x, y) = (cell % side, cell / side);
         (y / BLOCK) * (side / BLOCK) + x / BLOCK
     }
 
-    /// Finds the sinks in those blocks of a tile that a rectangle touches.
+    /// Finds the sinks of all cells in the blocks of a tile that a rectangle touches.
     pub fn find(&mut self, terrain: &Terrain, (slot, key): (u32, TileKey), rect: CellRect) {
         let own = terrain.rect(key);
         let Some(part) = own.meets(rect) else { return };
@@ -133,12 +139,12 @@ impl Drains {
         self.blocks[number] = DrainBlock { sinks, inflow, gets: false };
     }
 
-    /// Returns where the run-off of a cell ends.
+    /// Returns the sink of a cell.
     pub fn sink(&self, cell: usize) -> Sink {
         self.blocks[self.block_of(cell)].sinks[usize::from(self.of_cell[cell])]
     }
 
-    /// Adds run-off of a cell in this step.
+    /// Adds run-off of a cell in this step, mm, to its sink.
     pub fn add(&mut self, cell: usize, water: f64) {
         let block = self.block_of(cell);
         let block = &mut self.blocks[block];

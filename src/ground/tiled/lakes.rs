@@ -1,10 +1,10 @@
 //! Standing water on tiles. Hollows are found as water rises in them, and may cross the borders between tiles.
 //!
 //! The water of a pit rises over its neighbours from the lowest up, until the next cell has a lower neighbour outside
-//! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014) of one hollow, and only as far as
-//! its water reaches. Further water spills over the saddle into the pit beyond. Two full lakes that spill into each
+//! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014), restricted to one hollow and to the
+//! height of its water. Further water spills over the saddle into the pit beyond. Two full lakes that spill into each
 //! other become one, which rises on from the saddle; when it sinks below the saddle, they part again. This builds the
-//! depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below. So the ground is examined only
+//! depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below, so the ground is examined only
 //! where water stands. After a change of the ground, the lakes that it touches are removed and their water is poured
 //! again.
 //!
@@ -45,19 +45,21 @@ impl PartialOrd for Rim {
     }
 }
 
-/// End of a hollow: its capacity, and the cell beyond its saddle onto which it spills, if that is ground.
+/// Saddle at which a hollow ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Close {
+    /// Water in the hollow when it spills, mm times cells.
     capacity: f64,
+    /// Cell beyond the saddle onto which it spills; `None` if the water leaves the terrain there.
     to: Option<CellId>,
 }
 
-/// Hollow as far as it has been found.
+/// Hollow, as far as its cells have been found.
 #[derive(Clone, Debug)]
 struct Hollow {
     /// The two hollows from which it was joined.
     parts: Option<[u32; 2]>,
-    /// Cells of its own, in the order in which water covers them.
+    /// Cells of the hollow that belong to none of its parts, in the order in which water covers them.
     cells: Vec<CellId>,
     /// Heights of these cells, mm.
     levels_mm: Vec<f64>,
@@ -69,16 +71,19 @@ struct Hollow {
     base: f64,
     /// Height at which it begins, mm: that of its pit, or of the saddle where its parts meet.
     birth_mm: f64,
+    /// Saddle at which it ends; `None` until it is found.
     close: Option<Close>,
 }
 
-/// Water in a hollow that is not part of another, and its volume.
+/// Water that stands in a hollow and is not part of a larger lake.
 #[derive(Clone, Debug)]
 struct Lake {
+    /// Index of the hollow.
     hollow: u32,
+    /// Volume, mm times cells.
     held: f64,
     level_mm: f64,
-    /// Cells around the known ones; `None` if they must be found again.
+    /// Cells around those of its hollow, lowest first; `None` if they must be found again.
     rim: Option<BinaryHeap<Rim>>,
 }
 
@@ -89,7 +94,7 @@ pub(super) struct Lakes {
     free_hollows: Vec<u32>,
     lakes: Vec<Option<Lake>>,
     free_lakes: Vec<u32>,
-    /// Lake of each cell, by tile number and then by cell: the number of the lake plus 1, or 0 for none. Empty for a
+    /// Lake of each cell, by the tile's slot and then by cell: the index of the lake plus 1, or 0 for none. Empty for a
     /// tile without lakes.
     owners: Vec<Vec<u32>>,
     /// Number of lakes.
@@ -103,6 +108,7 @@ fn height_mm(terrain: &Terrain, cell: CellId) -> f64 {
     f64::from(terrain.height(cell)) * 1e3
 }
 
+/// Puts a value into a free place of a list. Returns its index.
 fn put<T>(list: &mut Vec<Option<T>>, free: &mut Vec<u32>, value: T) -> u32 {
     let place = free.pop().unwrap_or_else(|| {
         list.push(None);
@@ -128,7 +134,7 @@ impl Hollow {
         (self.levels_mm[own - 1] + (held - self.held_at[own - 1]) / under, under)
     }
 
-    /// Returns the water in the hollow when its level is above all known cells.
+    /// Returns the water in the hollow at a level that is not below any of its known cells.
     fn held_to(&self, level_mm: f64) -> f64 {
         let (held, from) = match (self.held_at.last(), self.levels_mm.last()) {
             (Some(held), Some(from)) => (*held, *from),
@@ -143,14 +149,14 @@ impl Hollow {
 }
 
 impl Lakes {
-    /// Makes room for a tile, without any water.
+    /// Makes room for the cells of a tile.
     pub fn reserve(&mut self, slot: u32) {
         if self.owners.len() <= slot as usize {
             self.owners.resize(slot as usize + 1, Vec::new());
         }
     }
 
-    /// Returns the lake in which a cell is known to lie.
+    /// Returns the lake among whose known cells a cell is. The cell may lie above its level.
     pub fn lake_of(&self, slot: usize, cell: usize) -> Option<u32> {
         self.owners.get(slot)?.get(cell)?.checked_sub(1)
     }
@@ -176,7 +182,7 @@ impl Lakes {
         lakes.map(|(l, h)| h.level(l.held).1).sum()
     }
 
-    /// Clears the lakes of the cells of a removed tile.
+    /// Forgets in which lakes the cells of a removed tile lay.
     pub fn clear(&mut self, slot: u32) {
         if let Some(owners) = self.owners.get_mut(slot as usize) {
             *owners = Vec::new();
@@ -193,6 +199,7 @@ impl Lakes {
         Some((l, self.hollows.get(l.hollow as usize)?.as_ref()?))
     }
 
+    /// Marks a cell as lying in a lake; with [`NONE`], in none.
     fn own(&mut self, terrain: &Terrain, cell: CellId, lake: u32) {
         let (slot, at) = terrain.split(cell);
         let owners = &mut self.owners[slot];
@@ -213,6 +220,7 @@ impl Lakes {
         self.begin(terrain, hollow, pit)
     }
 
+    /// Creates a lake without water in a new hollow whose pit is `pit`.
     fn begin(&mut self, terrain: &Terrain, hollow: u32, pit: CellId) -> u32 {
         let level_mm = height_mm(terrain, pit);
         let first = Rim { height_mm: level_mm, place: terrain.place(pit), cell: pit };
@@ -262,6 +270,7 @@ impl Lakes {
         }
     }
 
+    /// Applies `edit` to a lake's hollow.
     fn change(&mut self, lake: u32, edit: impl FnOnce(&mut Hollow)) {
         let hollow = self.lake(lake).map_or(NONE, |l| l.hollow);
         if let Some(h) = self.hollows.get_mut(hollow as usize).and_then(Option::as_mut) {
@@ -299,7 +308,7 @@ impl Lakes {
         }
     }
 
-    /// Fills water into a lake until it spills. Returns the rest.
+    /// Fills water into a lake, mm times cells, until the lake is full. Returns the rest.
     fn fill(&mut self, terrain: &Terrain, lake: u32, water: f64) -> f64 {
         let short = |s: &Self| {
             s.of(lake).is_some_and(|(l, h)| {
@@ -327,7 +336,7 @@ impl Lakes {
         left
     }
 
-    /// Returns the cell onto which a full lake spills.
+    /// Returns the cell onto which a lake spills; `None` if it is not full or its water leaves the terrain.
     fn spills_to(&self, lake: u32) -> Option<CellId> {
         let (l, h) = self.of(lake)?;
         h.close.filter(|c| l.held >= c.capacity)?.to
@@ -367,7 +376,7 @@ impl Lakes {
         left.max(0.0)
     }
 
-    /// Joins two full lakes that spill into each other.
+    /// Joins two full lakes that spill into each other. Returns the index of the joined lake.
     fn join(&mut self, terrain: &Terrain, a: u32, b: u32) -> u32 {
         for lake in [a, b] {
             if self.lake(lake).is_some_and(|l| l.rim.is_none()) {
@@ -376,7 +385,7 @@ impl Lakes {
         }
         let cells = |s: &Self, lake: u32| s.of(lake).map_or(0.0, |(_, h)| h.cells_under());
         let (all, base) = (cells(self, a) + cells(self, b), [a, b].map(|l| self.lake(l).map_or(0.0, |l| l.held)));
-        // The larger one keeps its number.
+        // The larger lake keeps its index.
         let (keeps, gives) = if cells(self, a) >= cells(self, b) { (a, b) } else { (b, a) };
         let (Some(kept), Some(given)) = (self.lakes[keeps as usize].take(), self.lakes[gives as usize].take()) else {
             return a;
@@ -425,6 +434,7 @@ impl Lakes {
         }
     }
 
+    /// Removes a lake and all hollows in its tree.
     fn forget(&mut self, terrain: &Terrain, lake: u32) {
         let Some(gone) = self.lakes[lake as usize].take() else { return };
         self.label(terrain, gone.hollow, NONE);

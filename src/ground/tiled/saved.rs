@@ -14,7 +14,7 @@ use crate::{
     world::{binary_text, parse_error, text_binary, values, words},
 };
 
-/// Word in the list of a lake's pits that joins the two trees before it.
+/// Word in the list of a lake's pits that says that the two trees before it join.
 const JOINED: u64 = u64::MAX;
 
 /// Saved water of a tile.
@@ -37,9 +37,9 @@ pub(crate) struct SavedTiles {
     cell_m: f64,
     tile_cells: u32,
     tiles: Vec<SavedWaterTile>,
-    /// Lakes as words of bits: pits of each, and how they join.
+    /// Lakes as words: for each, the number of its words, then its pits and joints ([`LakeBranch`]).
     lakes: String,
-    /// Volume of each lake, as words of bits.
+    /// Volume of each lake, mm times cells, as the bits of an f64.
     held: String,
 }
 
@@ -53,7 +53,7 @@ fn runs(top: &[[f32; 2]]) -> Vec<u8> {
     top.chunk_by(same).flat_map(run).collect()
 }
 
-/// Decodes the values that [`runs`] wrote; `None` if they cannot be film and pores of `count` cells, or of none.
+/// Decodes the values that [`runs`] wrote; `None` if they are not valid film and pores of either `count` or 0 cells.
 fn of_runs(bytes: &[u8], count: usize) -> Option<Vec<[f32; 2]>> {
     let (runs, rest) = bytes.as_chunks::<12>();
     let mut top = Vec::new();
@@ -70,9 +70,10 @@ fn of_runs(bytes: &[u8], count: usize) -> Option<Vec<[f32; 2]>> {
     (rest.is_empty() && (top.is_empty() || top.len() == count)).then_some(top)
 }
 
-/// Offset added to places, which lie within 2^30 cells of the origin.
+/// Offset that makes places non-negative: they lie within 2^30 cells of the origin.
 const MIDDLE: i32 = 1 << 30;
 
+/// Returns a place as a word: columns east in the upper 32 bits, rows north in the lower.
 fn word(place: [i32; 2]) -> u64 {
     let [x, y] = place.map(|v| u64::from(v.wrapping_add(MIDDLE) as u32));
     x << 32 | y
@@ -90,7 +91,7 @@ impl SavedTiles {
                 water: tile.begun.then_some(()).as_ref().map(text),
             })
         });
-        // In the order of their first pits, whichever was found first.
+        // Sorts the lakes by their words, so that the order does not depend on the history.
         let mut lakes: Vec<(Vec<u64>, u64)> = water
             .lakes
             .saved()

@@ -1,4 +1,4 @@
-//! Step of the water on all tiles, which may be done in parts.
+//! Step of the water on all tiles, which may take several calls.
 
 use super::{
     drains::Sink,
@@ -41,8 +41,8 @@ pub(crate) struct SteppedTiles {
 }
 
 impl TiledWater {
-    /// Steps the water until the step is complete or the time budget is used up, at least one tile per call. Returns
-    /// `None` while tiles remain.
+    /// Advances the tiles until all have done the step or the time budget is used up, at least one tile per call.
+    /// Returns `None` while tiles remain.
     pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<UpdateBudget>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
         let step = Step::new(now.forcing, now.seconds);
@@ -84,7 +84,7 @@ impl TiledWater {
         let overs = tile.rain.overs(now.world, now.middle_s, now.conditions)?;
         if !tile.begun {
             let water = tile.rain.first_water(&cells, (now.conditions, now.water), &overs, shelters);
-            // The initial water counts as rain.
+            // Counts the initial water as rain.
             part.flows.rain += tile.begin(data, &water);
             part.changes = true;
         }
@@ -116,7 +116,7 @@ impl TiledWater {
             (self.lakes.covered(), (terrain.all().len() * terrain.side() * terrain.side()) as f64);
     }
 
-    /// Collects the run-off of this step by the pits that it reaches.
+    /// Returns the run-off of this step with the pit that each part of it reaches, mm times cells.
     fn gather(&mut self, terrain: &Terrain, flows: &mut Flows) -> Vec<(CellId, f64)> {
         let mut ends: Vec<(Sink, f64)> = Vec::new();
         for slot in self.keys.values() {

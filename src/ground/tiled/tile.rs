@@ -18,9 +18,9 @@ pub(super) struct TileWater {
     pub key: TileKey,
     pub drains: Drains,
     pub rain: GridRain,
-    /// Whether the tile has a state of its own; else the water of level ground lies on it.
+    /// Whether the tile has a state of its own; otherwise the water of level ground lies on it.
     pub begun: bool,
-    /// Film and pores, mm; empty while all cells are dry.
+    /// Water of each cell in its film and in its pores, mm; empty while all cells are dry.
     top: Vec<[f32; 2]>,
     /// Whether anything flows or dries on each run of cells.
     awake: Vec<bool>,
@@ -39,7 +39,7 @@ pub(super) fn cells_of<'a>(terrain: &Terrain, tile: &'a Tile) -> CellGrid<'a> {
     }
 }
 
-/// Rounds down to single precision.
+/// Returns the largest f32 that is not above `v`.
 fn rounded_down(v: f64) -> f32 {
     let near = v as f32;
     if f64::from(near) > v { near.next_down() } else { near }
@@ -61,6 +61,7 @@ impl TileWater {
         }
     }
 
+    /// Returns film and pores of a cell, mm.
     pub fn top(&self, cell: usize) -> [f64; 2] {
         self.top.get(cell).map_or([0.0; 2], |top| top.map(f64::from))
     }
@@ -84,6 +85,7 @@ impl TileWater {
         self.any_awake
     }
 
+    /// Marks the run of a cell as one on which something flows or dries.
     pub fn wake(&mut self, cell: usize) {
         if self.begun {
             (self.awake[cell / RUN], self.any_awake) = (true, true);
@@ -101,6 +103,7 @@ impl TileWater {
         })
     }
 
+    /// Discards the state; the next step begins a new one.
     pub fn begin_anew(&mut self) {
         (self.begun, self.any_awake, self.top) = (false, false, Vec::new());
         self.awake.fill(false);
@@ -155,8 +158,8 @@ impl TileWater {
         on_cells
     }
 
-    /// Steps film and pores, and adds run-off to its sinks. Runs that rest are skipped. `rains`: whether anything falls
-    /// on the tile.
+    /// Advances film and pores by a step, and adds the run-off to the sinks. Runs that are not awake and on which
+    /// nothing falls are skipped. `rains` says whether anything falls on the tile.
     pub fn step(&mut self, tile: &Tile, (slot, lakes): (usize, &Lakes), step: &Step, rains: bool) -> Flows {
         let mut flows = Flows::default();
         if !rains && !self.any_awake {

@@ -51,9 +51,9 @@ pub(crate) struct TiledWater {
     pub(super) lakes: Lakes,
     /// Progress of a step, if only some tiles are done.
     pub(super) part: Option<StepInParts>,
-    /// Unique number of this water, and the number of its changes, except those where the ground changed.
+    /// Unique number of this water, and the number of its changes so far, without those at cells whose ground changed.
     pub(super) version: (u64, u64),
-    /// Number of cells under standing water, as the last step left them.
+    /// Number of cells under standing water after the last step.
     pub(super) covered: f64,
     /// Number of all cells.
     pub(super) cells: f64,
@@ -71,7 +71,8 @@ pub(super) fn pit_below(tiles: &[Option<Box<TileWater>>], terrain: &Terrain, mut
     }
 }
 
-/// Pours water into pits, in the order of their places. Returns the amount that leaves.
+/// Pours water into pits, mm times cells, from the south-west pit on, row by row. Returns the part that leaves the
+/// terrain.
 pub(super) fn pour_all(
     (tiles, lakes): (&[Option<Box<TileWater>>], &mut Lakes),
     terrain: &Terrain,
@@ -155,7 +156,7 @@ impl TiledWater {
         drained + pour_all((&self.tiles, &mut self.lakes), terrain, came)
     }
 
-    /// Removes the lakes that a change touches. Returns the places and amounts of their water.
+    /// Removes the lakes that a change touches. Returns the places of their cells and the water on each, mm.
     fn let_loose(&mut self, terrain: &Terrain, change: &Changed) -> Vec<([i32; 2], f64)> {
         let mut lakes = Vec::new();
         let rect = change.rect.grown(AROUND_LAKES);
@@ -177,7 +178,7 @@ impl TiledWater {
         cells.into_iter().filter_map(place).collect()
     }
 
-    /// Adds and removes tiles as the terrain now has them. Returns the water that left with removed cells.
+    /// Adds and removes tiles to match the terrain. Returns the water that left with removed cells, mm times cells.
     fn follow_tiles(&mut self, terrain: &Terrain, change: &Changed) -> f64 {
         let mut drained = 0.0;
         for key in terrain.keys_within(change.rect) {
@@ -212,7 +213,7 @@ impl TiledWater {
         }
     }
 
-    /// Discards all water; the next step begins with the ground as it is then.
+    /// Discards all water; the next step begins with the water of level, open ground at that time.
     pub fn begin_anew(&mut self) {
         self.lakes = Lakes::default();
         for (slot, tile) in self.tiles.iter_mut().enumerate() {
@@ -252,7 +253,7 @@ impl TiledWater {
         self.lakes.count > 0 || self.tiles.iter().flatten().any(|tile| tile.is_wet())
     }
 
-    /// Returns a number that changes whenever the water changes, except where the ground changed.
+    /// Returns numbers that differ after each change of the water, except a change at cells whose ground changed.
     pub fn version(&self) -> (u64, u64) {
         self.version
     }

@@ -4,7 +4,8 @@ use super::{Hollow, Lake, Lakes, NONE, put};
 use crate::terrain::{CellId, Terrain};
 
 impl Lakes {
-    /// Lowers every lake by `depth_mm`. Returns the amount lost; `bared` receives the cells that fall dry.
+    /// Lowers every lake by `depth_mm`. Returns the water lost, mm times cells; `bared` receives the cells that fall
+    /// dry.
     pub fn sink(&mut self, terrain: &Terrain, depth_mm: f64, bared: &mut Vec<CellId>) -> f64 {
         let all: Vec<u32> = (0..self.lakes.len() as u32).filter(|l| self.lakes[*l as usize].is_some()).collect();
         let (mut gone, mut losing) = (0.0, Vec::new());
@@ -19,7 +20,7 @@ impl Lakes {
     }
 
     /// Takes water from a lake, or from its parts once it has sunk below their saddle. Returns the amount taken from
-    /// the lake itself.
+    /// the lake itself; `losing` receives each part and the amount that it must lose.
     fn lose(
         &mut self,
         terrain: &Terrain,
@@ -97,7 +98,7 @@ impl Lakes {
         let found: f64 = loose[first..].iter().map(|w| w.1).sum();
         match loose[first..].first_mut() {
             Some(w) => w.1 += held - found,
-            // The water is thinner than rounding can show: all of it goes to the pit.
+            // No cell is below the rounded level of so thin a water: all of it goes to the pit.
             None => loose.extend(self.tree(l.hollow).first().and_then(|h| self.pit_of(*h)).map(|pit| (pit, held))),
         }
         self.forget(terrain, lake);

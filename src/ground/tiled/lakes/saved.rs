@@ -3,7 +3,8 @@
 use super::{Lakes, PitBelow};
 use crate::terrain::{CellId, Terrain};
 
-/// Element of a hollow's tree in its saved form, which lists the pits and, after each two trees, that they join.
+/// Element of a hollow's saved tree, a list in postfix order: a pit is a tree of its own, and `Joined` makes one tree
+/// of the two before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LakeBranch {
     Pit(CellId),
@@ -61,7 +62,7 @@ impl Lakes {
         if !(held > 0.0 && more >= 0.0) || self.fill(terrain, lake, more) > 0.0 {
             return false;
         }
-        // Set directly, since adding up would not give the same bits.
+        // Sets the saved volume itself, since sums round.
         let level = self.of(lake).map_or(0.0, |(_, h)| h.level(held).0);
         if let Some(l) = self.lakes[lake as usize].as_mut() {
             (l.held, l.level_mm) = (held, level);
