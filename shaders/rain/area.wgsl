@@ -9,23 +9,24 @@ override OVERLAPS: bool = true;
 // Whether some areas are polygons.
 override POLYGONS: bool = true;
 
-// Column of an area. Axes are camera-relative east, north, up, m.
+// Column of an area: its plan carried up to the cloud along the slant of the falling drops.
 struct Column {
+    // Centre of the plan, east and north of the camera, m.
     center: vec2f,
     // Horizontal displacement of the column per metre of height.
     lean: vec2f,
-    // Direction to the right in the plan, whose axes are right and ahead.
+    // Unit vector (east, north) along the plan's first axis, right; its second axis is ahead.
     right: vec2f,
-    // Semi-axes of an ellipse.
+    // Semi-axes of an ellipse, right and ahead, m.
     semi: vec2f,
-    // Width, inside the border, over which the rain fades out.
+    // Width, inside the border, over which the rain fades out, m.
     rim: f32,
-    // Height at which the plan is given, and height of the cloud.
+    // Height at which the plan is given, and height of the cloud's base, relative to the camera, m.
     ground: f32,
     top: f32,
     // Extinction, 1/m.
     extinction: f32,
-    // Distance that the pattern has fallen, phase offset of its waves, and factor by which it is finer.
+    // Distance that the pattern has fallen, m; phase offset of its waves, rad; factor by which it is finer.
     fallen: f32,
     turn: f32,
     fine: f32,
@@ -35,10 +36,12 @@ struct Column {
     corners: u32,
     // Later columns that may overlap it: bit `j` is set for column `j`.
     later: u32,
+    // Radius of a circle around the plan, m.
     radius: f32,
-    // Depth below the cloud over which the rain sets in.
+    // Depth below the cloud over which the rain sets in, m.
     soft: f32,
-    // Sides: inward normal, offset. The depth inside a side is normal . p + offset.
+    // Sides of a polygon. x, y: inward unit normal. z: offset, m. A point p of the plan is dot(normal, p) + offset
+    // inside a side.
     edges: array<vec4f, MAX_CORNERS>,
 }
 
@@ -49,7 +52,8 @@ struct Columns {
 
 @group(0) @binding(7) var<uniform> columns: Columns;
 
-// Number of columns, masked as light_count in lights_binding.wgsl does.
+// Returns the number of columns, masked to the bits that its maximum needs, so that each loop ends whatever the block
+// holds.
 fn column_count() -> u32 {
     return columns.count & 31u;
 }
@@ -60,7 +64,7 @@ fn column_turned(i: u32, v: vec2f) -> vec2f {
     return vec2f(dot(v, right), dot(v, vec2f(-right.y, right.x)));
 }
 
-// Returns the position in the plan of a camera-relative place.
+// Returns the position (right, ahead) of a camera-relative place in the plan, m from its centre.
 fn column_plan(i: u32, p: vec3f) -> vec2f {
     let away = p.xy - columns.list[i].center - columns.list[i].lean * (p.z - columns.list[i].ground);
     return column_turned(i, away);

@@ -24,7 +24,7 @@ override INNERMOST: bool = true;
 // Whether one set of streaks is replacing another.
 override GROWING: bool = true;
 
-// Direction in the cones' coordinates.
+// View direction in the cones' coordinates.
 struct OnCone {
     // Azimuth about the axis in turns; Mercator's latitude.
     turn: f32,
@@ -32,7 +32,7 @@ struct OnCone {
     // Square of the sine of the angle from the axis; minus the binary logarithm of that sine.
     square: f32,
     halvings: f32,
-    // Number of times that the tiles about the axis are halved, and the share of tiles that is left.
+    // Number of times that the tiles about the axis are halved here, and the share of them that is left.
     octave: f32,
     left: f32,
 }
@@ -40,13 +40,14 @@ struct OnCone {
 // Number of sectors about the axis. In each the tiles are halved at another angle from the axis.
 const COLUMNS: f32 = 512.0;
 
+// Returns the coordinates of the view direction `d`.
 fn on_cone(d: vec3f) -> OnCone {
     let c = dot(d, cones.axis);
     let across = vec2f(dot(d, cones.east), dot(d, cones.north));
     let square = max(dot(across, across), 1e-8);
     let halvings = -0.5 * log2(square);
     let latitude = -0.6931472 * (halvings + log2(1.0 + abs(c)));
-    // At the axis itself any azimuth will do.
+    // Avoids atan2(0, 0) at the axis itself, where the azimuth does not matter.
     let turn = 0.15915494 * atan2(across.y, select(across.x, 1e-4, square <= 1e-8));
     // Each halving of the sine halves the tiles. The exact angle differs from sector to sector, so that no ring shows.
     let whole = floor(halvings);
@@ -69,6 +70,7 @@ struct Look {
     number: f32,
 }
 
+// Returns the look-up for a cone with these rows of `shapes` and `looks`.
 fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     let tiles = max(round(shape.x * at.left), 1.0);
     // With one tile left, texels become smaller than pixels. Coarser levels keep them from aliasing.
@@ -79,13 +81,12 @@ fn look_at(at: OnCone, shape: vec4f, detail: vec4f) -> Look {
     return Look(uv, along, max(level, 0.0), shape.z * at.square * 6.2831853 / (along * tiles));
 }
 
-// Returns the ratio of a set's optical depth here to its mean. `moved` has the set's motion, share and offset, as in
-// `ConeUniform`.
+// Returns the ratio of a set's optical depth here to its mean. `moved` is the set's row of `sets` in `ConeUniform`.
 fn pattern(look: Look, moved: vec4f) -> f32 {
     let uv = look.uv + vec2f(moved.z, moved.x * look.along + moved.w);
     let seen = textureSampleLevel(streaks, streaks_sampler, uv, look.level);
-    // Products with inverses of constants: software drivers do not turn a division by a constant into a product.
-    // As many streaks are shown as there are drops, but never so few that single streaks stand out near the ends of the
+    // Multiplies by inverses of constants: software drivers do not turn a division by a constant into a product. As
+    // many streaks are shown as there are drops, but never so few that single streaks stand out near the ends of the
     // axis.
     let wanted = look.number * moved.y;
     let before = vec4f(0.0, STREAKS.x, STREAKS.x + STREAKS.y, ALL_STREAKS - STREAKS.w);
@@ -106,7 +107,8 @@ fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
     return dot(sure * seen + (open - sure) * max(2.0 * seen - 1.0, vec4f(0.0)), vec4f(0.25));
 }
 
-// Returns the open share of a band. The outermost band consists of two stretches of equal length.
+// Returns the share of a band that rain reaches and that lies nearer than `range`. The outermost band consists of two
+// stretches of equal length.
 fn open_band(uv: vec2f, j: u32, range: f32) -> f32 {
     if !SHELTERED {
         let band = cones.bands[j];
@@ -130,7 +132,8 @@ fn rain_on_cone(at: OnCone, d: vec3f, uv: vec2f, j: u32, moved: vec4f, range: f3
     return fall * open_band(uv, j, range) * cones.bands[j].w * moved.y * pattern(look, moved);
 }
 
-// Adds cone `j`, of optical depth `hidden`, behind the nearer cones in `seen`: premultiplied light, and opacity.
+// Adds cone `j`, of optical depth `hidden`, behind the nearer cones in `seen`. Returns premultiplied light, and
+// opacity.
 fn before_others(d: vec3f, day: vec3f, j: u32, hidden: f32, seen: vec4f) -> vec4f {
     let cover = (1.0 - exp(-hidden)) * cones.looks[j].x;
     // A lamp at the eye lights the band as it would light its geometric middle: this is the mean over the band.

@@ -1,4 +1,5 @@
-// Finds and counts the slots of splashes whose vertical line may be in the picture: only these are drawn.
+// Finds and counts the slots of splashes whose vertical line (through the landing's east and north) may be in the
+// picture. Only these are drawn.
 //!include "rain/splash.wgsl"
 //!include "falling/order.wgsl"
 

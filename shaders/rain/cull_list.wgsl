@@ -7,11 +7,12 @@
 override STEPPED: bool = false;
 
 @group(1) @binding(1) var<storage, read_write> streaks: array<Streak>;
-// Per shell: place of the camera in its cell, and index of the shell's first drop in `states`, which has the stepped
-// drops.
+// For stepped drops, per shell: place of the camera in its cell, in 2^-32 of the cell's side (x, y, z), and index of
+// the shell's first drop in `states` (w).
 @group(3) @binding(0) var<uniform> eyes: array<vec4u, SHELLS>;
 @group(3) @binding(1) var<storage, read> states: array<State>;
 
+// Drop and its velocity, m/s.
 struct Moving {
     drop: Drop,
     velocity: vec3f,
@@ -25,6 +26,7 @@ fn shell_drops() -> u32 {
     return rain.per_shell;
 }
 
+// Returns the number of blocks of the list in each shell.
 fn shell_blocks() -> u32 {
     return blocks_of(rain.per_shell);
 }

@@ -14,6 +14,6 @@ fn make_streaks(@builtin(global_invocation_id) id: vec3u) {
     let of_shell = 32u * WORDS * shell_blocks();
     let index = thing % of_shell;
     let m = moving(class_in_shell(thing / of_shell, class_of(index)), index);
-    // The share may be 0 where a rim of a rain area thins the drops.
+    // Tests the share again: it may be 0 where a rim of a rain area thins the drops.
     streaks[id.x] = streak_of(m.drop, m.velocity, m.drop.share > 0.0);
 }

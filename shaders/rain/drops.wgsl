@@ -1,4 +1,4 @@
-// Drops without a state: the place of each follows from (seed, id, time), and one quad draws its streak.
+// Drops without a state: the place of each drop is a function of (seed, id, time), and one quad draws its streak.
 // src/rain/lattice.rs has the f64 twin and the derivation.
 //!include "common/depth.wgsl"
 //!include "surroundings/lights_binding.wgsl"
@@ -18,17 +18,17 @@ struct RainUniform {
     depth: DepthUniform,
     // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
-    // Velocity of the air, m/s.
+    // Velocity of the air, (east, north, up), m/s.
     wind: vec3f,
     // Exposure time of the picture, s.
     exposure: f32,
-    // Mean radiance above and below the horizon that a drop transmits, display units per channel.
+    // Mean radiance of the surroundings above the horizon (`above`) and below it (`below`), display units per channel.
     above: vec3f,
     // Number of drops in one shell.
     per_shell: u32,
     below: vec3f,
     seed: u32,
-    // Irradiance of the sun or moon, display units.
+    // Irradiance of the sun or moon (`sun`), display units, and the unit vector towards it (`to_sun`).
     sun: vec3f,
     // Angle of a pixel, rad.
     pixel_angle: f32,
@@ -43,16 +43,17 @@ struct RainUniform {
     shells: u32,
     // Contrast gain: factor by which rain stands out more than in nature; 1 is as in nature.
     gain: f32,
-    // Velocity of the camera, m/s.
+    // Velocity of the camera, (east, north, up), m/s.
     camera: vec3f,
     pad2: f32,
-    // Per shell. x, y, z: place of the camera in the cell that moves with the air; w: distance fallen at a speed of one
-    // unit. Both are in 2^-32 of the cell's side.
+    // Per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that moves with the air. w:
+    // distance that a drop with a speed of one unit has fallen.
     cell: array<vec4u, SHELLS>,
-    // Per shell. x: side of the cell, m. y: distance at which it begins to take over from the smaller shell; w:
-    // distance at which it has taken over. z: distance at which it begins to fade out.
+    // Per shell, m. x: side of the cell. y and w: distances at which it begins to fade in and is in full, while the
+    // smaller shell fades out. z: distance at which it begins to fade out.
     shell: array<vec4f, SHELLS>,
-    // Per class: diameter, m; fall speed, speed units; number of drops of the classes up to this one.
+    // Per class. x: diameter, m. y: fall speed, SPEED_UNIT. z: number of drops in a shell of the classes up to this
+    // one.
     classes: array<vec4f, CLASSES>,
 }
 
@@ -70,12 +71,13 @@ struct Drop {
     position: vec3f,
     diameter: f32,
     speed: f32,
-    // Share of the drop that its shell shows.
+    // Share of the drop that its shell shows at its distance, 0 to 1.
     share: f32,
     // Number of drops that it stands for.
     weight: f32,
 }
 
+// Returns the class of drop `index` of a shell.
 fn class_of(index: u32) -> u32 {
     var low = 0u;
     for (var step = CLASSES / 2u; step > 0u; step /= 2u) {
@@ -88,7 +90,7 @@ fn class_of(index: u32) -> u32 {
 struct ClassInShell {
     s: u32,
     k: u32,
-    // Numbers of its first drop in the shell, and of the one after its last.
+    // Index of its first drop in the shell, and of the drop after its last.
     first: u32,
     end: u32,
     diameter: f32,
@@ -98,6 +100,7 @@ struct ClassInShell {
     shell: vec4f,
 }
 
+// Returns the properties of class `k` in shell `s`.
 fn class_in_shell(s: u32, k: u32) -> ClassInShell {
     let size = rain.classes[k];
     let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
@@ -110,7 +113,8 @@ fn drop_of(in_shell: ClassInShell, index: u32) -> Drop {
     return drop_at(in_shell, index, place - vec3u(0u, 0u, in_shell.speed * in_shell.cell.w) - in_shell.cell.xyz);
 }
 
-// Returns drop `index` of its shell at `away_units` from the camera, in 2^-32 of the cell's side.
+// Returns drop `index` of its shell, whose position relative to the camera is `away_units`, in 2^-32 of the cell's
+// side.
 fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
     let shell = in_shell.shell;
     let p = vec3f(bitcast<vec3i>(away_units)) * (shell.x / 4294967296.0);
@@ -125,7 +129,7 @@ fn drop_at(in_shell: ClassInShell, index: u32, away_units: vec3u) -> Drop {
     return Drop(p, in_shell.diameter, f32(in_shell.speed) * SPEED_UNIT, share, here.y * f32(1u << in_shell.s));
 }
 
-// Returns the radiance of a drop seen along `d`, without lamps. The drop shows most of the half space behind it, small
+// Returns the radiance of a drop seen along `d`, without lamps: the image of most of the half space behind it, small
 // and upside down, and the sunlight that passes through it.
 fn day_light(d: vec3f) -> vec3f {
     return mix(rain.below, rain.above, sky_share(d.z)) + rain.sun * (drop_phase(dot(d, rain.to_sun)) * 0.07957747);
@@ -142,6 +146,7 @@ fn lamp_light(p: vec3f, d: vec3f) -> vec3f {
     return beams * 0.07957747;
 }
 
+// Returns the radiance of a drop at `p` seen along `d`.
 fn drop_light(p: vec3f, d: vec3f) -> vec3f {
     return day_light(d) + lamp_light(p, d);
 }
@@ -157,7 +162,7 @@ struct RainVarying {
     @location(2) at: vec3f,
 }
 
-// Whether a line between two points, some pixels wide, can be in the picture.
+// Returns whether a line between two points, some pixels wide, can be in the picture.
 fn in_picture(a: vec3f, b: vec3f) -> bool {
     let first = rain.clip * vec4f(a, 1.0);
     let last = rain.clip * vec4f(b, 1.0);
@@ -167,12 +172,13 @@ fn in_picture(a: vec3f, b: vec3f) -> bool {
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// Returns `part_drawn` for a drop with a `velocity`.
+// Returns the result of `part_drawn` (common/streak.wgsl) for a drop with a `velocity`: half of its drawn path during
+// the exposure, m, and the factor for its cover.
 fn drop_part(drop: Drop, velocity: vec3f) -> vec4f {
     return part_drawn((velocity - rain.camera) * (0.5 * rain.exposure), max(length(drop.position), 1e-3));
 }
 
-// Whether a drop with a `velocity` can be in the picture if it is not sheltered.
+// Returns whether a drop with a `velocity` can be in the picture if it is not sheltered.
 fn may_show(drop: Drop, velocity: vec3f) -> bool {
     let half = drop_part(drop, velocity).xyz;
     return drop.share > 0.0 && in_picture(drop.position - half, drop.position + half);
@@ -190,7 +196,7 @@ struct Streak {
     light: vec4f,
 }
 
-// Returns `cover` raised by the contrast gain: the cover of `gain` such streaks, one in front of the other.
+// Returns the cover c raised by the contrast gain g: 1 - (1 - c)^g.
 fn gained(cover: f32) -> f32 {
     let most = min(cover, 1.0);
     return select(1.0 - pow(1.0 - most, rain.gain), most, rain.gain == 1.0);
@@ -207,7 +213,7 @@ fn streak_of(drop: Drop, velocity: vec3f, shows: bool) -> Streak {
     let toward = drop.position / d;
     let width = max(drop.diameter, max(rain.pixel_angle * d * LEAST_PIXELS, 1e-6));
     let stretch = max(length(half - toward * dot(half, toward)), 1e-6);
-    // A drop that is drawn wider than it is has a lower opacity in proportion.
+    // Lowers the opacity of a drop that is drawn wider than it is, in proportion.
     let thin = drop.diameter / width;
     let most = thin * thin * drop.weight * longest_passing(reach_of(stretch, 0.5 * width));
     let cover = gained(most) * (drop.share * part.w);

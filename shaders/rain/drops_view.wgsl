@@ -6,6 +6,7 @@
 
 override HAS_DEPTH: bool = true;
 
+// Returns the host's depth in the texel at `uv`.
 fn depth_at(uv: vec2f) -> f32 {
     let size = vec2f(textureDimensions(host_depth));
     return textureLoad(host_depth, vec2i(clamp(uv * size, vec2f(0.0), size - 1.0)), 0).r;
@@ -21,7 +22,7 @@ fn ground_below(landing: Landing, z: f32) -> vec4f {
     return look.surface;
 }
 
-// Returns the crown of a slot.
+// Returns the crown of a slot; an empty one if no surface is found below the landing.
 fn splashed(slot: u32) -> Crown {
     let arrival = arrival_of(slot);
     let surface = ground_below(arrival.landing, splash.ground);
@@ -43,7 +44,7 @@ fn splash_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) sl
     return crown_corner(splashed(slot), corner);
 }
 
-// Returns the depth of the host's picture at a pixel, as view_depth measures it.
+// Returns the depth of the host's picture at a pixel, in the measure of view_depth.
 fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
         let ndc = ndc_of(position.xy / vec2f(textureDimensions(host_depth)));

@@ -2,18 +2,19 @@
 // each nearby area (src/rain/local.rs).
 //!include "rain/area.wgsl"
 
-// Numbers for the weather and 16 areas, in groups of four.
+// Number of vectors of four for the weather and 16 areas.
 const LOCAL_ROWS: u32 = 5u;
+// Number of these vectors for all 32 classes.
 const LOCAL_COUNTS: u32 = 160u;
 
 struct Local {
-    // Per class: number of drops of the weather, then of each column.
+    // Per class: number of drops in a shell of the weather, then of each column.
     counts: array<vec4f, LOCAL_COUNTS>,
-    // Number of drops that each drawn drop stands for.
+    // Number of drops that each drawn drop of the innermost shell stands for: of the weather, then of each column.
     weights: array<vec4f, LOCAL_ROWS>,
-    // Share of the splashes' slots that are taken.
+    // Share of the splashes' slots that are taken: by the weather, then by each column.
     splashes: array<vec4f, LOCAL_ROWS>,
-    // Extinction relative to that of the rain for which the cones' block is made.
+    // Extinction of the weather, then of each column, relative to that of the rain for which the cones' block is made.
     cones: array<vec4f, LOCAL_ROWS>,
 }
 
@@ -44,7 +45,7 @@ fn local_splashes(p: vec3f) -> f32 {
     return taken;
 }
 
-// Returns the rain at a place relative to that for which the cones' block is made.
+// Returns the extinction of the rain at a place, relative to that of the rain for which the cones' block is made.
 fn local_cones(p: vec3f) -> f32 {
     var fall = local.cones[0].x;
     for (var i = 0u; i < column_count(); i++) {

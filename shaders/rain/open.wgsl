@@ -1,6 +1,6 @@
-// Tests for the cones where shelters keep rain off, on a coarse grid over the picture. Whether rain reaches a place on
-// a ray depends only on the ray and the distance, not on the host's picture. The cones can therefore interpolate
-// between the grid's rays up to any depth (rain/cones.wgsl).
+// Tests of the places along rays to which shelters let rain pass, for the cones, on a coarse grid over the picture.
+// Whether rain reaches a place on a ray depends only on the ray and the distance, not on the host's picture. The cones
+// can therefore interpolate between the grid's rays up to any depth (rain/cones.wgsl).
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"

@@ -1,8 +1,8 @@
 // Light that drops scatter from a beam.
 //!include "common/phase.wgsl"
 
-// Returns the phase function of a drop, whose integral is 4 pi. `c` is the cosine of the scattering angle: 1 for light
-// from straight behind the drop. Twin of `phase` in src/rain/light.rs.
+// Returns the phase function of a drop, whose integral over all directions is 4 pi. `c` is the cosine of the scattering
+// angle: 1 for light from straight behind the drop. Twin of `phase` in src/rain/light.rs.
 fn drop_phase(c: f32) -> f32 {
     return 0.93 * henyey(0.9, c) + 0.07 * henyey(-0.35, c);
 }

@@ -1,20 +1,23 @@
 // Columns of rain seen from afar: one quad over each, blended as a veil in front of the picture. src/rain/shaft.rs has
-// the f64 twin of the optical depth along a ray. The entry point, which reads the depth, is in
+// the f64 twin of the optical depth along a ray. The fragment entry point, which reads the depth, is in
 // shaft_view.wgsl.
 //!include "between/veil.wgsl"
 //!include "between/bow.wgsl"
 //!include "rain/area.wgsl"
 //!include "rain/phase.wgsl"
 
+// Number of waves of the pattern of curtains.
 const SHAFT_WAVES: u32 = 12u;
-// Twins of the constants of src/rain/shaft.rs and src/falling/curtain.rs.
+// Amplitude of each wave of the pattern, and distances, m, over which the pattern fades in. Twins of AMOUNT and
+// PATTERN_M in src/falling/curtain.rs.
 const PATTERN_AMOUNT: f32 = 0.2;
 const PATTERN_FIRST: f32 = 30.0;
 const PATTERN_FULL: f32 = 300.0;
+// Depth of the columns below the level of their plan, m. Twin of BELOW_M in src/rain/shaft.rs.
 const BELOW: f32 = 1000.0;
 // Distance into a dense column from which most of its light comes, m.
 const FRONT: f32 = 500.0;
-// Share of that light that varies with the curtains.
+// Share of the light of a column that varies with the pattern of its front.
 const FRONT_SHARE: f32 = 0.3;
 
 struct ShaftUniform {
@@ -26,16 +29,17 @@ struct ShaftUniform {
     // Top of the weather's own rain, camera-relative, m, and the depth below it over which the rain sets in
     // (`own_soft`).
     own_top: f32,
-    // Illuminance of sun or moon, lux.
+    // Illuminance of sun or moon (`sun`), lux, and the unit vector towards it (`to_sun`).
     sun: vec3f,
     own_soft: f32,
     to_sun: vec3f,
     // Extinction of the weather's own drops that are drawn near the camera, 1/m.
     own_near: f32,
-    // Columns from far to near, and the rectangles of the picture that contain them, ndc.
+    // Indices of the drawn columns from far to near, four to a vector.
     order: array<vec4u, 4>,
+    // Rectangles of the picture that contain them, in the same order: left, bottom, right, top, ndc.
     rects: array<vec4f, MAX_AREAS>,
-    // Wave numbers and phases of the pattern.
+    // Waves of the pattern. x, y, z: wave numbers to the right, ahead and up, 1/m. w: phase, rad.
     waves: array<vec4f, SHAFT_WAVES>,
 }
 
@@ -47,11 +51,14 @@ struct ShaftVarying {
     @location(1) ndc: vec2f,
 }
 
+// Part of a ray inside a column.
 struct Met {
+    // Optical depth that the column adds.
     depth: f32,
+    // Distances along the ray of its ends, m.
     first: f32,
     last: f32,
-    // Mean pattern of the column's front.
+    // Mean of the pattern over the column's front, relative to its mean over all places.
     front: f32,
 }
 
@@ -63,8 +70,8 @@ fn shaft_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) ins
     return ShaftVarying(vec4f(at.x, at.y * frame.y_sign, 0.0, 1.0), column, at);
 }
 
-// Returns the interval of a ray in which its plan is at least `inset` inside the outline; last < first if there is
-// none.
+// Returns the interval of t in which the point q + u t of the plan is at least `inset` m inside the outline, (first,
+// last): a ray's position in the plan at the distance t. last < first if there is none.
 fn column_chord(i: u32, q: vec2f, u: vec2f, inset: f32) -> vec2f {
     let inner = columns.list[i].semi - inset;
     let e = q / max(inner, vec2f(1.0));
@@ -89,6 +96,7 @@ fn column_chord(i: u32, q: vec2f, u: vec2f, inset: f32) -> vec2f {
     return chord;
 }
 
+// Returns the integral from the height `z` upwards of a ramp that is 0 above `top` and 1 below `top - soft`, m.
 fn ramp_below(top: f32, soft: f32, z: f32) -> f32 {
     let y = (top - z) / soft;
     let x = clamp(y, 0.0, 1.0);
@@ -102,7 +110,8 @@ fn ramp_mean(top: f32, soft: f32, a: f32, b: f32) -> f32 {
     return select((ramp_below(top, soft, a) - ramp_below(top, soft, b)) / select(b - a, 1.0, flat), level, flat);
 }
 
-// Returns the mean of the pattern between two distances along the ray.
+// Returns the mean of the pattern between the distances `a` and `b` along a ray whose position in the plan is q + u t
+// and whose height is z + dz t.
 fn column_pattern(i: u32, q: vec2f, u: vec2f, z: f32, dz: f32, a: f32, b: f32) -> f32 {
     let middle = 0.5 * (a + b);
     let half = 0.5 * (b - a);
@@ -119,8 +128,8 @@ fn column_pattern(i: u32, q: vec2f, u: vec2f, z: f32, dz: f32, a: f32, b: f32) -
     return max(1.0 + PATTERN_AMOUNT * smoothstep(PATTERN_FIRST, PATTERN_FULL, middle) * sum, 0.0);
 }
 
-// Returns two means over a piece of the ray, by four Gauss points: the column's share, and the same times the share of
-// its rain that has left the cloud.
+// Returns two means over the piece of the ray from `a` to `b`, by four Gauss points: of the column's share, and of this
+// share times the share of its rain that has left the cloud.
 fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     let x = vec4f(0.06943184, 0.33000948, 0.66999052, 0.93056816) * (b - a) + a;
     let weights = vec4f(0.17392742, 0.32607258, 0.32607258, 0.17392742);
@@ -134,8 +143,7 @@ fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     return vec2f(dot(share, vec4f(1.0)), dot(share, begun));
 }
 
-// Returns the part of a ray inside a column up to `range`: the optical depth that the column adds there, and the ends
-// of the part; last <= first if there is none.
+// Returns the part of a ray inside a column up to `range`; last <= first if there is none.
 fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let lean = columns.list[i].lean;
     let ground = columns.list[i].ground;
@@ -145,7 +153,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let chord = column_chord(i, q, u, 0.0);
     let up = select(d.z, select(-1e-6, 1e-6, d.z >= 0.0), abs(d.z) < 1e-6);
     let a = (ground - BELOW - origin.z) / up;
-    // The higher of the two clouds: above its own cloud the column still replaces the weather's rain.
+    // Takes the higher of the two clouds: above its own cloud the column still replaces the weather's rain.
     let b = (max(top, shaft.own_top) - origin.z) / up;
     var end = min(min(range, max(a, b)), chord.y);
     if range >= RANGE_SKY && d.z < 0.0 && origin.z > ground {
@@ -175,7 +183,7 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
         fell += (e - s) * mean.y;
         s = e;
     }
-    // Pattern of the front of the column, which shows most, and of the rest.
+    // Applies the pattern of the column's front, which is most visible, and of the rest.
     let cut = min(begin + FRONT, end);
     let front = column_pattern(i, q, u, origin.z, d.z, begin, cut);
     let rest = column_pattern(i, q, u, origin.z, d.z, cut, end);
@@ -185,15 +193,15 @@ fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
         own += low_air.fog.falling.x * curtain_mean(origin, d, begin, end).x;
     }
     var depth = columns.list[i].extinction * fell - own * shared_own;
-    // The part of the extinction that is drawn as drops near the eye is subtracted.
+    // Subtracts the part of the extinction that is drawn as drops near the eye.
     let near = min(range, frame.drops.y);
     depth -= (columns.list[i].near - shaft.own_near) * near * column_left(i, origin + d * (0.5 * near));
     return Met(depth, begin, end, front);
 }
 
-// Returns the radiance that a column's rain sends along `d` from a place, cd/m^2. Drops show most of the half space
-// behind them, whose upper part their own cloud hides. They scatter the light of sun or moon that comes in below the
-// cloud.
+// Returns the radiance that a column's rain sends along `d` from a place, cd/m^2. Drops show the image of most of the
+// half space behind them; their own cloud hides part of the sky. They also scatter the light of sun or moon that comes
+// in below the cloud.
 fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     let top = columns.list[i].top;
     let radius = columns.list[i].radius;
@@ -210,7 +218,7 @@ fn column_light(i: u32, p: vec3f, d: vec3f) -> vec3f {
     return around + beam * max(phase, vec3f(0.0));
 }
 
-// Returns the veil of a column in front of the pixel at `ndc`, premultiplied, in the units of the drops.
+// Returns the veil of a column in front of the pixel at `ndc`: premultiplied light, display units, and opacity.
 fn shaft_veil(i: u32, pixel: vec2i, ndc: vec2f, range: f32) -> vec4f {
     drawn = frame.drawn;
     let ray = view_ray(frame.depth, ndc);

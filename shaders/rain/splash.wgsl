@@ -18,12 +18,12 @@ struct SplashUniform {
     // Number of slots in a cell; number of cells along one side of the square around the camera.
     slots: u32,
     cells: u32,
-    // Number of times that `life` has passed since time 0, and the part since.
+    // Time since time 0 in units of `life`: its whole part (`tick`) and its fraction (`part`).
     tick: u32,
     part: f32,
-    // Chance that a slot is taken.
+    // Chance that a slot is taken on level ground.
     share: f32,
-    // Height at which the search for the ground starts, camera-relative, m.
+    // Height at which the search for the ground starts, relative to the camera, m.
     ground: f32,
     // Distance at which splashes have faded out, m.
     reach: f32,
@@ -45,7 +45,7 @@ struct Landing {
     xy: vec2f,
     // Age, from 0 to 1 over the splash's lifetime.
     age: f32,
-    // Share of the splash that is drawn at its distance; 0 if there is none.
+    // Share of the splash that is drawn at its distance, 0 to 1; 0 if there is no splash.
     fade: f32,
 }
 
@@ -91,6 +91,7 @@ fn seen_at(p: vec3f) -> vec3f {
     return vec3f(ndc, select(0.0, 1.0, clip.w > 0.0 && max(abs(ndc.x), abs(ndc.y)) < 1.0));
 }
 
+// Returns the texture coordinates of a place in the picture given in ndc.
 fn uv_of(ndc: vec2f) -> vec2f {
     return vec2f(ndc.x * 0.5 + 0.5, 0.5 - 0.5 * ndc.y * rain.y_sign);
 }
@@ -100,7 +101,8 @@ fn surface_of(ndc: vec2f, depth: f32) -> vec3f {
     return view_point(rain.depth, min(view_depth(rain.depth, depth, ndc), 1e5), ndc);
 }
 
-// Whether the visible surface is at the landing's own place. The search then ends: the picture shows the ground there.
+// Returns whether the visible surface is at the landing's own place. The search then ends: the picture shows the ground
+// there.
 fn is_found(landing: Landing, surface: vec3f) -> bool {
     return length(surface.xy - landing.xy) < 0.03 + 0.01 * length(surface);
 }
@@ -111,7 +113,7 @@ struct Search {
     // Bounds of the height, m.
     low: f32,
     high: f32,
-    // Height of the previous read, and the gap there.
+    // Height of the previous read, m, and the gap there (`gap_of`).
     before: vec2f,
     // Gaps at `low` and `high`; 0 where none has been computed.
     ends: vec2f,
@@ -122,7 +124,7 @@ struct Search {
 fn search_from(landing: Landing, z: f32) -> Search {
     let foot = rain.clip * vec4f(landing.xy, 0.0, 1.0);
     let up = rain.clip * vec4f(0.0, 0.0, 1.0, 0.0);
-    // A place is between the picture's edges where all four are above 0.
+    // A point at the height z on the line is in the picture if at + rise z is above 0 for all four edges.
     let at = vec4f(foot.w - foot.x, foot.w + foot.x, foot.w - foot.y, foot.w + foot.y);
     let rise = vec4f(up.w - up.x, up.w + up.x, up.w - up.y, up.w + up.y);
     let some = select(rise, vec4f(1e-7), abs(rise) < vec4f(1e-7));
@@ -132,13 +134,13 @@ fn search_from(landing: Landing, z: f32) -> Search {
     let low = max(max(lows.x, lows.y), max(lows.z, lows.w)) + 1e-3;
     let high = min(min(highs.x, highs.y), min(highs.z, highs.w)) - 1e-3;
     let begin = clamp(z, low, max(low, high));
-    // The gap of a level plane at this depth below the eye would be -1 at the eye's height.
+    // Starts with the gap of a level plane at this depth below the eye: -1 at the eye's height, 0 at the plane.
     let eye = clamp(-splash.ground, 0.5, 10.0);
     return Search(begin, low, select(-1e9, high, landing.fade > 0.0), vec2f(begin + eye, 1e9), vec2f(0.0));
 }
 
-// Returns how far a point lies beyond the visible surface on its ray, relative to the range of the surface. Along a
-// vertical line in front of a plane, the gap is linear in the point's height, whatever the slope.
+// Returns the gap of a point: how far it lies beyond the visible surface on its ray, relative to the range of the
+// surface. Along a vertical line in front of a plane, the gap is linear in the point's height, whatever the slope.
 fn gap_of(p: vec3f, ndc: vec2f, surface: vec3f) -> f32 {
     let ray = view_ray(rain.depth, ndc);
     return dot(p - ray.origin, ray.direction) / max(dot(surface - ray.origin, ray.direction), 1e-3) - 1.0;
@@ -163,12 +165,14 @@ fn closer(search: Search, gap: f32) -> Search {
     return Search(select(0.5 * (low + high), z, z > low && z < high && !flat), low, high, vec2f(search.z, gap), ends);
 }
 
-// Search, and the visible surface at its last read; w is 1 if that is at the landing's own place.
+// Search for the ground below a landing.
 struct Look {
     search: Search,
+    // Visible surface at the last read, camera-relative, m; w is 1 if it is at the landing's own place.
     surface: vec4f,
 }
 
+// Returns whether another read is needed.
 fn is_wanted(look: Look) -> bool {
     return look.surface.w == 0.0 && look.search.low < look.search.high;
 }
@@ -190,6 +194,7 @@ fn pixel_of(p: vec3f, size: vec2f) -> vec2f {
     return (floor(uv_of(seen_at(p).xy) * size) + 0.5) / size;
 }
 
+// Returns the ndc of texture coordinates.
 fn ndc_of(uv: vec2f) -> vec2f {
     return vec2f(uv.x * 2.0 - 1.0, (1.0 - uv.y * 2.0) * rain.y_sign);
 }
@@ -247,7 +252,7 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let d = max(length(at), 1e-3);
     let along = abs(dot(at, normal)) / d;
     let full = vec2f(2.0 + 5.0 * age, 20.0 * age * (1.0 - age) + 0.5) * arrival.diameter;
-    // Seen from the side the crown is a wall, from above a ring.
+    // Computes the drawn size: seen from the side the crown is a wall, from above a ring.
     let shown = vec2f(full.x, full.y * sqrt(max(1.0 - along * along, 0.0)) + full.x * along);
     let size = max(shown, vec2f(rain.pixel_angle * d * LEAST_PIXELS));
     // The water of the crown is a thin sheet with droplets: it covers a third of the quad.
@@ -268,6 +273,7 @@ struct CrownVarying {
     @location(3) @interpolate(flat) chance: vec2f,
 }
 
+// Returns a corner of a crown's quad: bit 1 of `corner` selects the top, bit 0 the side.
 fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     let d = max(length(crown.at), 1e-3);
     let toward = crown.at / d;
@@ -282,7 +288,7 @@ fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
     let chance = vec2f(random3(vec3u(crown.slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
-    // Slightly nearer than its foot, which stands on the visible surface.
+    // Takes a depth slightly nearer than that of its foot, which stands on the visible surface.
     let depth = depth_of(rain.depth, (rain.clip * vec4f(crown.at, 1.0)).w, d, 0.2);
     return CrownVarying(position, crown.light, vec3f(depth, crown.age), vec2f(side, top), chance);
 }

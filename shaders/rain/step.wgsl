@@ -1,4 +1,4 @@
-// Steps the drops by one frame.
+// Advances the drops by one frame.
 //!include "rain/drops.wgsl"
 //!include "falling/step.wgsl"
 
@@ -16,7 +16,7 @@ fn step_drops(@builtin(global_invocation_id) id: vec3u) {
         states[slot] = stepped(states[slot], s, index, terminal);
         return;
     }
-    // New drops start at their places in the lattice.
+    // Starts new drops at their places in the lattice.
     let first = select(0u, u32(rain.classes[max(k, 1u) - 1u].z), k > 0u);
     let start = random3(vec3u(rain.seed, (s << 8u) | k, index - first));
     let away = start - vec3u(0u, 0u, u32(rain.classes[k].y) * rain.cell[s].w) - rain.cell[s].xyz;

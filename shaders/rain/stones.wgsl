@@ -1,5 +1,5 @@
 // Stones of ice (hail and ice pellets), falling in a lattice like the drops' and hopping where they land. The place of
-// each follows from (seed, id, time). src/rain/stones.rs has their numbers. The entry points read the depth:
+// each stone is a function of (seed, id, time). src/rain/stones.rs has their numbers. The entry points read the depth:
 // stones_view.wgsl.
 //!include "common/guarded.wgsl"
 //!include "rain/splash.wgsl"
@@ -9,26 +9,30 @@ const STONE_CLASSES: u32 = 16u;
 const STONE_SHELLS: u32 = 4u;
 
 struct StoneUniform {
-    // The stones' own lattice, in the layout of `cell` and `shell` of `RainUniform`, but for
-    // the w of `shells`, which is 0.
+    // Lattice of the stones, per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that
+    // moves with the air. w: distance that a stone with a speed of one unit has fallen.
     air: array<vec4u, STONE_SHELLS>,
+    // Per shell, m. x: side of the cell. y: distance at which it begins to fade in. z: distance at which it begins to
+    // fade out.
     shells: array<vec4f, STONE_SHELLS>,
-    // Number of the first stone of each shell.
+    // Index of the first stone of each shell.
     first: vec4u,
     // Per class and shell: number of stones of the classes up to this one.
     upto: array<vec4u, STONE_CLASSES>,
-    // Per class: diameter, m; fall speed, speed units; share of the landings of the classes up to this one; 1 for clear
-    // ice.
+    // Per class. x: diameter, m. y: fall speed, SPEED_UNIT. z: share of the landings of the classes up to this one. w:
+    // 1 for clear ice, else 0.
     classes: array<vec4f, STONE_CLASSES>,
     // Per class and shell: number of stones that each drawn stone stands for.
     weight: array<vec4f, STONE_CLASSES>,
-    // The grid of landings, in the layout of `SplashUniform`.
+    // Grid of landings: the cell under the camera (`cell`), and the camera's place in it, m (`place`).
     cell: vec2i,
     place: vec2f,
     side: f32,
     life: f32,
+    // Number of slots in a cell; number of cells along one side of the square around the camera (`cells`).
     slots: u32,
     cells: u32,
+    // Time since time 0 in units of `life`: its whole part (`tick`) and its fraction (`part`).
     tick: u32,
     part: f32,
     share: f32,
@@ -42,7 +46,8 @@ struct StoneUniform {
 
 // Albedo of milky ice.
 const ICE_ALBEDO: f32 = 0.75;
-// Range of the share of its speed that a stone keeps at its first bounce: ice that is hit this hard cracks.
+// Smallest and largest share of its speed that a stone keeps at its first bounce. It is low because ice that hits the
+// ground this fast cracks.
 const FIRST_REBOUND: vec2f = vec2f(0.1, 0.32);
 // Share of the speed that it keeps at each further bounce.
 const REBOUND: f32 = 0.45;
@@ -60,6 +65,7 @@ struct Stone {
     weight: f32,
 }
 
+// Returns stone `instance` of the lattice.
 fn falling_stone(instance: u32) -> Stone {
     let f = stones.first;
     let s = u32(instance >= f.y) + u32(instance >= f.z) + u32(instance >= f.w);
@@ -70,7 +76,7 @@ fn falling_stone(instance: u32) -> Stone {
     }
     let before = select(0u, stones.upto[max(k, 1u) - 1u][s], k > 0u);
     let class_row = stones.classes[k];
-    // Numbers of the drops' classes come before those of stones.
+    // Numbers the classes of stones after those of drops.
     let place = random3(vec3u(rain.seed, (s << 8u) | (CLASSES + k), index - before));
     let fallen = u32(class_row.y) * stones.air[s].w;
     let away = bitcast<vec3i>(place - vec3u(0u, 0u, fallen) - stones.air[s].xyz);
@@ -83,6 +89,7 @@ fn falling_stone(instance: u32) -> Stone {
     return Stone(p, velocity, class_row.x, class_row.w, inner * outer, stones.weight[k][s]);
 }
 
+// Stone that lands.
 struct Touch {
     landing: Landing,
     // Three random numbers of the landing, 0 to 1.
@@ -115,7 +122,8 @@ fn touch_of(instance: u32) -> Touch {
     return Touch(landing, vec3f(more >> vec3u(8u)) / 16777216.0, stones.classes[k]);
 }
 
-// Returns the stone at its place after its hops: parabolas, each lower than the one before. Then it lies.
+// Returns the stone of a landing at its present place, on ground at the height `z`: it hops in parabolas, each lower
+// than the one before, and then lies.
 fn hopping_stone(touch: Touch, z: f32) -> Stone {
     let kind = touch.kind;
     let fall = kind.y * SPEED_UNIT;
@@ -168,12 +176,13 @@ struct StoneVarying {
     @location(1) cover: f32,
     // Depth from depth_of, and transmittance between the stone and the eye.
     @location(2) depth_clear: vec3f,
-    // Position in the quad in radii, across and along, and distance that the stone's middle moves to either side, in
-    // radii.
+    // Position in the quad, across and along, in radii of the drawn stone.
     @location(3) at: vec2f,
+    // Distance that the stone's middle moves to either side during the exposure, in radii.
     @location(4) reach: f32,
 }
 
+// Returns a corner outside the picture, for stones that are not drawn.
 fn no_stone() -> StoneVarying {
     return StoneVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), 0.0, vec3f(0.0), vec2f(0.0), 0.0);
 }

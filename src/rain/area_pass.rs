@@ -1,4 +1,4 @@
-//! The pass that draws the columns of rain areas as veils into the layer in front of the picture.
+//! Pass that draws the columns of rain areas as veils into the layer in front of the picture.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::{
     stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
 };
 
-/// `Columns` of `shaders/rain/area.wgsl`.
+/// Uniform block `Columns` of `shaders/rain/area.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ColumnsUniform {
@@ -33,7 +33,7 @@ struct ColumnsUniform {
     list: [ColumnUniform; MAX_AREAS],
 }
 
-/// `ShaftUniform` of `shaders/rain/shaft.wgsl`.
+/// Uniform block `ShaftUniform` of `shaders/rain/shaft.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct ShaftUniform {
@@ -50,7 +50,7 @@ struct ShaftUniform {
     waves: [[f32; 4]; WAVES],
 }
 
-/// `Columns` and `ShaftUniform` as one upload.
+/// Both blocks, `Columns` and `ShaftUniform`, as one upload.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct AreaBlocks {
@@ -59,28 +59,37 @@ struct AreaBlocks {
     shaft: ShaftUniform,
 }
 
+/// Offset of `ShaftUniform` in the upload, bytes: parts of a uniform buffer are bound at multiples of 256.
 const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
-/// Properties that select the pipeline, in addition to the constants of the veil.
+/// Properties that select the pipeline, in addition to the composition's constants for air, fog and cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShaftKind {
+    /// Whether the host's depth has several samples a pixel.
     pub multi: bool,
     pub has_depth: bool,
+    /// Whether any columns may overlap.
     pub overlaps: bool,
+    /// Whether any area is a polygon.
     pub polygons: bool,
 }
 
 /// Number of pipelines held for a view: enough for a few weathers that alternate.
 const MOST_PIPELINES: usize = 16;
 
-/// The pass, created when a view first has rain areas.
+/// Pass of a view, created when it first has rain areas.
 pub(super) struct AreaPass {
     blocks: UniformBlock,
+    /// Layouts of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Placeholder for a missing depth.
     none: wgpu::TextureView,
+    /// Placeholder for a missing layer behind the picture.
     no_layers: wgpu::TextureView,
     pipelines: LruCache<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
+    /// Depth and layer behind the picture of the bind group, and the group.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::BindGroup)>,
+    /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
 
@@ -97,8 +106,9 @@ fn layout(device: &wgpu::Device, multisampled: bool) -> wgpu::BindGroupLayout {
     bind::layout(device, "rain areas", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
 
-/// Returns the rectangle of the picture in which a column may be, ndc; `None` if it is outside the picture. `clip`
-/// takes camera-relative east, north, up.
+/// Returns a rectangle of the picture that contains a column: left, bottom, right, top in normalised device
+/// coordinates; `None` if the column is outside the picture. `clip` maps camera-relative east, north, up to clip space.
+/// `own_top` is the top of the weather's own rain, camera-relative, m.
 fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f32; 4]> {
     let r = column.shaft().radius_m;
     let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -123,7 +133,7 @@ pub(super) struct Columns<'a> {
     pub field: &'a AreaField,
     pub scene: &'a Scene,
     pub clip: DMat4,
-    /// Whether the fog, which contains the weather's own rain, is drawn in front of the picture.
+    /// Whether fog is drawn in front of the picture; it contains the weather's own rain, which columns replace.
     pub veiled: bool,
 }
 

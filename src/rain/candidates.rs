@@ -6,19 +6,19 @@ use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Streaks and splashes of rain, with three rungs: single drops near the camera; cones instead; neither, so that all
-/// rain is extinction in the fog's layer. The importance, 0.7, is that of particles in the experiment that
-/// `sky::candidates::AIR` names.
+/// rain is extinction in the fog's layer. The importance, 0.7, is that of particles in a thesis's experiment on a
+/// simulator for machine operators.
 pub const RAIN: Part =
     Part { name: "rain", rungs: &["drops", "cones", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work per pixel of the rain layer with its cones and splashes, in units of a pixel with none of the parts. Measured
-/// on a software driver (`cargo bench -- parts`).
+/// Work per pixel of the rain layer with its cones and splashes. The unit is the work of a pixel in a picture without
+/// any part of the plan. Measured on a software driver (`cargo bench -- parts`).
 const LAYER_OF_PIXEL: f64 = 0.3;
-/// Work of one drawn drop of the lattice, in the same units.
+/// Work of one drop of the lattice, in units of [`LAYER_OF_PIXEL`].
 const ONE_DROP: f64 = 1.4;
 
-/// Returns the work saved by the step from drops to cones, and by that from cones to a veil, for a picture of `pixels`
-/// pixels with `drops` drops.
+/// Returns the work that two steps save, in units of [`LAYER_OF_PIXEL`], for a picture of `pixels` pixels with `drops`
+/// drops: from drops to cones, and from cones to none.
 pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {
     [ONE_DROP * f64::from(drops), LAYER_OF_PIXEL * pixels as f64].map(|fixed| StepWork { fixed, ..StepWork::default() })
 }
@@ -37,16 +37,16 @@ const CONES: Units = Units { samples: 3.0, texels: 6.0, bytes: 0.0 };
 pub fn work(s: &RainSettings) -> Work {
     let most = s.most_drops.unwrap_or(400_000);
     let drops = Work {
-        // Drops move, so all are tested in every frame.
+        // All drops are tested in every frame, because they move.
         view: Units::default().plus(DROP, f64::from(most)),
         pixel: LAYER,
         ..Work::default()
     };
     match s.model {
-        // The fog does this much anyway; there is no layer.
+        // Counts a little for the veil, which the fog draws anyway; there is no layer.
         RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
-        // The outer cones, and the drops of one shell of the four.
+        // Counts the outer cones, and the drops of one shell of the four.
         RainModel::Automatic => Work {
             view: Units::default().plus(DROP, 0.25 * f64::from(most)),
             pixel: LAYER.plus(CONES, 0.9),

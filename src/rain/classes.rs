@@ -6,19 +6,20 @@ use super::{
 };
 use crate::weather::Falling;
 
-/// Range of diameters drawn as drops, mm. Smaller drops show only as a veil.
+/// Smallest and largest diameter drawn as drops, mm. Smaller drops are only part of the veil.
 const DRAWN_MM: (f64, f64) = (0.5, 6.0);
 
-/// Number of drops of each class in one shell, in the layout of the shader.
+/// Drops of each class in one shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classes {
-    /// Per class: diameter (m), fall speed (speed units), number of drops of the classes up to and including this one.
+    /// Table of the shader, per class: diameter, m; fall speed, [`SPEED_UNIT`]; number of drops in a shell of the
+    /// classes up to and including this one; 0.
     pub table: [[f32; 4]; CLASSES],
     /// Number of drops in a shell.
     pub per_shell: u32,
     /// Number of drops that each drawn drop of the innermost shell stands for.
     pub weight: f64,
-    /// Extinction of the drops that the drawn ones stand for, 1/m.
+    /// Extinction of all drops in the drawn classes, 1/m.
     pub extinction_per_m: f64,
     /// Diameter (mm), fall speed (m/s) and flux on level ground (1/(m^2 s)) of each class.
     pub flux: [(f64, f64, f64); CLASSES],

@@ -22,10 +22,13 @@ use crate::{
 pub(super) struct ConePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
+    /// View of the texture of streaks.
     streaks: wgpu::TextureView,
+    /// Samplers with repeated coordinates, for streaks, and with clamped ones, for the grid.
     samplers: [wgpu::Sampler; 2],
     /// Bind group with the grid of the rain that passes shelters, or with a grid of one cell that is not read.
     group: wgpu::BindGroup,
+    /// Pass for the grid of the rain that passes shelters, once it is needed.
     open: Option<OpenPass>,
     bytes: u64,
     pipelines: Made<ConeKind, wgpu::RenderPipeline>,
@@ -44,8 +47,8 @@ impl ConePass {
                 address_mode_v: mode,
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
-                // The level of detail hardly changes across a picture. Blending two levels would cost half as much
-                // again.
+                // Uses one level of detail: it hardly changes across a picture, and blending two would cost 1.5 times
+                // as much.
                 mipmap_filter: wgpu::MipmapFilterMode::Nearest,
                 ..Default::default()
             })
@@ -56,7 +59,7 @@ impl ConePass {
         Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: Made::NONE, counts }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.bytes + self.open.as_ref().map_or(0, OpenPass::bytes)
     }
@@ -77,8 +80,8 @@ impl ConePass {
         self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
-    /// Draws the grid of the rain that passes shelters, for a picture of this size. `maps` says whether there are
-    /// occluder maps. `blocks` begins with the rain's block; `layout` is that of the surroundings.
+    /// Draws the grid of the shares of rain that pass shelters, for a picture of this size. `maps` says whether there
+    /// are occluder maps. `blocks` begins with the rain's block; `layout` is that of the surroundings.
     ///
     /// # Errors
     /// A missing shader file.
@@ -119,6 +122,7 @@ pub(super) struct ConeKind {
     pub sheltered: bool,
     /// Whether the rim of a rain area is near.
     pub areas: bool,
+    /// Whether the host's lamps light the rain.
     pub lamps: bool,
     /// Whether the layer already contains columns of rain areas.
     pub over: bool,

@@ -1,22 +1,22 @@
 //! Rain on three nested cones around the camera (after Wang and Wade 2004): a texture of streaks, created once, moves
 //! as the drops do.
 //!
-//! Each cone stands for the drops in a band of distances; the far end of each outer band is 2.8 times its near end. Let
-//! a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
+//! Each cone stands for the drops in a band of distances; in the two outer bands the far end is 2.8 times the near end.
+//! Let a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
 //! about V stays the same. Its coordinate s = ln tan(theta / 2), the latitude of Mercator's projection, changes at the
-//! constant speed |V| / r. Its streak is |V| exposure / r long in s, for any theta. The texture is therefore mapped to
-//! (azimuth, s) and moves along s, and streaks converge at both ends of V as they should. Towards these ends the number
-//! of tiles around the azimuth is halved each time sin theta is halved, so streaks keep their width. Wang and Wade
-//! narrowed the cone to a tip, where all streaks met in a point.
+//! constant speed |V| / r. Its streak has the length |V| t / r in s for any theta, where t is the exposure time. The
+//! texture is therefore mapped to (azimuth, s) and moves along s. Streaks then converge in the directions V and -V, as
+//! those of drops do. Towards these directions the number of tiles around the azimuth is halved each time sin theta is
+//! halved, so streaks keep their width. Wang and Wade narrowed the cone to a tip, where all streaks met in a point.
 //!
 //! A cone shows as many streaks as there are drops in its band. The texture's four channels hold streaks in the ratio
 //! 1:4:16:64, and as many channels are summed as are needed. If a band has more drops than the texture has streaks, the
 //! contrast is reduced to that of the drops. The mean optical depth is that of the band's drops.
 //!
 //! No state is carried from frame to frame. A cone shows a set of streaks at a random offset, moved by the wind, the
-//! fall and the camera's motion since the set's birth, at most a second ago. This is exact at any time, and the same on
-//! every channel. Then another set replaces it. At any time this happens in only one cone, so that one more look-up a
-//! pixel suffices for all cones.
+//! fall and the camera's motion since the set's birth, less than a second before. These motions are exact at any time,
+//! and the same on every channel of a simulator. After its life another set replaces it. At any time a set is being
+//! replaced in at most one cone, so that one more look-up a pixel suffices for all cones.
 
 use glam::{DVec2, DVec3};
 use half::f16;
@@ -35,7 +35,7 @@ use crate::{
 pub const CONES: usize = 3;
 /// Ends of the cones' bands of distances, m.
 pub const BANDS_M: [f64; CONES + 1] = {
-    // Single drops of the innermost shell fade out around the far end of the first band.
+    // Half of this, the end of the first band, is where single drops of the innermost shell fade out.
     let drops = HIDDEN_M;
     [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
@@ -51,13 +51,13 @@ pub(crate) const STREAKS: [u32; 4] = [48, 192, 768, 3072];
 const LENGTH: f64 = 5.0;
 /// Half the width of a streak, texels; its profile is a parabola.
 const HALF_WIDTH: f64 = 0.8;
-/// Time from one set of the innermost cone to the next, s; in each further cone it is twice as long.
+/// Time from one set of the innermost cone to the next, s; each further cone has twice the time of the one before.
 const LIFE_S: f64 = 0.2;
 /// Times at which sets are born, in lives of the innermost cone; chosen so that no two cones replace a set at once.
 const PHASES: [f64; CONES] = [0.5, 1.0, 0.0];
-/// Share of a set's life in which it grows.
+/// Share of a set's life in which it grows from 0 to its full depth, while the set before it shrinks.
 const GROWS: f64 = 0.1;
-/// Value of [`ConeUniform::growing`] where no set grows.
+/// Value of [`ConeUniform::growing`] while no set grows.
 pub(crate) const NONE_GROWS: u32 = CONES as u32;
 
 /// `ConeUniform` of `shaders/rain/cone_block.wgsl`, which explains the fields.
@@ -80,11 +80,12 @@ pub(crate) struct ConeUniform {
 /// Means over all drawn drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mean {
-    /// Diameter, m, and fall speed, m/s, weighted by the area of the drops' discs.
+    /// Diameter, m, weighted by the area of the drops' discs.
     diameter_m: f64,
+    /// Fall speed, m/s, weighted by the discs.
     fall_m_s: f64,
-    /// Time to fall one metre, s, weighted likewise. The distance that the wind drives drops in under a roof is
-    /// proportional to this time.
+    /// Time to fall one metre, s, weighted by the discs. The distance that the wind carries drops in under a roof is
+    /// proportional to it.
     fall_s_per_m: f64,
 }
 
@@ -108,7 +109,8 @@ impl Mean {
     }
 }
 
-/// Returns the axes x and y of a frame (x, y, `axis`), turned from (east, north, down) by the shortest rotation.
+/// Returns two unit vectors at right angles to `axis` and to each other: east and north, turned by the shortest
+/// rotation that turns down to `axis`.
 fn frame(axis: DVec3) -> (DVec3, DVec3) {
     let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Z, axis);
     (turn * DVec3::X, turn * DVec3::Y)
@@ -127,11 +129,11 @@ fn set_at(j: usize, time_s: f64) -> (f64, f64, f64) {
     (number, born_s, ((time_s - born_s) / (GROWS * life)).clamp(0.0, 1.0))
 }
 
-/// Displacement of the air by the wind since a time (s), m.
+/// Function that returns the displacement of the air by the wind since a time, s, in m (east, north, up).
 pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
 impl ConeUniform {
-    /// Creates the block for a camera. `carried` returns the displacement of the air since a time.
+    /// Creates the block for a camera.
     pub fn new(seed: u32, classes: &Classes, shot: &StreakCamera<'_>, air: &MovingAir, carried: Carried<'_>) -> Self {
         let mean = Mean::of(classes);
         let fall = DVec3::Z * mean.fall_m_s;
@@ -151,7 +153,7 @@ impl ConeUniform {
         for j in 0..CONES {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
             let middle = 0.5 * (near + far);
-            // A streak is slightly wider than a pixel, or as wide as a drop if that is more.
+            // Makes a streak slightly wider than a pixel, or as wide as a drop if that is more.
             let texel = (0.7 * pixel).max(mean.diameter_m / middle / (2.0 * HALF_WIDTH));
             let tiles = (std::f64::consts::TAU / (f64::from(SIDE) * texel)).round().max(1.0);
             let length = (relative.length() * shot.exposure_s + mean.diameter_m) / middle;
@@ -184,8 +186,9 @@ impl ConeUniform {
         c
     }
 
-    /// Adapts the cones to single drops: the share `drops` of all drops nearer than `distance_m` is drawn one by one,
-    /// and optical depths are multiplied by `share`. If single drops reach into a band, its cone begins where they end.
+    /// Adapts the cones to drops that are drawn one by one: of the drops nearer than `distance_m`, the share `drops` is
+    /// drawn so and left out of the cones. All optical depths are multiplied by `share`. If single drops reach into a
+    /// band, its cone begins where they end.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
@@ -208,11 +211,15 @@ impl ConeUniform {
     }
 }
 
-/// A streak of the texture: its middle and half its length, texels, its optical depth, and its channel.
+/// Streak of the texture.
 struct Streak {
+    /// Middle, texels.
     middle: DVec2,
+    /// Half of its length, texels.
     half_length: f64,
+    /// Optical depth relative to other streaks.
     weight: f64,
+    /// Channel of the texture, 0 to 3.
     channel: usize,
 }
 
@@ -226,7 +233,7 @@ fn streaks() -> Vec<Streak> {
         for i in 0..count {
             let [a, b] = [0, 1].map(|k| random3([0x5712_ea45, k << 8 | channel as u32, i]).map(share));
             let d = super::sizes::table_diameter_mm(&table, a[2]);
-            // In units of the distance of the band's middle.
+            // Distance of the drop, in units of that of the band's middle.
             let distance = libm::cbrt(1.0 + (FURTHER.powi(3) - 1.0) * b[0]) / (0.5 * (1.0 + FURTHER));
             all.push(Streak {
                 middle: DVec2::new(a[0], a[1]) * f64::from(SIDE),
@@ -239,8 +246,8 @@ fn streaks() -> Vec<Streak> {
     all
 }
 
-/// Returns the texture with all its mip levels: the ratio of the optical depth to the mean of all channels together.
-/// The mean of each channel is exactly its share of the streaks.
+/// Returns the texture with all its mip levels, by rows. A texel has the optical depth of each channel, scaled so that
+/// the mean of a channel over the texture is the channel's share of all streaks.
 pub(crate) fn texture() -> Vec<Vec<[f16; 4]>> {
     let n = SIDE as i64;
     let mut level = vec![[0.0f64; 4]; (n * n) as usize];

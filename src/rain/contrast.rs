@@ -1,11 +1,11 @@
-//! Contrast that the streaks of rain add to a picture, in closed form: for the plan, which estimates from it how much
-//! the drops change a picture.
+//! Contrast that the streaks of rain add to a picture, in closed form. The plan estimates from it how much drops change
+//! a picture.
 //!
 //! Streaks lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
 //! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. It is drawn w wide, where
 //! w is D or a minimum width in pixels, and L + w long. Its mean cover over this area is c = (pi D^2 / 4) / ((L + w)
 //! w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the
-//! square of their mean. For n drops a unit of volume the variance is therefore
+//! square of their mean. For n drops per cubic metre the variance is therefore
 //!
 //! ```text
 //! integral of 1.08 n (pi D^2 / 4)^2 / ((L + w) w) dr.
@@ -26,12 +26,13 @@ use crate::{
 };
 
 /// Largest share of the streaks' contrast that cones miss. In the lab's chart the error of cones is a tenth of that of
-/// a veil without streaks (docs/lab/rain.csv: 0.21 % of 2.60 %), but single streaks near the eye hardly count there.
+/// a veil without streaks (docs/lab/rain.csv: 0.21 % of 2.60 %), but single streaks near the eye hardly count in that
+/// chart's error.
 const CONES_MISS: f64 = 0.3;
 
 /// Returns the variance from pixel to pixel of the share that drops between two distances (m) cover. `pixel_angle` is
-/// the angle of a pixel, rad, `along_m` the motion of drops across the line of sight during the exposure, m, and `gain`
-/// the contrast gain.
+/// the angle of a pixel, rad, `along_m` the distance that drops move across the line of sight during the exposure, m,
+/// and `gain` the contrast gain.
 pub fn cover_variance(
     classes: &Classes,
     pixel_angle: f64,
@@ -43,12 +44,11 @@ pub fn cover_variance(
     let of = |(diameter_mm, speed, flux): (f64, f64, f64)| {
         let d = 1e-3 * diameter_mm;
         let disc = std::f64::consts::FRAC_PI_4 * d * d;
-        // Up to this distance the drop is wider than a pixel.
+        // Distance up to which the drop is wider than the least width.
         let wide = (d / a).clamp(near_m, far_m);
         let antiderivative = |r: f64| libm::log(r / (l + a * r)) / (a * l);
         let beyond = antiderivative(far_m) - antiderivative(wide);
-        // The drops beyond are drawn wider than they are. The geometric mean of the distances gives one width for all
-        // of them.
+        // Width for all drops beyond, which are drawn wider than they are: that at the geometric mean of the distances.
         let w = a * (wide * far_m).sqrt();
         let sum = (wide - near_m) / ((l + d) * d) * gained(d / (l + d), gain).powi(2)
             + beyond * gained(d * d / ((l + w) * w), gain).powi(2);
@@ -57,12 +57,12 @@ pub fn cover_variance(
     classes.flux.iter().filter(|c| c.1 > 0.0).map(|c| of(*c)).sum()
 }
 
-/// Returns the factor by which the gain raises a streak's cover, if it is `cover` without a gain.
+/// Returns the factor by which the gain g raises a streak's cover c: (1 - (1 - c)^g) / c.
 fn gained(cover: f64, gain: f64) -> f64 {
     if gain == 1.0 { 1.0 } else { (1.0 - (1.0 - cover.min(1.0)).powf(gain)) / cover }
 }
 
-/// Distances between which drops are counted, m: from where near drops have faded in to where cones end.
+/// Distances between which drops count, m: from about where near drops have faded in to where cones end.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
 
 /// Change of a picture by its streaks.
@@ -86,12 +86,12 @@ impl Streaks {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// Returns the change of pixel number `i` with cones instead of drops, and without streaks, relative to the pixel's
+    /// Returns the changes of pixel `i` with cones instead of drops and with no streaks at all, relative to the pixel's
     /// luminance plus a hundredth of white. The light that the veil adds in place of the streaks is not counted.
     /// `picture` is the luminance without streaks, `hidden` the optical depth of the streaks.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));
-        // Without streaks, the light that they add on the mean is missing too.
+        // Adds, for no streaks at all, the mean light that they bring.
         [(CONES_MISS * streaks) as f32, (streaks - hidden * contrast) as f32, 0.0]
     }
 }

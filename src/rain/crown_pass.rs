@@ -1,6 +1,6 @@
-//! Splashes on devices with compute shaders. A list has the slots whose splash may be in the picture
-//! ([`crate::particles::listing`]). For each of them the place of its crown is found once in the picture's depth.
-//! Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
+//! Splashes on devices with compute shaders. A list has the slots of the grid on the ground ([`super::splash`]) whose
+//! splash may be in the picture ([`crate::particles::listing`]). For each listed slot the foot of its crown is searched
+//! once in the picture's depth. Shaders: `shaders/rain/crowns.wgsl`, `crowns_view.wgsl`.
 
 use super::cull_pass::{ListedQuads, listed_pipeline};
 use crate::{
@@ -20,12 +20,14 @@ pub(super) struct CrownPass {
     listing: Listing,
     /// Pipelines of `mark` and `order`, by whether rims of areas are near and whether depth is multisampled.
     marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
+    /// Pipelines of `make_crowns`.
     makes: Made<CrownKind, wgpu::ComputePipeline>,
     draws: Made<DepthRead, wgpu::RenderPipeline>,
+    /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
 
-/// Properties that select the pipelines: the kind of depth, whether rims of areas are near, whether there are occluder
+/// Properties that select the pipelines: how depth is read, whether rims of areas are near, whether there are occluder
 /// maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct CrownKind {
@@ -40,13 +42,13 @@ impl CrownPass {
         Self { listing, marks: Made::NONE, makes: Made::NONE, draws: Made::NONE, counts }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.listing.bytes()
     }
 
-    /// Compiles the pipelines for `kind` that do not exist yet. `frame` and `around` are the layouts of the drops' own
-    /// groups.
+    /// Compiles the pipelines for `kind` that do not exist yet. `frame` is the layout of group 0 of the drops' pass,
+    /// `around` that of the surroundings.
     ///
     /// # Errors
     /// A missing shader file.

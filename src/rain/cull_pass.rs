@@ -28,8 +28,9 @@ const STREAK_BYTES: u64 = 48;
 pub(super) struct CullPass {
     /// Layouts of the frame's blocks, and of stepped drops.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Bind group of the frame's blocks.
     frame: wgpu::BindGroup,
-    /// Bind group of placeholders where no drops are stepped.
+    /// Bind group of placeholders, bound if no drops are stepped.
     unstepped: wgpu::BindGroup,
     listing: Listing,
     /// Pipelines of `mark`, by whether drops are stepped.
@@ -41,10 +42,12 @@ pub(super) struct CullPass {
     counts: bool,
 }
 
-/// Drops of one frame.
+/// Drops of the lattice that a frame draws.
 #[derive(Clone, Copy)]
 pub(super) struct DropLattice<'a> {
+    /// Number of drawn shells.
     pub shells: u32,
+    /// Number of drops in a shell.
     pub per_shell: u32,
     /// States of the drops, if they are stepped: [`source_layout`].
     pub states: Option<&'a wgpu::BindGroup>,
@@ -97,7 +100,7 @@ impl CullPass {
         }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.listing.bytes()
     }
@@ -174,7 +177,7 @@ impl CullPass {
             self.order = Some(compute("rain/cull.wgsl", "order", &[Some(frame), Some(found)], &[])?);
         }
         self.makes.prepare([is_stepped, areas, maps], |_| {
-            // Mixtures use each column by itself: the order of the columns takes care of overlaps.
+            // Sets OVERLAPS to false: local_drops mixes one column after another, so later ones cover earlier ones.
             let constants = [stepped, flag("AREAS", areas), flag("OVERLAPS", false), flag("MAPS", maps)];
             let layouts = [Some(frame), Some(streaks), Some(surroundings), Some(source)];
             compute("rain/cull_streaks.wgsl", "make_streaks", &layouts, &constants)

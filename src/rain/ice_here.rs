@@ -13,8 +13,10 @@ use crate::{
 /// Precipitation that falls as stones around a camera.
 #[derive(Default)]
 pub(super) struct Ice {
+    /// Precipitation at the camera; `None` without stones.
     here: Option<Falling>,
-    /// Precipitation, speed factor and largest number of the last count, and the stones that it gave.
+    /// Last count of stones: precipitation, factor on fall speeds at the altitude ([`drops::factor_in`]) and largest
+    /// number for which they were counted, and the stones.
     counted: Option<(Falling, f64, u32, Stones)>,
 }
 

@@ -29,7 +29,8 @@ pub(super) struct SteppedDrops<'a> {
     pub classes: &'a Classes,
     /// Number of drawn shells of the lattice.
     pub shells: usize,
-    /// Number of drops in all shells to allocate for: more may come soon, for example at the rims of rain areas.
+    /// Number of drops in all shells for which memory is allocated. More than are drawn now, because their number may
+    /// soon grow, for example at the rim of a rain area.
     pub most: u32,
 }
 

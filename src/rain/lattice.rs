@@ -2,15 +2,14 @@
 //! falls through it at its own speed.
 //!
 //! A shell is a cube of side L, filled with drops at random places and repeated in all directions; each drop is drawn
-//! at the copy nearest to the camera. Positions are fractions of L in 32 bits, and their addition wraps as the lattice
+//! at the copy nearest to the camera. Positions are whole numbers of 2^-32 L. Their 32-bit sums wrap as the lattice
 //! does, so they are exact at any time and place: place = random(seed, shell, class, index) + displacement of the air -
-//! speed x fall phase. Fall speeds are integer multiples of [`SPEED_UNIT`]; the fall phase is the distance fallen at a
-//! speed of one unit.
+//! speed x fall phase, where the speed and the fall phase count for the height only. Fall speeds are integer multiples
+//! of [`SPEED_UNIT`]; the fall phase is the distance fallen at a speed of one unit.
 //!
-//! The innermost shell holds every drop of its volume. Each further shell is wider by the cube root of 2 and holds the
-//! same number of drops, each of which stands for twice as many as a drop of the shell before. Together the streaks
-//! have the contrast that all drops would have, including those too far to be drawn (`docs/lab/README.md`, the chart of
-//! rain).
+//! The innermost shell holds every drop of its volume. Each further shell is wider by the factor 2^(1/3) and holds the
+//! same number of drops, each of which stands for twice as many as a drop of the shell before. The heavier streaks make
+//! up for the contrast of all drops too far to be drawn (`docs/lab/README.md`, the chart of rain).
 
 use glam::DVec3;
 

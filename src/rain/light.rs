@@ -1,4 +1,5 @@
-//! Light on a drop: the sky and the ground, seen small and upside down in it, and the sun or moon through it.
+//! Light from a drop: the images of sky and ground in it, small and upside down, and the light of sun or moon through
+//! it.
 
 use std::f64::consts::PI;
 
@@ -7,16 +8,17 @@ use glam::DVec3;
 pub use crate::moment::LightAround as DropLight;
 
 /// Returns the phase function of a drop, whose integral over all directions is 4 pi. `c` is the cosine of the
-/// scattering angle: 1 for light from straight behind the drop. Two lobes of Henyey and Greenstein (1941), with a joint
-/// asymmetry of 0.81, stand for the rays through the sphere and for the backward share that makes rainbows. Twin of
-/// `drop_phase` in `shaders/rain/phase.wgsl`.
+/// scattering angle: 1 for light from straight behind the drop. It is 0.93 h(0.9) + 0.07 h(-0.35) with the lobe h(g) =
+/// (1 - g^2) / (1 + g^2 - 2 g c)^1.5 of Henyey and Greenstein (1941): one for the rays through the sphere, one for the
+/// backward share that makes rainbows. The asymmetry is 0.93 x 0.9 - 0.07 x 0.35 = 0.81. Twin of `drop_phase` in
+/// `shaders/rain/phase.wgsl`.
 pub fn phase(c: f64) -> f64 {
     let lobe = |g: f64| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
 }
 
-/// Returns the share of light from above the horizon in a drop seen along a ray whose sine of elevation is `z`. The
-/// rest is light from below the horizon.
+/// Returns the share of light from above the horizon in a drop seen along a ray whose sine of elevation is `z`: 0.5 +
+/// sign(z) 0.4415 (1 - (1 - |z|)^2.5). The rest is light from below the horizon.
 ///
 /// Most of a drop's disc shows the surroundings near the ray's own direction, upside down: half of the disc turns rays
 /// by less than 26 degrees, its rim by 83 degrees. A drop slightly above the horizon therefore already shows more sky

@@ -1,9 +1,9 @@
 //! Drops around a camera in or near the rim of rain areas: how many of each class fall at each place.
 //!
-//! The weather and each area have their own number of drops in every class. At each place the mean of these numbers is
-//! taken, weighted by the areas' shares, and only the drops whose index is below it are drawn. A drop's index does not
-//! depend on its place, so the rain is thinned evenly, and every channel keeps the same drops. A camera with no rim
-//! nearby sees one rain and needs none of this.
+//! The weather and each area have their own number of drops in every class. At each place these numbers are averaged
+//! with the areas' shares there as weights. Only the drops whose index is below the average are drawn. A drop's index
+//! does not depend on its place, so the rain is thinned evenly, and every channel keeps the same drops. A camera with
+//! no rim nearby sees one rain, without this average.
 
 use std::ops::Range;
 
@@ -20,7 +20,8 @@ const STATES: usize = MAX_AREAS + 1;
 /// Number of vectors of four that hold one number per rain.
 const ROWS: usize = STATES.div_ceil(4);
 
-/// `Columns` of `shaders/rain/area.wgsl`, followed by `Local` of `shaders/rain/local.wgsl`, as one upload.
+/// Uniform blocks `Columns` of `shaders/rain/area.wgsl` and `Local` of `shaders/rain/local.wgsl`, which describe the
+/// fields, as one upload.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct LocalUniform {
@@ -52,9 +53,9 @@ pub(crate) struct LocalColumn<'a> {
 /// Rain that falls within reach of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Local {
-    /// One rain, equal everywhere.
+    /// One rain, the same everywhere within reach.
     Pure(Falling),
-    /// A mixture of the weather's rain and that of some columns: bit `i` is set for column `i`.
+    /// Mixture of the given rain, outside the columns, with that of some columns: bit `i` is set for column `i`.
     Mixed(Falling, u32),
 }
 
@@ -104,8 +105,8 @@ impl Classes {
         envelope
     }
 
-    /// Returns `share` of the drops: flux, extinction and the number that the drawn drops stand for are multiplied by
-    /// it, and the weight is 1.
+    /// Returns the share `share` of all drops, each drawn one standing for one: flux, extinction and the number of all
+    /// drops (drawn times weight) are multiplied by `share`.
     pub(crate) fn part(&self, share: f64) -> Self {
         let mut part = *self;
         part.flux.iter_mut().for_each(|c| c.2 *= share);
@@ -115,7 +116,8 @@ impl Classes {
         part
     }
 
-    /// Adds a share of `other` to the number, flux and extinction. The table of counts is unchanged.
+    /// Returns these classes with the share `share` of `other` added to number, flux and extinction. The table of
+    /// counts is unchanged.
     pub(crate) fn with(&self, share: f64, other: &Self) -> Self {
         let (mut sum, other) = (*self, other.part(share));
         for (to, from) in sum.flux.iter_mut().zip(other.flux) {
@@ -145,7 +147,7 @@ impl LocalUniform {
                 block.counts[k * ROWS + row][at] = (classes.count(k) * begun) as f32;
             }
             block.weights[row][at] = classes.weight as f32;
-            // A rate for now; divided by the largest rate below.
+            // Stores the rate, which is divided by the largest rate below.
             block.splashes[row][at] = (Splashes::new(classes).drawn_per_m2_s * begun) as f32;
             block.cones[row][at] = (classes.extinction_per_m * begun) as f32;
         };

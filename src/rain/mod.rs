@@ -1,5 +1,5 @@
 //! Rain, hail and ice pellets near the camera, and rain areas seen from outside. The rain rate sets the drops' sizes
-//! and fall speeds; the place of each drop follows from (seed, id, time).
+//! and fall speeds; the place of each drop is a function of (seed, id, time).
 //!
 //! *Drops*. [`drops`] has the physics of one drop in f64, [`sizes`] the size distribution, [`ice`] hail and pellets.
 //! [`lattice`] has the places of drops: a cell of air full of drops that repeats in all directions. Each drop is drawn

@@ -19,19 +19,20 @@ use crate::{
 
 /// Side of a cell, pixels.
 const CELL: u32 = 10;
-/// Smallest number of cells along each side of the picture.
+/// Smallest number of cells along the width and along the height of the picture.
 const FEWEST: u32 = 40;
 /// Format with one channel for each quarter of a stretch.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// The grid of a view, created when it is first needed.
+/// Grid of a view and its pass, created when it is first needed.
 pub(super) struct OpenPass {
+    /// Layouts and groups of the rain's block and of the cones' block.
     layouts: [wgpu::BindGroupLayout; 2],
     groups: [wgpu::BindGroup; 2],
     /// Pipelines without and with occluder maps.
     pipelines: [Option<wgpu::RenderPipeline>; 2],
     grid: wgpu::Texture,
-    /// One layer for each stretch.
+    /// Views of the grid's layers, one for each stretch.
     layers: [wgpu::TextureView; STRETCHES],
 }
 
@@ -45,7 +46,7 @@ fn cells(picture: wgpu::Extent3d) -> wgpu::Extent3d {
     }
 }
 
-/// Creates a grid. A grid of one cell can be bound where nothing is tested.
+/// Creates a grid. A grid of one cell is bound if nothing keeps rain off.
 pub(super) fn grid(device: &wgpu::Device, size: wgpu::Extent3d) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("open shares"),
@@ -81,7 +82,7 @@ impl OpenPass {
         Self { layouts, groups, pipelines: [None, None], grid, layers }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         let size = self.grid.size();
         4 * STRETCHES as u64 * u64::from(size.width) * u64::from(size.height)

@@ -1,4 +1,4 @@
-//! The layer of rain in front of a picture: its texture, its pipelines and the draw.
+//! Layer of rain in front of a picture: its texture, its pipelines and the draw.
 
 use std::ops::Range;
 
@@ -33,31 +33,36 @@ use crate::{
 
 /// Layer of drops, composited as one more veil in front of the picture: premultiplied, one sample a pixel.
 pub(crate) struct RainLayer {
-    /// Block of drops, followed by that of splashes.
+    /// Block of drops ([`RainUniform`]), followed by that of splashes ([`SPLASHES`]).
     block: UniformBlock,
     /// Columns of rain areas, followed by the numbers of drops near a rim ([`LocalUniform`]).
     local: wgpu::Buffer,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Layout of the group of shelters, occluder maps and lamps.
     surroundings: wgpu::BindGroupLayout,
     /// Pipelines of drops and of splashes, for devices that cannot draw by lists.
     pipelines: Made<CrownKind, [wgpu::RenderPipeline; 2]>,
+    /// Passes that list drops and crowns, on devices with compute shaders.
     listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
+    /// Pass that steps drops, once any are stepped.
     stepped: Option<Box<StepPass>>,
     /// Pass for hail and pellets, created when the first fall.
     stones: Option<StonePass>,
     /// Whether the layer counts how often its pixels are drawn, instead of showing the drops' light.
     counts: bool,
+    /// Placeholder for a missing depth.
     none: Option<wgpu::TextureView>,
     texture: FallingTexture,
+    /// Depth of the bind group of group 0, and the group.
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
 /// Inputs of one frame's draw into the layer.
 pub(crate) struct LayerDraw<'a> {
     pub rain: &'a RainUniform,
-    /// Cones, instead of drops and splashes or beyond the drops.
+    /// Cones, if any are drawn: instead of drops and splashes, or beyond the drops.
     pub cones: Option<&'a ConeUniform>,
     /// Drops that are stepped, instead of drops without a state.
     pub stepped: Option<&'a Stepped<'a>>,
@@ -68,12 +73,13 @@ pub(crate) struct LayerDraw<'a> {
     /// Whether the surroundings contain occluder maps, and lamps.
     pub maps: bool,
     pub lamps: bool,
-    /// Splashes, and the number of their slots.
+    /// Block of the splashes.
     pub splash: &'a SplashUniform,
+    /// Number of slots of splashes; 0 for none.
     pub splashes: u32,
     /// Number of drops at each place, if a rim of a rain area is near.
     pub local: Option<&'a LocalUniform>,
-    /// Whether the layer already contains something; drops are then drawn in front of it.
+    /// Whether the layer already contains columns of rain areas; drops are then drawn in front of them.
     pub over: bool,
     /// Hail and pellets, if any fall.
     pub stones: Option<StoneDraw>,
@@ -116,7 +122,7 @@ impl RainLayer {
         }
     }
 
-    /// Whether the layer counts its draws.
+    /// Whether the layer counts how often its pixels are drawn.
     pub fn counts(&self) -> bool {
         self.counts
     }
@@ -133,7 +139,7 @@ impl RainLayer {
         &self.texture
     }
 
-    /// Prepares stones and cones, and the test of shelter for the cones.
+    /// Prepares stones and cones, and draws the grid of shelter for the cones.
     fn prepare_far(
         &mut self,
         recording: &mut Recording<'_>,
@@ -324,7 +330,7 @@ fn pipeline(
     counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("rain/drops_view.wgsl"))?;
-    // Overlaps need no test here: near a rim the columns' drops are mixed one column after another.
+    // Sets OVERLAPS to 0: near a rim the drops are mixed one column after another, so later ones cover earlier ones.
     let near = [("AREAS", f64::from(u8::from(areas))), ("OVERLAPS", 0.0), ("MAPS", f64::from(u8::from(maps)))];
     pass::quads(
         device,

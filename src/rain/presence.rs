@@ -1,13 +1,12 @@
-//! Presence of rain and ice that a view draws in front of its picture, and how much of the weather's own rain falls at
-//! an altitude.
+//! Presence of rain and ice in front of a view's picture, and the weather's own rain at an altitude.
 
 use crate::{
     particles::begun_in_steps,
     weather::{Conditions, Falling},
 };
 
-/// Returns the weather's own precipitation (rain areas left out), reduced to the share that has left its cloud at an
-/// altitude.
+/// Returns the weather's own precipitation, without that of rain areas, reduced to the share that has left its cloud at
+/// an altitude. The share changes in small steps.
 pub(super) fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     let share = begun_in_steps(c.begun(altitude_m));
     let f = c.precipitation;

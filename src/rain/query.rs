@@ -26,7 +26,7 @@ pub struct RainAt {
     pub extinction_per_m: f64,
     /// Mean diameter of the drops in the air, mm.
     pub mean_diameter_mm: f64,
-    /// Diameter, mm, below which half of the liquid water in the air is.
+    /// Median diameter by volume, mm: smaller drops hold half of the liquid water in the air.
     pub median_volume_diameter_mm: f64,
     /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
@@ -45,10 +45,10 @@ pub struct RainAt {
     pub stones_per_m2_s: f64,
 }
 
-/// Distance in front of a surface at which boxes are tested for sheltering it, m.
+/// Distance in front of a surface of the point for which shelter by boxes is tested, m.
 const BEFORE_M: f64 = 0.05;
 
-/// A surface on which rain may land, or a window through which it may come.
+/// Surface on which rain may land, or an opening through which it may fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSurface {
     /// Position in the host's world.
@@ -130,8 +130,7 @@ pub(crate) fn rain_on(world: &World, surface: &RainSurface, time_s: f64) -> Resu
     let to_world = world.frame.frame_at(surface.position).world_to_enu.transpose();
     let before = surface.position + to_world * (normal * BEFORE_M);
     let since_s = time_s - world.time_s;
-    // Boxes are stored with their positions at the world's time, so the point is moved back by each box's motion since
-    // then.
+    // Moves the point back by each box's motion since the world's time, for which the boxes' positions are stored.
     let comes = |falls_m_s: f64| {
         let velocity = to_world * (wind - DVec3::Z * falls_m_s);
         !world.set.shelters.iter().any(|b| sheltered(b, before - b.velocity_m_s * since_s, velocity))

@@ -19,7 +19,7 @@ pub enum RainModel {
     /// the picture's size; it is below that of drops only on devices without compute shaders.
     Cones,
     /// Single drops only, to 4 m. Each drop's place follows from (seed, number, time), without a state
-    /// ([`super::lattice`]). Cones are added beyond them where lamps light the rain.
+    /// ([`super::lattice`]). If lamps light the rain, cones show it beyond 4 m.
     Drops,
     /// Drops stepped through a wind that varies in space (`particles::stepping`), to 4 m. Needs compute shaders.
     Integrated,
@@ -38,9 +38,9 @@ pub struct RainSettings {
     /// Method by which rain is drawn.
     pub model: RainModel,
     /// Factor by which falling rain and hail stand out more than in nature, [1, 16]. Default 1: as in nature. With a
-    /// gain g, each streak, stone and splash is as opaque as g of them one in front of the other. Real rain does not
-    /// look like that; the gain makes rain visible to trainees on a simulator's display. The extinction of the veil is
-    /// reduced accordingly, so that whatever lies some tens of metres away keeps its mean. The gain does not affect
+    /// gain g, a streak, stone or splash has the opacity 1 - (1 - c)^g instead of c. Real rain does not look like that;
+    /// the gain makes rain visible to trainees on a simulator's display. The extinction of the veil is reduced to
+    /// match, so that the mean visibility of objects some tens of metres away stays the same. The gain does not affect
     /// light, visibility, water or queries. Set the same value on all channels of a simulator.
     /// [`RainSettings::TRAINER`] has the value for trainers.
     pub contrast_gain: f64,

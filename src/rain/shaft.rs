@@ -1,12 +1,13 @@
-//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. F64 twin of the
-//! shaders.
+//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. It is the f64 twin of
+//! `shaders/rain/shaft.wgsl` and `shaders/rain/area.wgsl`.
 //!
 //! A column is the area's plan carried up to its cloud along the slant of the falling drops. The part of a ray inside
 //! it is found exactly: the intersection with an ellipse or a convex polygon in the plan and with two levels in height.
 //! It is cut where the rim and the soft top end, and the rain on each of the four pieces is integrated with four Gauss
-//! points. The pattern of curtains is a sum of waves that fall as the drops do. It multiplies the result by its exact
-//! mean over the first half kilometre and over the rest. The weather's own rain is drawn with the fog, so a column
-//! counts only the difference of its extinction from that rain.
+//! points. The pattern of curtains is a sum of waves that fall as the drops do. The result is multiplied by the
+//! pattern's mean along the ray, which is exact for each of two parts: the first half kilometre inside the column, and
+//! the rest. The weather's own rain is drawn with the fog, so a column counts only the difference of its extinction
+//! from that rain.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -23,12 +24,12 @@ use crate::{
     scene::depth::RANGE_SKY_M,
 };
 
-/// Depth of the columns below the station's altitude, m: they reach into valleys.
+/// Depth of the columns below the level of their plan, m: they reach into valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
 /// Distance into a dense column from which most of its light comes, m.
 const FRONT_M: f64 = 500.0;
 
-/// `Column` of `shaders/rain/area.wgsl`, which explains the fields.
+/// Part `Column` of the block in `shaders/rain/area.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct ColumnUniform {
@@ -87,12 +88,14 @@ pub(crate) struct EyeInWorld<'a> {
 /// Column near a camera, in camera-relative east, north, up, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RainColumn {
+    /// Centre of the plan, east and north of the camera, m.
     pub center: DVec2,
     shaft: Shaft,
-    /// Height of the level at which the plan is given, and of the cloud, m.
+    /// Height of the level at which the plan is given, relative to the camera, m.
     pub ground: f64,
+    /// Height of the cloud's base, relative to the camera, m.
     pub top: f64,
-    /// Extinction, 1/m. It fades to 0 at distances where the column is too far to be seen.
+    /// Extinction of the rain, 1/m. It fades to 0 at distances at which the column is too far to be seen.
     extinction: f64,
     /// Extinction of the drops that are drawn near the camera, 1/m.
     pub near: f64,
@@ -106,10 +109,11 @@ pub(crate) struct RainColumn {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AreaField {
     pub columns: Vec<RainColumn>,
+    /// Weather's own rain, outside the columns.
     pub own: FallingLayer,
-    /// Top of the rain outside the columns, relative to the camera, m, and the extinction of its drops that are drawn
-    /// near the camera, 1/m.
+    /// Top of the weather's own rain, relative to the camera, m.
     pub own_top: f64,
+    /// Extinction of the weather's own drops that are drawn near the camera, 1/m.
     pub own_near: f64,
     /// Distance up to which drops or cones are drawn instead of the veil, m.
     pub near_m: f64,
@@ -134,12 +138,14 @@ impl RainColumn {
     fn new(shaft: Shaft, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Option<Self> {
         let away = eye.to_enu * (shaft.center - eye.position);
         let distance = away.length() - shaft.radius_m;
-        // The column fades out at a distance from which nothing of it can be seen, so it does not vanish abruptly.
+        // Fades the column out from 150 to 250 km, where hardly anything of it can be seen, so that it does not vanish
+        // abruptly.
         let shown = 1.0 - smoothstep(1.5e5, 2.5e5, distance);
         if shown <= 0.0 || shaft.top_m.max(own.top_m) <= shaft.ground_m - BELOW_M {
             return None;
         }
-        // On a curved planet a far column stands lower: as far below as the place at its centre.
+        // Lowers a far column on a curved planet: as much as the ground at its centre lies below the camera's
+        // horizontal plane.
         let level = |altitude: f64| {
             let sunk = away.z - (shaft.center_altitude_m - eye.altitude_m);
             altitude - eye.altitude_m + sunk
@@ -163,23 +169,27 @@ impl RainColumn {
 
     /// Whether two columns may overlap.
     fn meets(&self, other: &Self) -> bool {
-        // Each column is displaced sideways by its own slant, over the height from the cloud down to the valleys.
+        // Adds the difference of the columns' sideways displacements by their slants, over the height from the cloud
+        // down to the valleys.
         let height = (self.top.max(other.top) - self.ground.min(other.ground) + BELOW_M).max(0.0);
         let aside = (self.shaft.lean - other.shaft.lean).length() * height;
         (self.center - other.center).length() < self.shaft.radius_m + other.shaft.radius_m + aside
     }
 
+    /// Turns (east, north) to the plan's axes, (right, ahead).
     fn turned(&self, plan: DVec2) -> DVec2 {
         self.shaft.turned(plan)
     }
 
-    /// Share of the rain at a camera-relative place that belongs to this column.
+    /// Returns the share of the rain at a camera-relative place that belongs to this column, 0 to 1, regardless of
+    /// other columns.
     fn share(&self, p: DVec3) -> f64 {
         let q = p.truncate() - self.center - self.shaft.lean * (p.z - self.ground);
         smoothstep(0.0, self.shaft.rim_m, self.shaft.outline.depth(self.turned(q)))
     }
 
-    /// Returns the interval of `t` in which a ray's plan, `q + u t`, is at least `inset` inside the outline.
+    /// Returns the interval of t in which the point q + u t of the plan is at least `inset` m inside the outline: a
+    /// ray's position in the plan at the distance t.
     fn chord(&self, q: DVec2, u: DVec2, inset: f64) -> Option<[f64; 2]> {
         match &self.shaft.outline {
             Outline::Ellipse(semi) => {
@@ -216,7 +226,8 @@ impl RainColumn {
         }
     }
 
-    /// Returns the mean of the pattern between two distances along the ray. The mean over all places is 1.
+    /// Returns the mean of the pattern between the distances `a` and `b`, m, along a ray whose position in the plan is
+    /// q + u t and whose height is z + dz t. The pattern's mean over all places is 1.
     fn pattern(&self, waves: &[[f64; 4]; WAVES], q: DVec2, u: DVec2, (z, dz): (f64, f64), [a, b]: [f64; 2]) -> f64 {
         let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
         let fine = self.fine();
@@ -232,12 +243,12 @@ impl RainColumn {
         (1.0 + AMOUNT * shown * sum).max(0.0)
     }
 
-    /// Phase offset that gives each column its own pattern, rad.
+    /// Returns the phase offset that gives each column its own pattern, rad.
     fn turn(&self) -> f64 {
         f64::from(self.shaft.index) * 2.4
     }
 
-    /// Factor by which the pattern of a small area is finer.
+    /// Returns the factor by which the pattern of a small area is finer, 1 to 10.
     fn fine(&self) -> f64 {
         (2000.0 / self.shaft.radius_m).clamp(1.0, 10.0)
     }
@@ -252,7 +263,7 @@ impl RainColumn {
                 (DVec2::ONE, *count as u32, e.map(row))
             }
         };
-        // Unused edges must not hold infinite numbers.
+        // Clears unused edges, which hold infinite numbers.
         edges[corners as usize..].fill([0.0; 4]);
         ColumnUniform {
             center: two(self.center),
@@ -302,8 +313,8 @@ impl AreaField {
         }
     }
 
-    /// Returns the share of the rain at a camera-relative place that belongs to column `i`, with the columns over it
-    /// subtracted.
+    /// Returns the share of the rain at a camera-relative place that belongs to column `i`, less the share of later
+    /// columns that overlap it.
     pub fn share(&self, i: usize, p: DVec3) -> f64 {
         let over = |j: &usize| self.columns[i].later & (1 << j) != 0;
         let left: f64 = (i + 1..self.columns.len()).filter(over).map(|j| 1.0 - self.columns[j].share(p)).product();
@@ -318,13 +329,13 @@ impl AreaField {
         let q = c.turned(origin.truncate() - c.center - lean * (origin.z - c.ground));
         let u = c.turned(d.truncate() - lean * d.z);
         let [first, last] = c.chord(q, u, 0.0)?;
-        // From the valleys to the higher of the two clouds: above its own cloud the column still replaces the weather's
-        // rain.
+        // Bounds the ray by the valleys and by the higher of the two clouds: above its own cloud the column still
+        // replaces the weather's rain.
         let up = if d.z.abs() < 1e-6 { 1e-6f64.copysign(d.z) } else { d.z };
         let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top.max(self.own_top) - origin.z) / up];
         let mut end = range.min(a.max(b)).min(last);
         if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
-            // A ray without an object ends at the ground.
+            // Ends a ray without an object at the ground.
             end = end.min((c.ground - origin.z) / up);
         }
         let begin = first.max(a.min(b)).max(0.0);
@@ -353,14 +364,14 @@ impl AreaField {
             fell += length * fallen;
         }
         if patterned {
-            // Pattern of the front of the column, which shows most, and of the rest.
+            // Applies the pattern of the column's front, which is most visible, and of the rest.
             let cut = (begin + FRONT_M).min(end);
             let [front, rest] = [[begin, cut], [cut, end]]
                 .map(|way| (way[1] - way[0]) * c.pattern(&self.waves, q, u, (origin.z, d.z), way));
             fell *= (front + rest) / (end - begin);
         }
         let mut depth = c.extinction * fell - self.own.liquid_per_m * shared;
-        // The part of the extinction that is drawn as drops near the eye is subtracted.
+        // Subtracts the part of the extinction that is drawn as drops near the eye.
         let near = range.min(self.near_m);
         let half = origin + d * (0.5 * near);
         depth -= (c.near - self.own_near) * near * self.share(i, half);

@@ -1,5 +1,5 @@
-//! Shells of the drops' lattice: their sizes, their motion up to a time, and the share of their drops shown at a
-//! distance.
+//! Shells of the drops' lattice: nested cubes of air around the camera. Their sizes, their motion up to a time, and the
+//! share of their drops that is shown at a distance.
 
 use glam::DVec3;
 
@@ -21,13 +21,13 @@ const WIDER: [f64; SHELLS] = [1.0, 1.259_921_049_894_873_2, 1.587_401_051_968_19
 /// Distance from the camera beyond which no drop of the lattice is drawn, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * WIDER[SHELLS - 1];
 
-/// Share of its reach at which a shell begins to fade out and the next larger one to fade in. Both end at the full
-/// reach.
+/// Distance at which a shell begins to fade out and the next larger one to fade in, as a share of the shell's reach
+/// (half its side). Both fades end at the full reach.
 pub(crate) const FADE: f64 = 0.85;
-/// Distance from the camera up to which drawn drops account for the extinction of all drops, m: the middle of their
-/// fade.
+/// Distance from the camera, m, within which the drawn drops replace the extinction of the drops: the middle of the
+/// outermost shell's fade.
 pub const HIDDEN_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
-/// Distance below which drops fade out, m: `NEAREST` of `shaders/rain/drops.wgsl`.
+/// Distance below which drops fade out towards the camera, m: `NEAREST` of `shaders/rain/drops.wgsl`.
 const NEAREST_M: f64 = 0.25;
 
 /// Returns [`HIDDEN_M`] for the first `shells` shells alone, m.
@@ -68,15 +68,15 @@ impl Moment {
     }
 
     /// Returns the place of a camera at `position_m` (east, north, up of a point fixed to the world) in the cell that
-    /// moves with the air. A drop's start, less its fall and this place, is its position relative to the camera.
+    /// moves with the air. A drop's position relative to the camera is its start less its fall less this place.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
     }
 }
 
-/// Returns the share of its drops that `shell` shows at `distance_m`: it fades in where the smaller shell fades out,
-/// and fades out where the larger one fades in.
+/// Returns the share of each of its drops that `shell` shows at `distance_m`, 0 to 1: it fades in where the smaller
+/// shell fades out, and fades out where the larger one fades in.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);

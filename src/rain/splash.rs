@@ -5,11 +5,12 @@ use glam::{DVec2, DVec3};
 use super::classes::Classes;
 use crate::falling::{lattice::short_seed, random3};
 
-/// Side of a cell of the grid, m.
+/// Side of a cell of the grid on the ground, m.
 const SIDE_M: f64 = 0.5;
-/// Number of cells along one side of the square around the camera.
+/// Number of cells along a side of the square around the camera in which splashes are drawn.
 const CELLS: u32 = 40;
-/// Lifetime of a splash, s: some milliseconds per millimetre of the drop for the crown, and the flight of its droplets.
+/// Lifetime of a splash, s: of the crown, some milliseconds per millimetre of the drop's diameter, and of the flight of
+/// its droplets.
 pub const LIFE_S: f64 = 0.08;
 /// Distance at which splashes have faded, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
@@ -20,10 +21,11 @@ pub const LEAST_MM: f64 = 1.2;
 
 /// Number of groups of drops, equal in number; each group has its mean size.
 const SIZES: usize = 8;
-/// Ratio of the number of slots to the number of drops on level ground: windward slopes get more drops.
+/// Ratio of the number of slots to the mean number of splashes at a time on level ground. It is above 1 because
+/// windward slopes get more drops.
 const MARGIN: f64 = 1.25;
 
-/// `SplashUniform` of `shaders/rain/splash.wgsl`, which explains the fields.
+/// Uniform block `SplashUniform` of `shaders/rain/splash.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct SplashUniform {
@@ -64,7 +66,7 @@ pub struct Landing {
 pub struct Splashes {
     /// Number of drawn splashes per second and m^2 of level ground.
     pub drawn_per_m2_s: f64,
-    /// Number of splashes for which there are no slots, per second and m^2. These are the smallest.
+    /// Number of splashes per second and m^2 that are left out because there are no more slots. These are the smallest.
     pub left_out_per_m2_s: f64,
     /// Mean diameter, mm, and fall speed, m/s, of groups of drawn splashes that are equal in number, the largest first.
     pub sizes: [(f64, f64); SIZES],
@@ -95,19 +97,20 @@ impl Splashes {
         s
     }
 
-    /// Mean number of splashes visible in one cell.
+    /// Returns the mean number of splashes visible at a time in one cell of level ground.
     fn standing(&self) -> f64 {
         self.drawn_per_m2_s * LIFE_S * SIDE_M * SIDE_M
     }
 
-    /// Number of slots tested in one draw.
+    /// Returns the number of slots tested in one draw.
     pub(crate) fn instances(&self) -> u32 {
         CELLS * CELLS * self.slots()
     }
 
     /// Returns the drops that may have landed and whose splash is visible at `time_s`, within ten metres to each side
     /// of a camera at `position_m` (east, north, up of a point fixed to the world). They include drops that land only
-    /// on slopes that get more than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for any ground.
+    /// on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for any
+    /// ground.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;
@@ -129,6 +132,7 @@ impl Splashes {
         })
     }
 
+    /// Returns the number of slots in a cell.
     fn slots(&self) -> u32 {
         ((MARGIN * self.standing()).ceil() as u32).min(MOST_SLOTS)
     }

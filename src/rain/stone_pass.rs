@@ -16,8 +16,9 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(crate) struct StoneDraw {
     pub block: StoneUniform,
-    /// Number of stones in the air, and of slots of landings.
+    /// Number of drawn stones in the air.
     pub falling: u32,
+    /// Number of slots of landings.
     pub landings: u32,
 }
 
@@ -32,12 +33,12 @@ pub(super) struct StonePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
-    /// Pipelines of falling and of hopping stones.
+    /// Pipelines of stones in the air and of stones that hop on the ground.
     pipelines: Made<StoneKind, [wgpu::RenderPipeline; 2]>,
     counts: bool,
 }
 
-/// Properties that select the pipelines: the kind of depth, and whether there are occluder maps.
+/// Properties that select the pipelines: how depth is read, and whether there are occluder maps.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct StoneKind {
     pub depth: DepthRead,
@@ -58,8 +59,8 @@ impl StonePass {
         Self { block, layout, group, pipelines: Made::NONE, counts }
     }
 
-    /// Uploads the block, and compiles the pipelines for a kind of depth if they do not exist yet. `rain` and `around`
-    /// are the layouts of the drops' own groups, `format` is that of their layer.
+    /// Uploads the block, and compiles the pipelines for a kind of depth if they do not exist yet. `rain` is the layout
+    /// of group 0 of the drops' pass, `around` that of the surroundings; `format` is that of the layer.
     ///
     /// # Errors
     /// A missing shader file.

@@ -1,9 +1,10 @@
 //! Stones of ice (hail and ice pellets) among the drops: the number of each size in each shell of the lattice, and
 //! their landings on the ground, where they hop.
 //!
-//! Stones have their own lattice, similar to the drops' ([`super::lattice`]). Each shell is twice as wide as the one
-//! before and holds all stones of its volume, because hail is rare and seen from afar. Pellets are too many for that:
-//! each drawn pellet stands for several, and shells in which it would stand for too many are left to the veil.
+//! Stones have a lattice of their own, a repeated cube of air as for drops ([`super::lattice`]). Each shell is twice as
+//! wide as the one before and holds all stones of its volume, because hail is rare and seen from afar. Pellets are too
+//! many for that: each drawn pellet stands for several. Shells in which it would stand for more than `MOST_WEIGHT` are
+//! not drawn; their pellets are part of the veil.
 
 use glam::DVec3;
 
@@ -22,7 +23,7 @@ const SIDE_M: f64 = 4.0;
 const MOST_WEIGHT: f64 = 16.0;
 /// Number of classes of diameter, for pellets and for hail each.
 const CLASSES: usize = 8;
-/// Number of classes of pellets and hail together.
+/// Number of classes of pellets and of hail together.
 pub(crate) const STONE_CLASSES: usize = 2 * CLASSES;
 
 /// Side of a cell of the grid of landings, m.
@@ -34,7 +35,7 @@ const LIFE_S: f64 = 1.0;
 /// Largest number of slots in a cell.
 const MOST_SLOTS: u32 = 16;
 
-/// `StoneUniform` of `shaders/rain/stones.wgsl`, which explains the fields.
+/// Uniform block `StoneUniform` of `shaders/rain/stones.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct StoneUniform {
@@ -59,6 +60,7 @@ pub(crate) struct StoneUniform {
     pub pad: [f32; 2],
 }
 
+/// Returns the side of a shell's cell, m.
 fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
@@ -91,20 +93,20 @@ impl StoneClass {
 /// Stones in the air and on the ground around a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stones {
-    /// Per class: diameter (m), fall speed (speed units), share of landings of the classes up to this one, 1 for clear
-    /// ice.
+    /// Per class, pellets before hail, each from small to large: diameter, m; fall speed, [`SPEED_UNIT`]; share of the
+    /// landings of the classes up to this one; 1 for clear ice, else 0.
     table: [[f32; 4]; STONE_CLASSES],
-    /// Per class and shell: number of stones of the classes up to this one, and number that each drawn stone stands
-    /// for.
+    /// Per class and shell: number of drawn stones of the classes up to this one.
     upto: [[u32; SHELLS]; STONE_CLASSES],
+    /// Per class and shell: number of stones that each drawn stone stands for.
     weight: [[f32; SHELLS]; STONE_CLASSES],
     /// Number of stones drawn in the air.
     pub drawn: u32,
-    /// Distance up to which pellets and hail are drawn, m, and extinction of the stones that they stand for, 1/m.
+    /// For pellets and for hail: distance up to which they are drawn, m, and extinction of all of them, 1/m.
     reach: [(f64, f64); 2],
     /// Number of drawn landings per second and m^2 of level ground.
     pub landings_per_m2_s: f64,
-    /// Number of landings for which there are no slots, per second and m^2. These are the smallest.
+    /// Number of landings per second and m^2 that are left out because there are no more slots. These are the smallest.
     pub left_out_per_m2_s: f64,
 }
 
@@ -124,7 +126,7 @@ impl Stones {
             landings_per_m2_s: 0.0,
             left_out_per_m2_s: 0.0,
         };
-        // Hail first: large stones are seen farthest.
+        // Takes hail first: large stones are visible farthest.
         let mut left = f64::from(most);
         for kind in [Stone::Hail, Stone::Pellet] {
             let own = kind as usize * CLASSES..(kind as usize + 1) * CLASSES;
@@ -150,7 +152,8 @@ impl Stones {
         s
     }
 
-    /// Sums the numbers of the classes, which are in 256ths until then, and the landings.
+    /// Computes the landings and the table, and turns the classes' numbers of stones, in 256ths, into whole sums up to
+    /// each class.
     fn count(&mut self, classes: &[StoneClass; STONE_CLASSES]) {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE * SIDE);
         let mut landings = [0.0; STONE_CLASSES];
@@ -178,8 +181,8 @@ impl Stones {
         }
     }
 
-    /// Returns the optical depth of all drawn stones in front of objects beyond them: that of their discs, which is
-    /// half of their extinction; the other half is diffraction.
+    /// Returns the optical depth of the drawn stones between the camera and objects beyond their reach. It counts the
+    /// stones' discs, half of their extinction; the other half is diffraction.
     pub fn hidden_depth(&self) -> f64 {
         let edge = 0.5 * (1.0 + FADE);
         self.reach.iter().map(|(reach, extinction)| 0.5 * extinction * edge * reach).sum()
@@ -195,10 +198,12 @@ impl Stones {
         CELLS * CELLS * self.slots()
     }
 
+    /// Returns the mean number of landed stones that are drawn at a time in one cell.
     fn standing(&self) -> f64 {
         self.landings_per_m2_s * LIFE_S * SIDE * SIDE
     }
 
+    /// Returns the number of slots in a cell.
     fn slots(&self) -> u32 {
         self.standing().ceil() as u32
     }

@@ -13,7 +13,7 @@ use crate::{
     scene::DepthUniform,
 };
 
-/// `RainUniform` of `shaders/rain/drops.wgsl`, which explains the fields.
+/// Uniform block `RainUniform` of `shaders/rain/drops.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct RainUniform {

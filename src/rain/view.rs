@@ -1,4 +1,4 @@
-//! The rain of a view: what it draws for a scene and a camera.
+//! Rain of a view: the drops, cones, splashes, stones and columns that it draws for a scene and a camera.
 
 use glam::DVec3;
 
@@ -44,30 +44,33 @@ pub(crate) struct RainView {
     blocks: Blocks,
     layer: RainLayer,
     pub settings: RainSettings,
-    /// Shares set by the plan: of all that falls, and of the near drops that are drawn as single drops.
+    /// Shares set by the plan: the drawn share of all rain, and the share of the near drops that are drawn as single
+    /// drops.
     shares: [f32; 2],
-    /// Recently counted classes of drops, each with the precipitation, speed factor and largest number for which they
-    /// were counted.
+    /// Recently counted classes of drops, each with the precipitation, the factor on fall speeds ([`drops::factor_in`])
+    /// and the largest number of drops for which they were counted.
     counted: Vec<(Falling, f64, u32, Classes)>,
     /// The weather's own rain, reduced to the share that has left its cloud at the camera.
     own: Falling,
-    /// Columns of rain areas around the camera, and the rain that falls around it.
+    /// Columns of rain areas around the camera.
     field: AreaField,
+    /// Rain that falls within reach of the camera.
     local: Option<Local>,
+    /// Pass for columns, once there are any.
     areas: Option<Box<AreaPass>>,
     ice: Ice,
-    /// Memory of the wind at the births of the cones' sets.
+    /// Displacement of the air at the births of the cones' sets.
     births: Remembered,
     /// Whether drops were stepped in the last frame.
     is_stepped: bool,
-    /// Number of the last drawn frame, and the report of its rain.
+    /// Identifier of the last drawn frame, and the report of its rain.
     drawn: (u64, RainReport),
 }
 
-/// Number of rains whose classes are kept: more than the weather's and all areas' together.
+/// Number of precipitations whose classes are cached: more than the weather's and all areas' together.
 const COUNTED: usize = 32;
 
-/// Smallest weight of a nearby rain area, so that cones exist before the camera enters it.
+/// Smallest share with which a nearby rain area counts for the cones, so that they exist before the camera enters it.
 const LEAST_OF_CONES: f64 = 1e-2;
 
 impl RainView {
@@ -107,7 +110,7 @@ impl RainView {
         }
     }
 
-    /// Returns the part of [`Self::presence`] that the plan keeps in this frame.
+    /// Returns the presence of rain and ice that the plan draws in this frame.
     fn kept(&self) -> RainPresence {
         let presence = self.presence();
         RainPresence { drops: presence.drops && self.shares[0] > 0.0, ..presence }
@@ -118,8 +121,8 @@ impl RainView {
         self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
     }
 
-    /// Whether drops are stepped: if the host asked for it, and with the automatic model near a wind that varies in
-    /// space.
+    /// Whether drops are stepped: always with [`RainModel::Integrated`], and with the automatic model near a wind that
+    /// varies in space.
     fn steps(&self, now: &SceneMoment<'_>, device: &Device, is_pure: bool) -> bool {
         match self.settings.model {
             RainModel::Integrated => true,
@@ -147,15 +150,15 @@ impl RainView {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
-    /// Returns three numbers for the weather's own rain: the extinction of its drops or cones if all are drawn, the
-    /// distance up to which they are drawn, and the share that is drawn. The extinction is that of the drops' discs,
-    /// which is half of the total (the other half is diffraction), times the contrast gain.
+    /// Returns ([extinction, distance], share) for the weather's own rain: the extinction of its drops and cones if all
+    /// are drawn, 1/m, the distance up to which they are drawn, m, and the share that is drawn. The extinction is that
+    /// of the drops' discs, which is half of the total (the other half is diffraction), times the contrast gain.
     fn hidden(&mut self, device: &Device, now: &SceneMoment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
         let reach = self.reach(now);
         let most = self.settings.most_on(device);
-        // Stones are rare. Their optical depth is spread over the drops' reach.
+        // Spreads the optical depth of the stones, which are rare, over the drops' reach.
         let ice = self.ice.stones(scene, &self.settings, most).map_or(0.0, |s| s.hidden_depth());
         let rain = self.near(device, scene, &falling);
         let share =
@@ -200,12 +203,13 @@ impl RainView {
     fn shelter_reach(&mut self, device: &Device, scene: &Scene) -> ShelterReach {
         let stones = self.ice.stones(scene, &self.settings, self.settings.most_on(device)).map_or(0.0, |s| s.reach_m());
         let reach_m = BANDS_M.into_iter().fold(REACH_M.max(splash::REACH_M).max(stones), f64::max);
-        // The smallest stones fall a tenth more slowly than the smallest drops.
+        // Allows for the smallest stones, which fall a tenth more slowly than the smallest drops.
         ShelterReach { slowest_m_s: 0.9 * self.classes(device, scene, &{ self.own }).flux[0].1, reach_m }
     }
 
+    /// Returns the classes of drops of a precipitation, counted or cached.
     fn classes(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> Classes {
-        // Shells that are not drawn leave their drops to the others.
+        // Gives the drops of shells that are not drawn to the drawn shells.
         let most = self.settings.most_on(device).saturating_mul((SHELLS / self.shells().max(1)) as u32);
         let station = &scene.conditions.air;
         let factor = drops::factor_in(station, station.station_altitude_m);
@@ -228,7 +232,8 @@ impl RainView {
         let scene = &now.scene;
         let falling = self.own;
         self.field.near_m = self.reach(now);
-        // At most the whole extinction, which is twice that of the drops' discs, is subtracted from a veil.
+        // Limits the gain to 2: no more than the whole extinction, twice that of the drops' discs, is subtracted from a
+        // veil.
         let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
         self.field.own_near = share * self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
@@ -349,7 +354,7 @@ impl RainView {
         let [share, shown] = self.shares.map(f64::from);
         let near = self.share_of_drops();
         block.weight *= (share * near) as f32;
-        // Hail may fall without rain.
+        // Draws no drops if only hail falls.
         let wet = self.kept().drops;
         block.shells = if wet && near > 0.0 { self.shells() as u32 } else { 0 };
         let splashes = Splashes::new(&classes);
