@@ -1,11 +1,13 @@
 // List of the things (drops, flakes, stones) that the picture shows, among all that fall around the camera. Each thing
-// has a bit, in the order of the things' numbers. The list has that order too, so that it does not depend on the
+// has a bit, in the order of the things' indices. The list keeps this order, so that it does not depend on the
 // scheduling of threads. src/particles/listing.rs describes the passes.
 
 // Words of bits in a block.
 const WORDS: u32 = 4u;
 
+// Block of things.
 struct Block {
+    // Bit of each thing: 1 if the picture may show it.
     seen: array<u32, WORDS>,
     // Number of seen things in all blocks before this one.
     before: u32,
@@ -13,11 +15,12 @@ struct Block {
 
 @group(1) @binding(0) var<storage, read_write> blocks: array<Block>;
 
-// Number of blocks that hold `things` things.
+// Returns the number of blocks for `things` things.
 fn blocks_of(things: u32) -> u32 {
     return (things + 32u * WORDS - 1u) / (32u * WORDS);
 }
 
+// Returns the number of seen things in a block.
 fn seen_in(block: u32) -> u32 {
     var sum = 0u;
     for (var i = 0u; i < WORDS; i++) {
@@ -26,12 +29,12 @@ fn seen_in(block: u32) -> u32 {
     return sum;
 }
 
-// Number of things listed in the first `all` blocks, at most `room`.
+// Returns the number of things listed in the first `all` blocks, at most `room`.
 fn listed(all: u32, room: u32) -> u32 {
     return min(blocks[all - 1u].before + seen_in(all - 1u), room);
 }
 
-// Number of the thing at position `rank` of the list. The list must have one there.
+// Returns the index of the thing at position `rank` of the list, which must have that many.
 fn thing_at(rank: u32, all: u32) -> u32 {
     // Finds the last block that begins at `rank` or before.
     var block = 0u;

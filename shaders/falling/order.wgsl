@@ -1,4 +1,5 @@
-// Finds where each block's things begin in the list, and how many things there are in all. Runs in one workgroup.
+// Computes the position in the list at which each block's things begin, and the number of things in all. Runs in one
+// workgroup.
 //!include "falling/list.wgsl"
 
 struct Found {
@@ -10,6 +11,7 @@ struct Found {
 
 @group(1) @binding(2) var<storage, read_write> found: Found;
 
+// Number of threads of the workgroup.
 const SUMS: u32 = 128u;
 var<workgroup> sums: array<u32, SUMS>;
 

@@ -7,13 +7,14 @@
 const STEPPED_SHELLS: u32 = 4u;
 
 struct StepUniform {
-    // Velocity of the air, m/s.
+    // Velocity of the air by the weather's wind, (east, north, up), m/s.
     air: vec3f,
     // Length of a step, s.
     dt: f32,
     wind: WindMap,
-    // Camera's displacement in the frame, m.
+    // Displacement of the camera since the last frame, (east, north, up), m.
     moved: vec3f,
+    // Number of steps in the frame.
     steps: u32,
     // For each shell: number of things that fall in it, number of those that have a state already, index of its first
     // state, and side of its cell, m.
@@ -39,7 +40,7 @@ override WIND: bool = false;
 
 const GRAVITY: f32 = 9.80665;
 
-// Velocity of the air at `p`, which is relative to the camera.
+// Returns the velocity of the air at `p`, relative to the camera, m/s.
 fn air_at(p: vec3f) -> vec3f {
     if !WIND {
         return stepping.air;
@@ -49,20 +50,20 @@ fn air_at(p: vec3f) -> vec3f {
     return wind_at(stepping.wind, place, found, stepping.air);
 }
 
-// Offset in units of the cell's side, wrapped around and converted to units of 2^-32.
+// Returns an offset, given in units of the cell's side, wrapped around and converted to units of 2^-32.
 fn wrapped(cells: vec3f) -> vec3u {
     let part = clamp(cells - floor(cells + 0.5), vec3f(-0.5), vec3f(0.4999999));
     return bitcast<vec3u>(vec3i(part * 4294967296.0));
 }
 
-// State of a thing that has none yet. Its position is the lattice's, `away` from the camera in units of 2^-32 of the
+// Returns the first state of a thing, at its place in the lattice: `away` from the camera, in units of 2^-32 of the
 // side. It falls at `terminal` m/s in still air.
 fn begun(s: u32, away: vec3u, terminal: f32) -> State {
     let p = vec3f(bitcast<vec3i>(away)) * (stepping.sides[s] / 4294967296.0);
     return State(away + stepping.eye[s].xyz, s, air_at(p) - vec3f(0.0, 0.0, terminal), 0.0);
 }
 
-// State of thing `index` of shell `s` after the frame's steps. It falls at `terminal` m/s in still air.
+// Returns the state of thing `index` of shell `s` after the frame's steps. It falls at `terminal` m/s in still air.
 fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     var state = from_state;
     let side = stepping.sides[s];

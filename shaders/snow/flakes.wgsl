@@ -1,5 +1,6 @@
-// Flakes without a state: the place of each follows from (seed, id, time), and one quad draws it. src/snow/lattice.rs
-// and src/snow/reference.rs have the f64 twin and the derivation. The entry points read the depth: flakes_view.wgsl.
+// Flakes without a state: the place of each flake is a function of (seed, id, time), and one quad draws it.
+// src/snow/lattice.rs and src/snow/reference.rs have the f64 twin and the derivation. The entry points read the depth:
+// flakes_view.wgsl.
 //!include "common/depth.wgsl"
 //!include "common/guarded.wgsl"
 //!include "common/hash.wgsl"
@@ -18,46 +19,47 @@ struct FlakesUniform {
     depth: DepthUniform,
     // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
-    // Velocity of the air, m/s.
+    // Velocity of the air, (east, north, up), m/s.
     wind: vec3f,
     // Exposure time of the picture, s.
     exposure: f32,
-    // Mean radiance above and below the horizon, display units per channel.
+    // Mean radiance of the surroundings above the horizon (`above`) and below it (`below`), display units per channel.
     above: vec3f,
     seed: u32,
     below: vec3f,
     // Angle of a pixel, rad.
     pixel_angle: f32,
-    // Irradiance of the sun or moon, display units.
+    // Irradiance of the sun or moon (`sun`), display units, and the unit vector towards it (`to_sun`).
     sun: vec3f,
     // Extinction between the eye and a flake by everything except snow, 1/m.
     extinction: f32,
     to_sun: vec3f,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    // Velocity of the camera, m/s.
+    // Velocity of the camera, (east, north, up), m/s.
     camera: vec3f,
     // Share of the flakes' opacity that is drawn.
     share: f32,
-    // Number of the first flake of each shell.
+    // Index of the first flake of each shell.
     first: vec4u,
     // Number of flakes in all shells.
     count: u32,
     // Turn at a rate of one turn unit, in 2^-32 of a turn.
     turn: u32,
     pad: vec2u,
-    // Per shell. x, y, z: place of the camera in the cell that moves with the air; w: distance fallen at a speed of one
-    // unit. Both are in 2^-32 of the cell's side.
+    // Per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that moves with the air. w:
+    // distance that a flake with a speed of one unit has fallen.
     cell: array<vec4u, SHELLS>,
     // Per shell: place of the camera in the cell fixed to the world, in 2^-32 of its side. Used for stepped flakes.
     eye: array<vec4u, SHELLS>,
-    // Per shell. x: side of the cell, m. y: distance at which it begins to take over from the smaller shell; w:
-    // distance at which it has taken over. z: distance at which it begins to fade out.
+    // Per shell, m. x: side of the cell. y and w: distances at which it begins to fade in and is in full, while the
+    // smaller shell fades out. z: distance at which it begins to fade out.
     shell: array<vec4f, SHELLS>,
-    // Per class: diameter, m; fall speed, speed units; radius of the helix, m; turns, turn units.
+    // Per class. x: diameter, m. y: fall speed, SPEED_UNIT. z: radius of the helix, m. w: turns, TURN_UNIT.
     classes: array<vec4f, CLASSES>,
-    // Per class and shell: number of flakes of the classes up to this one, and number that each drawn flake stands for.
+    // Per class, for each shell: number of flakes of the classes up to this one.
     upto: array<vec4u, CLASSES>,
+    // Per class, for each shell: number of flakes that each drawn flake stands for.
     weight: array<vec4f, CLASSES>,
 }
 
@@ -81,7 +83,7 @@ struct Flake {
     diameter: f32,
     // Velocity, m/s.
     velocity: vec3f,
-    // Share of the flake that its shell shows.
+    // Share of the flake that its shell shows at its distance, 0 to 1.
     share: f32,
     // Velocity without the helix, m/s, with which shelter is tested.
     mean_velocity: vec3f,
@@ -107,11 +109,11 @@ struct Own {
     speed: i32,
 }
 
-// Flakes of one class in one shell.
+// Run of flakes: those of one class in one shell.
 struct Run {
     shell: u32,
     size_class: u32,
-    // Numbers of its first flake in the shell, and of the one after its last.
+    // Index of its first flake in the shell, and of the flake after its last.
     first: u32,
     end: u32,
 }
@@ -175,9 +177,9 @@ fn flake_at(own: Own, away: vec3u, mean: vec3f) -> Flake {
     return Flake(p + around * row.z, row.x, mean + aside, inner * outer, mean, flakes.weight[own.size_class][s], angle, shape);
 }
 
-// Returns the phase function of a flake, whose integral is 4 pi: the scattering by its ice, without diffraction.
-// Aggregates have an asymmetry of 0.77 with diffraction. Diffraction is half of the scattering and goes straight on, so
-// the rest has an asymmetry of 0.54.
+// Returns the phase function of a flake, whose integral over all directions is 4 pi: the scattering by its ice, without
+// diffraction. `c` is the cosine of the scattering angle: 1 is straight on. Aggregates have an asymmetry of 0.77 with
+// diffraction. Diffraction is half of the scattering and goes straight on, so the rest has an asymmetry of 0.54.
 fn flake_phase(c: f32) -> f32 {
     return henyey(0.54, c);
 }
@@ -203,23 +205,24 @@ fn flake_light(p: vec3f, d: vec3f) -> vec3f {
 struct FlakeVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
-    // Opacity of the flake where its streak covers most, and the factor of its shape.
+    // Opacity of the flake where its streak covers most (x), and the factor on the opacity of its shape (y).
     @location(1) cover: vec2f,
     // Depth from depth_of, and transmittance between the flake and the eye.
     @location(2) depth_clear: vec3f,
-    // Position in the quad in radii, across and along the motion, and distance that the flake's middle moves to either
-    // side, in radii.
+    // Position in the quad, across (x) and along (y) the motion, and distance that the flake's middle moves to either
+    // side (z), in radii of the drawn flake.
     @location(3) at: vec3f,
-    // Position on the flake in radii, and how much of its shape shows, 0 to 1.
+    // Position on the flake, in radii (x, y), and weight of its shape against a streak, 0 to 1 (z).
     @location(4) own: vec3f,
     @location(5) @interpolate(flat) shape: u32,
 }
 
+// Returns a corner outside the picture, for flakes that are not drawn.
 fn no_flake() -> FlakeVarying {
     return FlakeVarying(vec4f(2.0, 2.0, 2.0, 1.0), vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0u);
 }
 
-// Whether a disc of this radius that moves from `a` to `b` can be in the picture.
+// Returns whether a disc of this radius that moves from `a` to `b` can be in the picture.
 fn in_picture(a: vec3f, b: vec3f, radius: f32) -> bool {
     let first = flakes.clip * vec4f(a, 1.0);
     let last = flakes.clip * vec4f(b, 1.0);
@@ -230,12 +233,13 @@ fn in_picture(a: vec3f, b: vec3f, radius: f32) -> bool {
     return any(x < side) && any(-x < side) && any(y < side) && any(-y < side);
 }
 
-// Returns `part_drawn` for a flake: half of its drawn motion, and the factor of its opacity.
+// Returns the result of `part_drawn` (common/streak.wgsl) for a flake: half of its drawn path during the exposure, m,
+// and the factor for its opacity.
 fn flake_part(flake: Flake) -> vec4f {
     return part_drawn((flake.velocity - flakes.camera) * (0.5 * flakes.exposure), max(length(flake.position), 1e-3));
 }
 
-// Whether a flake can be in the picture if it is not sheltered.
+// Returns whether a flake can be in the picture if it is not sheltered. `half` is half of its drawn path, m.
 fn may_show(flake: Flake, half: vec3f) -> bool {
     return flake.share > 0.0 && in_picture(flake.position - half, flake.position + half, flake.diameter);
 }
@@ -309,6 +313,7 @@ fn flake_corner(spot: Spot, corner: u32) -> FlakeVarying {
     return out;
 }
 
+// Returns a corner of the quad of a flake that no list has prepared.
 fn lone_corner(flake: Flake, corner: u32) -> FlakeVarying {
     let part = flake_part(flake);
     return flake_corner(spot_of(flake, part, may_show(flake, part.xyz)), corner);
@@ -349,7 +354,7 @@ fn stepped_vertex(
     return lone_corner(flake_at(own_of(run_of(s, index), index), place - flakes.eye[s].xyz, velocity), corner);
 }
 
-// Returns the premultiplied light of a pixel of a flake.
+// Returns the premultiplied light of a pixel of a flake. `shown` is the depth of the host's picture.
 fn flake_color(in: FlakeVarying, shown: f32) -> vec4f {
     let soft = share_before(shown, in.depth_clear.xy);
     let streak = in.cover.x * passing(in.at.xy, in.at.z);

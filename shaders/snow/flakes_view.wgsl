@@ -6,7 +6,7 @@
 
 override HAS_DEPTH: bool = true;
 
-// Returns the depth of the host's picture at a pixel, as view_depth measures it.
+// Returns the depth of the host's picture at a pixel, in the measure of view_depth.
 fn shown_at(position: vec4f) -> f32 {
     if HAS_DEPTH {
         let uv = position.xy / vec2f(textureDimensions(host_depth));

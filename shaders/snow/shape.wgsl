@@ -1,6 +1,6 @@
 // Shape of a flake: a clump of crystals, each different. A disc whose edge and inside are eroded by noise: 1 - exp(-5
-// W) with W = noise - radius^2. src/snow/shape.rs has the same in f64 and the source; its tests hold the mean over the
-// disc to the flake's share of ice.
+// W) with W = noise - radius^2. src/snow/shape.rs has the f64 twin and the source; its tests check that the mean over
+// the disc is the flake's share of ice.
 //!include "common/hash.wgsl"
 
 // Number of octaves of the noise; each is twice as fine and half as strong as the last.
@@ -28,7 +28,8 @@ fn shape_noise(p: vec2f, seed: u32) -> f32 {
     return mix(low, high, w.y);
 }
 
-// Returns the opacity of a flake at a place, in radii. 0 where it is not `wanted`; the loop then has no iterations.
+// Returns the opacity of a flake at the place `at`, in radii from its middle. Returns 0 if it is not `wanted`; the loop
+// then has no iterations.
 fn flake_shape(at: vec2f, seed: u32, wanted: bool) -> f32 {
     var noise = 0.0;
     var strength = 0.5;

@@ -1,4 +1,4 @@
-// Steps the flakes by one frame. Their helix is left out; it is added around the stepped place when they are drawn.
+// Advances the flakes by one frame. Their helix is left out; it is added around the stepped place when they are drawn.
 //!include "snow/flakes.wgsl"
 //!include "falling/step.wgsl"
 

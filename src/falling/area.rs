@@ -1,11 +1,11 @@
 //! Rain areas: regions on the ground plan with their own rain rate. They fade out over a rim, and move with the wind or
 //! with their own velocity.
 //!
-//! Inside a region the area's rain replaces the weather's. Of the falling drops, a share `1 - s` belongs to the weather
-//! and `s` to the area; `s` rises smoothly from 0 on the border to 1 at the inner edge of the rim. Drop numbers, water
-//! and extinction are therefore linear in `s`: half-way through the rim there is half of each rain. Where areas
-//! overlap, a later area in the list replaces the earlier ones in the same way, so that everything stays continuous. An
-//! area of rate 0 is a dry hole.
+//! Inside a region the area's rain replaces the weather's. At a place, the share `1 - s` of the drops belongs to the
+//! weather and `s` to the area; `s` rises smoothly from 0 on the border to 1 at the inner edge of the rim. Drop
+//! numbers, water and extinction are therefore linear in `s`: half-way through the rim there is half of each rain.
+//! Where areas overlap, a later area in the list replaces the earlier ones in the same way, so that everything stays
+//! continuous. An area of rate 0 is a dry hole.
 
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use crate::{
 /// Largest number of corners of a polygon.
 pub const MAX_CORNERS: usize = 8;
 /// Largest distance from a query point to an area's centre, less the area's radius, m. A point farther away counts as
-/// another part of the planet.
+/// outside the area.
 const FARTHEST_M: f64 = 3e5;
 
 /// Shape of a region on the ground plan, in metres to the right and ahead of its centre.
@@ -54,7 +54,7 @@ pub enum AreaMotion {
     Own([f64; 2]),
 }
 
-/// A region with its own rain.
+/// Region with its own rain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RainArea {
@@ -171,7 +171,8 @@ fn validate_corners(corners: &[[f64; 2]; MAX_CORNERS], count: usize) -> Result<(
     if area > 1.0 && convex && turns_once(corners) { Ok(()) } else { Err(flat()) }
 }
 
-/// Whether the sides turn by one full turn in all. Corners that go around twice would pass the test for convexity.
+/// Whether the sides turn by one full turn in total, in either sense. Corners that go around twice would pass the test
+/// for convexity.
 fn turns_once(corners: &[[f64; 2]]) -> bool {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next).map(|(a, b)| DVec2::from(*b) - DVec2::from(*a));
@@ -181,7 +182,7 @@ fn turns_once(corners: &[[f64; 2]]) -> bool {
     turned.abs() < 1.5 * std::f64::consts::TAU
 }
 
-/// Radius of the largest circle inside the sides: a circle that touches three of them.
+/// Returns the radius of the largest circle inside a convex polygon, which touches three of its sides.
 fn inner_radius(edges: &[Edge]) -> f64 {
     let mut most = 0.0f64;
     for (i, a) in edges.iter().enumerate() {
@@ -202,14 +203,16 @@ fn inner_radius(edges: &[Edge]) -> f64 {
     most
 }
 
+/// Returns twice the area of a polygon, m^2; negative if its corners are in clockwise order.
 fn twice_area(corners: &[[f64; 2]]) -> f64 {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
 
-/// Side of a polygon. The depth of a point inside it is `normal . p + offset`.
+/// Side of a polygon. A point p lies dot(normal, p) + offset inside it, m.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Edge {
+    /// Unit vector inwards, (right, ahead).
     pub normal: DVec2,
     pub offset: f64,
 }
@@ -220,7 +223,7 @@ impl Edge {
     }
 }
 
-/// Sides of a polygon. A side without length does not limit the region: every point lies inside it.
+/// Returns the sides of a polygon. A side without length does not limit the region: every point lies inside it.
 fn edges(corners: &[[f64; 2]]) -> [Edge; MAX_CORNERS] {
     let turn = twice_area(corners).signum();
     let mut edges = [Edge { normal: DVec2::ZERO, offset: 1e9 }; MAX_CORNERS];
@@ -242,7 +245,8 @@ pub(crate) enum Outline {
 }
 
 impl Outline {
-    /// Depth of a point inside the border, m, negative outside. Exact for a polygon, first order for an ellipse.
+    /// Returns the depth of a point inside the border, m, negative outside. It is exact inside a polygon, and of first
+    /// order for an ellipse.
     pub(crate) fn depth(&self, p: DVec2) -> f64 {
         match self {
             Self::Ellipse(semi) => {
@@ -255,7 +259,7 @@ impl Outline {
     }
 }
 
-/// A rain area at one moment.
+/// Rain area at one time: the column of its rain from the ground to the cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shaft {
     /// Centre in the host's world, m.
@@ -263,7 +267,7 @@ pub(crate) struct Shaft {
     /// Altitude of `center`, m.
     pub center_altitude_m: f64,
     pub(crate) outline: Outline,
-    /// Unit vector to the right, (east, north).
+    /// Unit vector of the plan's axis to the right, (east, north).
     pub right: DVec2,
     pub rim_m: f64,
     /// Horizontal shift of the column per metre of height, (east, north).
@@ -282,12 +286,12 @@ pub(crate) struct Shaft {
     pub index: u32,
 }
 
-/// Largest lean of a column, which is 72 degrees. Without this limit a gale would carry drizzle from a stationary cloud
-/// farther than its area is wide.
+/// Largest lean of a column, m per m of height: the tangent of 72 degrees. Without this limit a gale would carry
+/// drizzle from a stationary cloud farther than its area is wide.
 const MOST_LEAN: f64 = 3.0;
 /// Depth below the cloud over which the rain sets in, as a share of the column's height.
 const SOFT_SHARE: f64 = 0.25;
-/// Smallest and largest value of that depth, m.
+/// Smallest and largest depth below the cloud over which the rain sets in, m.
 const SOFT_M: [f64; 2] = [50.0, 400.0];
 
 impl Shaft {
@@ -325,8 +329,8 @@ impl Shaft {
         }
     }
 
-    /// Position on the plan, (east, north) of the centre, m. The point is moved down along the lean of the column.
-    /// `None` for a point on another part of the planet.
+    /// Returns the position on the plan, (east, north) of the centre, m: the point is moved along the lean of the
+    /// column to the level of the plan. `None` for a point farther away than [`FARTHEST_M`].
     fn plan(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> Option<DVec2> {
         let away = world_to_enu * (position - self.center);
         let near = away.length() <= self.radius_m + FARTHEST_M;
@@ -338,23 +342,24 @@ impl Shaft {
         DVec2::new(plan.dot(self.right), plan.dot(self.right.perp()))
     }
 
-    /// Share of this area in the rain at a position, 0 to 1, at any height.
+    /// Returns the share of this area in the rain at a position, 0 to 1. Its height counts only by the lean of the
+    /// column.
     pub fn share_at(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> f64 {
         let Some(plan) = self.plan(position, world_to_enu, altitude_m) else { return 0.0 };
         smoothstep(0.0, self.rim_m, self.outline.depth(self.turned(plan)))
     }
 
-    /// Share of the area's rain that has left its cloud at an altitude.
+    /// Returns the share of the area's rain that has left its cloud at an altitude, 0 to 1.
     pub fn begun(&self, altitude_m: f64) -> f64 {
         ((self.top_m - altitude_m) / self.soft_m()).clamp(0.0, 1.0)
     }
 
-    /// Depth below the cloud within which the rain sets in, m.
+    /// Returns the depth below the cloud over which the rain sets in, m.
     pub fn soft_m(&self) -> f64 {
         (SOFT_SHARE * (self.top_m - self.ground_m)).clamp(SOFT_M[0], SOFT_M[1])
     }
 
-    /// Bounds of [`Shaft::share_at`] within `reach_m` of a position.
+    /// Returns bounds, least and largest, of [`Shaft::share_at`] within `reach_m` of a position.
     pub fn share_within(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64, reach_m: f64) -> [f64; 2] {
         let Some(plan) = self.plan(position, world_to_enu, altitude_m) else { return [0.0; 2] };
         // At the tips of a long ellipse the first-order depth changes faster than the distance.

@@ -30,29 +30,30 @@ const VARIATION: [f64; 3] = [0.08, 0.16, 0.49];
 /// Palmer's relation, above which Steiner, Houze and Yuter (1995) count all rain as convective.
 const CONVECTIVE_MM_H: [f64; 2] = [4.0, 19.0];
 
-/// Waves for a seed, in all directions, with lengths between `least` and `most`; each is many times as high as wide.
-/// Each wave has its wave numbers to the right (or east), ahead (or north) and up, 1/m, and its phase, rad.
+/// Returns the waves for a seed, in all directions, with horizontal lengths between `least` and `most`, m. Each wave is
+/// some six times as high as it is long. Each wave has its wave numbers to the right (or east), ahead (or north) and
+/// up, 1/m, and its phase, rad.
 pub(crate) fn waves<const N: usize>(seed: u32, [least, most]: [f64; 2]) -> [[f64; 4]; N] {
     std::array::from_fn(|i| {
         let random = random3([seed, i as u32, 0x7261_696e]).map(|v| f64::from(v) / 4_294_967_296.0);
         let angle = 0.5 * TAU * (i as f64 + random[0]) / N as f64;
-        // Waves of neighbouring directions get very different lengths.
+        // Gives waves of neighbouring directions very different lengths.
         let place = ((i * 5) % N) as f64 / (N - 1) as f64;
         let k = TAU / (least * libm::pow(most / least, place));
-        // A whole number of waves in a vertical period. The vertical wave number is about a sixth of the horizontal
-        // one: curtains are steep.
+        // Fits a whole number of waves into the vertical period. The vertical wave number is about a sixth of the
+        // horizontal one: curtains are steep.
         let rise =
             (k * PERIOD_M / TAU * (0.08 + 0.17 * random[1])).round().max(1.0) * if i % 2 == 0 { 1.0 } else { -1.0 };
         [k * libm::cos(angle), k * libm::sin(angle), TAU * rise / PERIOD_M, TAU * random[2]]
     })
 }
 
-/// Distance that the curtains of the weather's own rain have fallen, m, modulo the period.
+/// Returns the distance that the curtains of the weather's own rain have fallen, m, modulo [`PERIOD_M`].
 pub(crate) fn fallen_m(time_s: f64) -> f64 {
     (FALL_M_S * time_s).rem_euclid(PERIOD_M)
 }
 
-/// Ratio of the standard deviation of rain and drizzle in space to their mean; 0 if none falls.
+/// Returns the ratio of the standard deviation of the rate of rain and drizzle in space to its mean; 0 if none falls.
 pub(crate) fn variation(falling: &Falling) -> f64 {
     let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
     if liquid <= 0.0 {

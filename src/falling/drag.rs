@@ -2,17 +2,17 @@
 //! any length is stable.
 //!
 //! dv/dt = k (air - v) - g has the solution v(t) = s + (v(0) - s) exp(-k t), where s = air - g / k is the settled
-//! velocity. The rate k is that of quadratic drag at the start of the step, so that short steps converge to quadratic
-//! drag. In a step longer than 0.5 / k0, where k0 = g / (terminal speed) is the rate of a settled particle, k is k0,
-//! which gives the right terminal speed.
+//! velocity. A settled particle has the rate k0 = g / vt, with its terminal speed vt. In a step of at most 0.5 / k0, k
+//! is that of quadratic drag at the start of the step, k0 |v(0) - air| / vt, limited to 0.25 k0 to 8 k0; short steps
+//! therefore converge to quadratic drag. In a longer step k = k0, which gives the right terminal speed.
 
 use glam::DVec3;
 
 use super::drops::GRAVITY_M_S2;
 
 /// Returns the velocity (m/s) and the displacement (m) after `dt_s` of a particle that has `velocity_m_s` in air of
-/// `air_m_s` and falls at `terminal_m_s` in still air. Vectors (east, north, up). `shaders/falling/step.wgsl` has the
-/// twin.
+/// `air_m_s` and falls at `terminal_m_s` in still air. Vectors are (east, north, up). Twin of `stepped` in
+/// `shaders/falling/step.wgsl`.
 pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let terminal = terminal_m_s.max(1e-3);
     let at_rest = GRAVITY_M_S2 / terminal;

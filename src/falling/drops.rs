@@ -19,9 +19,9 @@ const SEA_LEVEL_DENSITY_KG_M3: f64 = 1.225;
 /// Gas constant of dry air, J/(kg K).
 const AIR_GAS_CONSTANT: f64 = 287.053;
 
-/// Terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table with monotone cubic
-/// interpolation (Fritsch and Butland 1984). Below the table the speed is proportional to the square of the diameter
-/// (Stokes); above it the speed is constant.
+/// Returns the terminal speed at sea level, m/s, of a drop of `diameter_mm`: Gunn and Kinzer's table with monotone
+/// cubic interpolation (Fritsch and Butland 1984). Below the table the speed is proportional to the square of the
+/// diameter (Stokes); above it the speed is constant.
 pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     let table = &GUNN_KINZER;
     let (first, last) = (table[0], table[table.len() - 1]);
@@ -41,8 +41,9 @@ pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
     va * (1.0 - 3.0 * t2 + 2.0 * t3) + vb * (3.0 * t2 - 2.0 * t3) + h * (ma * (t - 2.0 * t2 + t3) + mb * (t3 - t2))
 }
 
-/// Slope of the interpolant at entry `i` of the table: the weighted harmonic mean of the slopes of the two neighbouring
-/// intervals (Fritsch and Butland 1984), which never overshoots. At the ends it is the slope of the only interval.
+/// Returns the slope of the interpolant at entry `i` of the table, m/s per mm: the weighted harmonic mean of the slopes
+/// of the two neighbouring intervals (Fritsch and Butland 1984), which never overshoots. At the ends it is the slope of
+/// the only interval.
 fn slope(i: usize) -> f64 {
     let secant = |i: usize| {
         let ((a, va), (b, vb)) = (GUNN_KINZER[i], GUNN_KINZER[i + 1]);
@@ -63,47 +64,50 @@ fn slope(i: usize) -> f64 {
 /// Coefficients of [`closed_form_speed_m_s`]: least squares on Gunn and Kinzer's table.
 pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_907_134, 0.012_283_48];
 
-/// Terminal speed at sea level, m/s, in a closed form for shaders: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4 D^2))), never
-/// negative. Its RMS error over the table is 0.031 m/s, at most 0.078 m/s; from 0.6 mm on it is within 2 % (tested). It
-/// is monotone and at most 9.2 m/s for any size.
+/// Returns the terminal speed at sea level, m/s, in a closed form for shaders: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4
+/// D^2))), never negative, with D = `diameter_mm` and c = [`CLOSED_FORM`]. Its RMS error over the table is 0.031 m/s,
+/// at most 0.078 m/s; from 0.6 mm on it is within 2 % (tested). It is monotone and at most 9.2 m/s for any size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);
     -c0 * libm::expm1(-d * (c2 + diameter_mm * (c3 + diameter_mm * c4)))
 }
 
-/// Ratio of the fall speed of drops in air of a density (kg/m^3) to that at sea level: (rho0 / rho)^0.4 (Foote and du
-/// Toit 1969).
+/// Returns the ratio of the fall speed of drops in air of the density rho, kg/m^3, to that at sea level: (rho0 /
+/// rho)^0.4, rho0 = 1.225 kg/m^3 (Foote and du Toit 1969).
 pub fn density_factor(density_kg_m3: f64) -> f64 {
     libm::pow(SEA_LEVEL_DENSITY_KG_M3 / density_kg_m3, 0.4)
 }
 
-/// [`density_factor`] of the standard atmosphere at an altitude above the sea, m, clamped to \[-1000, 11 000\].
+/// Returns the [`density_factor`] in the standard atmosphere at an altitude above the sea, m, clamped to \[-1000, 11
+/// 000\].
 pub fn altitude_factor(altitude_m: f64) -> f64 {
     libm::pow(standard_density_ratio(altitude_m), -0.4)
 }
 
-/// Density relative to sea level in the troposphere of the standard atmosphere (ISO 2533).
+/// Returns the density relative to sea level in the troposphere of the standard atmosphere (ISO 2533): (1 - 2.25577e-5
+/// h)^4.25588, h in m.
 fn standard_density_ratio(altitude_m: f64) -> f64 {
     libm::pow(1.0 - 2.255_77e-5 * altitude_m.clamp(-1000.0, 11_000.0), 4.255_88)
 }
 
-/// [`density_factor`] at an altitude above the sea, m, over a station whose air is known. The density at the station is
-/// computed from its pressure and temperature; it changes with height as in the standard atmosphere.
+/// Returns the [`density_factor`] at an altitude above the sea, m, over a station whose air is known. The density at
+/// the station is computed from its pressure and temperature; it changes with height as in the standard atmosphere.
 pub fn factor_in(air: &crate::weather::Air, altitude_m: f64) -> f64 {
     let at_station = 100.0 * air.station_pressure_hpa / (AIR_GAS_CONSTANT * (air.temperature_c + 273.15));
     let ratio = standard_density_ratio(altitude_m) / standard_density_ratio(air.station_altitude_m);
     density_factor(at_station * ratio)
 }
 
-/// Ratio of the vertical to the horizontal axis of a falling drop (Brandes, Zhang and Vivekanandan 2002, eq. 16), at
-/// most 1; constant above 8 mm.
+/// Returns the ratio of the vertical to the horizontal axis of a falling drop, a polynomial of the diameter (Brandes,
+/// Zhang and Vivekanandan 2002, eq. 16), at most 1; constant above 8 mm.
 pub fn axis_ratio(diameter_mm: f64) -> f64 {
     let d = diameter_mm.clamp(0.0, 8.0);
     (0.9951 + d * (0.0251 + d * (-0.03644 + d * (0.005_303 - d * 0.000_249_2)))).min(1.0)
 }
 
-/// Length, m, of the streak that a drop makes in an exposure (s) at a velocity relative to the camera (m/s).
+/// Returns the length, m, of the streak that a drop makes in an exposure (s) at a velocity relative to the camera
+/// (m/s).
 pub fn streak_length_m(relative_velocity_m_s: DVec3, exposure_s: f64) -> f64 {
     relative_velocity_m_s.length() * exposure_s
 }

@@ -3,9 +3,10 @@
 //! *Sizes*. Melted diameters Dm are distributed as N0 exp(-lambda Dm), with lambda = 2.55 R^-0.48 per mm at the rate R,
 //! mm/h (Gunn and Marshall 1958, for aggregates close to the melting point). Flakes are smaller in colder air: the
 //! slope of the exponential over the diameter D is 1220 x 10^(-0.0245 T) per m at T degrees C (Ryan 1996). Only the
-//! ratio of this slope to that near the melting point is used. A flake of density c / D has D^2 = Dm^3 / c, with c =
-//! 0.17 g/cm^3 mm (Holroyd 1971). The area that flakes hide is therefore a gamma distribution of order 4 over Dm, and
-//! the area-weighted mean of Dm is 4 / lambda. Flakes larger than [`LARGEST_MM`] break up.
+//! ratio of this slope to that at -1 C, for which Gunn and Marshall's sizes hold, is used. A flake of density c / D has
+//! the mass of its melted drop if D^2 = Dm^3 rho / c, with c = 0.17 g/cm^3 mm (Holroyd 1971) and rho = 1 g/cm^3 for
+//! water. The area that flakes hide is therefore a gamma distribution of order 4 over Dm, and the area-weighted mean of
+//! Dm is 4 / lambda. Flakes larger than [`LARGEST_MM`] break up.
 //!
 //! *Number*. The flakes have the extinction of the weather's snow (`weather::hydrometeors`). Half of it is the area of
 //! their discs, of which [`AREA_RATIO`] is ice; the other half is diffraction. At their fall speeds the flakes must
@@ -80,13 +81,13 @@ impl FlakeKind {
         ("crystal", Self::Crystal),
     ];
 
-    /// The kind of that name; hyphens count as underscores.
+    /// Returns the kind of that name; hyphens count as underscores. `None` for another name.
     pub fn from_name(name: &str) -> Option<Self> {
         let same = |known: &str| name.chars().map(|c| if c == '-' { '_' } else { c }).eq(known.chars());
         Self::NAMES.iter().find(|(known, _)| same(known)).map(|(_, kind)| *kind)
     }
 
-    /// Factor a and exponent b of the terminal speed a D^b, m/s with D in mm.
+    /// Returns the factor a and the exponent b of the terminal speed a D^b, m/s with D in mm.
     const fn law(self) -> (f64, f64) {
         match self {
             Self::Unrimed => (0.8, 0.16),
@@ -97,15 +98,15 @@ impl FlakeKind {
         }
     }
 
-    /// Terminal speed, m/s, of a flake of a diameter, mm; 0 for a diameter of 0.
+    /// Returns the terminal speed, m/s, of a flake of a diameter, mm; 0 for a diameter of 0.
     pub fn speed_m_s(self, diameter_mm: f64) -> f64 {
         let (a, b) = self.law();
         if diameter_mm > 0.0 { a * libm::pow(diameter_mm, b) } else { 0.0 }
     }
 }
 
-/// Terminal speed of aggregates in air of a temperature, m/s: interpolated between the laws of unrimed, rimed and
-/// densely rimed aggregates.
+/// Returns the terminal speed of aggregates in air of a temperature, m/s: interpolated between the laws of unrimed,
+/// rimed and densely rimed aggregates.
 pub fn aggregate_speed_m_s(diameter_mm: f64, temperature_c: f64) -> f64 {
     let between = |cold: FlakeKind, warm: FlakeKind, share: f64| {
         cold.speed_m_s(diameter_mm) * (1.0 - share) + warm.speed_m_s(diameter_mm) * share
@@ -120,7 +121,7 @@ pub fn aggregate_speed_m_s(diameter_mm: f64, temperature_c: f64) -> f64 {
 /// Helix on which a flake falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swirl {
-    /// Radius of the helix, m; 0 where the flake falls straight.
+    /// Radius of the helix, m; 0 if the flake falls straight.
     pub radius_m: f64,
     /// Turns per second.
     pub turns_per_s: f64,
@@ -145,20 +146,20 @@ impl Swirl {
 struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
-    /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. 0
-    /// spreads the hidden area evenly over the logarithm of the diameter.
+    /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. If
+    /// it is 0, equal ratios of diameters hide equal areas.
     lambda: f64,
     /// Smallest and largest diameter, mm.
     range_mm: (f64, f64),
 }
 
-/// Cumulative gamma distribution of order 4 at `x`.
+/// Returns the cumulative gamma distribution of order 4 at `x`.
 fn gamma4(x: f64) -> f64 {
     1.0 - libm::exp(-x) * (1.0 + x * (1.0 + x * (0.5 + x / 6.0)))
 }
 
 impl FlakeMode {
-    /// Share of the hidden area that flakes up to a diameter hide.
+    /// Returns the share of the area hidden by all flakes of the part that flakes up to a diameter hide, 0 to 1.
     fn area_below(&self, diameter_mm: f64) -> f64 {
         let (low, high) = self.range_mm;
         let d = diameter_mm.clamp(low, high);
@@ -177,6 +178,7 @@ pub struct FlakeSizes {
     parts: [FlakeMode; 3],
     rate_mm_h: f64,
     temperature_c: f64,
+    /// Ratio of fall speeds to those at sea level.
     factor: f64,
 }
 
@@ -194,7 +196,8 @@ impl FlakeSizes {
         let kinds = falling.snow_kinds_mm_h();
         let share = |i: usize| if falling.snow_mm_h > 0.0 { kinds[i] / falling.snow_mm_h } else { 0.0 };
         let colder = libm::exp10(0.0245 * (temperature_c - GUNN_MARSHALL_C).clamp(-40.0, 0.0));
-        // D is proportional to Dm^(3/2), so a factor on the slope over D becomes its power 2/3 on the slope over Dm.
+        // Applies the factor on the slope over D as its power 2/3 to the slope over Dm, because D is proportional to
+        // Dm^(3/2).
         let lambda = 2.55 * libm::pow(kinds[0].max(LEAST_MM_H), -0.48) / libm::pow(colder, 2.0 / 3.0);
         let part =
             |i: usize, lambda: f64, range_mm| FlakeMode { extinction_per_m: extinction * share(i), lambda, range_mm };
@@ -211,12 +214,13 @@ impl FlakeSizes {
         self.parts.iter().any(|p| p.extinction_per_m > 0.0)
     }
 
-    /// Diameters, mm, below and above which flakes of a part hide a hundredth each of the area that the part hides.
+    /// Returns the two diameters, mm, below and above which the flakes of a part hide a hundredth each of the area that
+    /// the part hides.
     pub fn range_mm(&self, part: usize) -> (f64, f64) {
         (self.diameter_mm(part, 0.01), self.diameter_mm(part, 0.99))
     }
 
-    /// Diameter, mm, up to which flakes of a part hide `share` of the area that the part hides.
+    /// Returns the diameter, mm, up to which flakes of a part hide `share` of the area that the part hides.
     pub fn diameter_mm(&self, part: usize, share: f64) -> f64 {
         let p = &self.parts[part];
         let (mut low, mut high) = p.range_mm;
@@ -227,8 +231,8 @@ impl FlakeSizes {
         (low * high).sqrt()
     }
 
-    /// Area that the ice of a part's flakes between two diameters (mm) hides, m^2 per cubic metre: half of their
-    /// extinction.
+    /// Returns the area that the ice of a part's flakes between two diameters (mm) hides, m^2 per cubic metre: half of
+    /// their extinction.
     pub fn area_between(&self, part: usize, a_mm: f64, b_mm: f64) -> f64 {
         let p = &self.parts[part];
         0.5 * p.extinction_per_m * (p.area_below(b_mm) - p.area_below(a_mm)).max(0.0)
@@ -239,7 +243,7 @@ impl FlakeSizes {
         self.parts.iter().map(|p| p.extinction_per_m).sum()
     }
 
-    /// Terminal speed at this altitude of a flake of a part, m/s.
+    /// Returns the terminal speed at this altitude of a flake of a part, m/s.
     pub fn speed_m_s(&self, part: usize, diameter_mm: f64) -> f64 {
         self.factor
             * match part {
@@ -249,8 +253,9 @@ impl FlakeSizes {
             }
     }
 
-    /// Density times diameter, c, with which the flakes give the rate, g/cm^3 mm; 0 without flakes. If the area of the
-    /// discs is a (m^2 per cubic metre, of which [`AREA_RATIO`] is ice) and they fall at v, the rate is (2/3) c a v.
+    /// Returns the density times the diameter, c, with which the flakes give the rate, g/cm^3 mm (which is kg/m^2); 0
+    /// without flakes. If the area of the discs is a (m^2 per cubic metre, of which [`AREA_RATIO`] is ice) and they
+    /// fall at v, the rate is (2/3) c a v.
     pub fn density_mm_g_cm3(&self) -> f64 {
         const PANELS: usize = 64;
         let mut flux = 0.0;
@@ -260,14 +265,14 @@ impl FlakeSizes {
                 flux += self.speed_m_s(part, d) * 0.5 * self.parts[part].extinction_per_m / PANELS as f64;
             }
         }
-        // Rate in kg/(m^2 s) for c = 1 kg/m^2. A sphere of density c / D has the mass (pi/6) c D^2 and a disc of (pi/4)
-        // D^2; the ratio is (2/3) c.
+        // Computes the rate in kg/(m^2 s) for c = 1 kg/m^2. A sphere of density c / D has the mass (pi/6) c D^2 and a
+        // disc of (pi/4) D^2; the ratio is (2/3) c.
         let of_one = flux / AREA_RATIO * (2.0 / 3.0);
         if of_one > 0.0 { self.rate_mm_h / 3600.0 / of_one } else { 0.0 }
     }
 }
 
-/// Area that the ice of a flake hides, m^2; `diameter_mm` is the diameter of the flake.
+/// Returns the area that the ice of a flake of a diameter, mm, hides, m^2.
 pub fn seen_area_m2(diameter_mm: f64) -> f64 {
     AREA_RATIO * FRAC_PI_4 * diameter_mm * diameter_mm * 1e-6
 }

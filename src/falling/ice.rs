@@ -20,14 +20,14 @@ pub const PELLETS_MM: (f64, f64) = (0.5, 5.0);
 /// Smallest and largest hailstone, mm.
 pub const HAIL_MM: (f64, f64) = (5.0, 60.0);
 
-/// Water flux, mm/h, of one 1 mm stone per m^3 that falls at 1 m/s.
+/// Rate of melted water, mm/h, from one stone of 1 mm per m^3 that falls at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3 * ICE_KG_M3 / 1000.0;
 /// Smallest and largest slope of hail's size distribution, 1/mm. The smallest gives the most water of Cheng and
 /// English's law; a higher rate has more stones, not larger ones. The largest gives almost no water.
 const HAIL_SLOPES_PER_MM: (f64, f64) = (0.15, 3.0);
 /// Density of the standard atmosphere at sea level, kg/m^3.
 const SEA_LEVEL_KG_M3: f64 = 1.225;
-/// Number of panels of Simpson's rule over the sizes of a kind.
+/// Number of panels of Simpson's rule in an integral over the sizes of a kind.
 const PANELS: usize = 96;
 
 /// Kind of solid, nearly spherical precipitation.
@@ -40,10 +40,10 @@ pub enum Stone {
 }
 
 impl Stone {
-    /// Both kinds, in the order of their numbers.
+    /// Both kinds, in the order of their discriminants.
     pub const ALL: [Self; 2] = [Self::Pellet, Self::Hail];
 
-    /// Smallest and largest diameter, mm.
+    /// Returns the smallest and the largest diameter, mm.
     pub fn range_mm(self) -> (f64, f64) {
         match self {
             Self::Pellet => PELLETS_MM,
@@ -51,9 +51,11 @@ impl Stone {
         }
     }
 
-    /// Terminal speed, m/s, for a diameter; `factor` is the ratio of the speed of raindrops here to that at sea level.
+    /// Returns the terminal speed, m/s, for a diameter; `factor` is the ratio of the speed of raindrops here to that at
+    /// sea level.
     pub fn speed_m_s(self, diameter_mm: f64, factor: f64) -> f64 {
-        // The speed of raindrops is proportional to density^-0.4 (Foote and du Toit 1969).
+        // Computes the air's density from the speed of raindrops, which is proportional to density^-0.4 (Foote and du
+        // Toit 1969).
         let density = SEA_LEVEL_KG_M3 * libm::pow(factor, -2.5);
         match self {
             Self::Pellet => sphere_speed_m_s(diameter_mm, density),
@@ -63,8 +65,9 @@ impl Stone {
     }
 }
 
-/// Speed of a sphere of ice from its Best number X: Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) - 1)^2 with d
-/// = 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
+/// Returns the speed of a sphere of ice, m/s, in air of a density, kg/m^3. It follows from the Reynolds number Re as a
+/// function of the Best number X (drag coefficient times Re^2): Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) -
+/// 1)^2 with d = 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
 fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     const DELTA: f64 = 8.0;
     const C: f64 = 0.35;
@@ -87,7 +90,7 @@ struct StoneMode {
 }
 
 impl StoneMode {
-    /// Integral of `f` times the size distribution over the sizes of the kind.
+    /// Returns the integral of `f` times the size distribution over the sizes of the kind.
     fn integral(&self, f: impl Fn(f64) -> f64) -> f64 {
         if self.n0 <= 0.0 {
             return 0.0;
@@ -103,21 +106,25 @@ impl StoneMode {
         self.n0 * sum * (step / 6.0)
     }
 
+    /// Returns the rate of melted water that the stones give, mm/h.
     fn rate_mm_h(&self, factor: f64) -> f64 {
         self.integral(|d| RATE * d * d * d * self.stone.speed_m_s(d, factor))
     }
 
+    /// Returns the distribution with the N0 that gives this rate.
     fn of(self, rate_mm_h: f64, factor: f64) -> Self {
         let unit = Self { n0: 1.0, ..self }.rate_mm_h(factor);
         Self { n0: rate_mm_h.max(0.0) / unit, ..self }
     }
 
+    /// Creates the distribution of pellets: Marshall and Palmer's, with diameters enlarged by freezing.
     fn pellets(rate_mm_h: f64, factor: f64) -> Self {
         let swollen = libm::cbrt(1000.0 / ICE_KG_M3);
         let lambda = 4.1 / swollen * libm::pow(rate_mm_h.max(1e-6), -0.21);
         Self { stone: Stone::Pellet, n0: 0.0, lambda }.of(rate_mm_h, factor)
     }
 
+    /// Creates the distribution of hail, whose slope follows from the rate.
     fn hail(rate_mm_h: f64, factor: f64) -> Self {
         let (mut low, mut high) = HAIL_SLOPES_PER_MM;
         let part = |lambda: f64| Self { stone: Stone::Hail, n0: 115.0 * libm::pow(lambda, 3.63), lambda };
@@ -131,7 +138,7 @@ impl StoneMode {
     }
 }
 
-/// Size distribution of the stones in a cubic metre. Plain data, any thread.
+/// Size distribution of the stones in a cubic metre of air. Plain data, for any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoneSizes {
     parts: [StoneMode; 2],
@@ -155,7 +162,7 @@ impl StoneSizes {
         self.parts.iter().map(f).sum()
     }
 
-    /// Number of stones of a kind with diameters from `a_mm` to `b_mm`, 1/m^3.
+    /// Returns the number of stones of a kind with diameters from `a_mm` to `b_mm`, 1/m^3.
     pub fn number_between(&self, stone: Stone, a_mm: f64, b_mm: f64) -> f64 {
         let (low, high) = stone.range_mm();
         let (a, b) = (a_mm.max(low), b_mm.min(high));
@@ -166,39 +173,39 @@ impl StoneSizes {
         part.n0 / part.lambda * (libm::exp(-part.lambda * a) - libm::exp(-part.lambda * b))
     }
 
-    /// Number of stones, 1/m^3.
+    /// Returns the number of stones, 1/m^3.
     pub fn number_per_m3(&self) -> f64 {
         self.sum(|p| p.integral(|_| 1.0))
     }
 
-    /// Mass of ice in the air, g/m^3.
+    /// Returns the mass of ice in the air, g/m^3.
     pub fn ice_g_m3(&self) -> f64 {
         PI / 6.0 * 1e-6 * ICE_KG_M3 * self.sum(|p| p.integral(|d| d * d * d))
     }
 
-    /// Extinction at any visible wavelength, 1/m (geometric optics, Q = 2).
+    /// Returns the extinction at any visible wavelength, 1/m (geometric optics: extinction efficiency 2).
     pub fn extinction_per_m(&self) -> f64 {
         PI / 2.0 * 1e-6 * self.sum(|p| p.integral(|d| d * d))
     }
 
-    /// Mean diameter of the stones in a volume of air, mm; 0 without stones.
+    /// Returns the mean diameter of the stones in a volume of air, mm; 0 without stones.
     pub fn mean_diameter_mm(&self) -> f64 {
         let number = self.number_per_m3();
         if number > 0.0 { self.sum(|p| p.integral(|d| d)) / number } else { 0.0 }
     }
 
-    /// Terminal speed of a stone in this air, m/s.
+    /// Returns the terminal speed of a stone in this air, m/s.
     pub fn speed_m_s(&self, stone: Stone, diameter_mm: f64) -> f64 {
         stone.speed_m_s(diameter_mm, self.factor)
     }
 
-    /// Returns the flux on one side of a surface, as [`super::sizes::DropSizes::on_surface`] does for drops.
+    /// Returns the flux onto the front of a surface. `normal` is the unit vector out of that front (east, north, up);
+    /// `air_m_s` is the velocity of the air relative to the surface. Stones from behind do not count.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }
 
-    /// Returns the flux as [`StoneSizes::on_surface`] does, but only of the stones whose fall speed (m/s) `comes`
-    /// accepts.
+    /// Returns the flux of [`StoneSizes::on_surface`], but only of the stones whose fall speed, m/s, satisfies `comes`.
     pub(crate) fn on_surface_of(&self, normal: DVec3, air_m_s: DVec3, comes: impl Fn(f64) -> bool) -> SurfaceFlux {
         let carried = air_m_s.dot(normal);
         let towards = |p: &StoneMode, d: f64| {

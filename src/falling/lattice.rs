@@ -3,14 +3,14 @@
 
 use glam::DVec3;
 
-/// Position `x`, m, as a fraction of `side` in units of 2^-32; wraps around.
+/// Returns the position `x`, m, as a fraction of `side`, m, in units of 2^-32; wraps around.
 pub fn fraction(x: f64, side: f64) -> u32 {
     let cells = x / side;
     // Rounding may give 2^32 itself; a direct cast to `u32` would saturate it instead of wrapping.
     ((cells - cells.floor()) * 4_294_967_296.0) as u64 as u32
 }
 
-/// Vector from `camera` to the nearest copy of `place`, m.
+/// Returns the vector from `camera` to the nearest copy of `place`, m. Both are in 2^-32 of the side.
 pub fn nearest(place: [u32; 3], camera: [u32; 3], side: f64) -> DVec3 {
     DVec3::from([0, 1, 2].map(|i| f64::from(place[i].wrapping_sub(camera[i]) as i32) / 4_294_967_296.0 * side))
 }

@@ -1,9 +1,9 @@
 //! Drop size distribution of rain and drizzle, and the quantities that follow from it: water in the air, extinction,
 //! flux onto surfaces, and random diameters for drops that are drawn.
 //!
-//! Each kind of rain has an exponential distribution, N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda is the
-//! published one. N0 is set so that the drops make the given rate at Gunn and Kinzer's fall speeds: with a published N0
-//! the rate is wrong by up to 18 %.
+//! Each kind of rain has an exponential distribution, N(D) = N0 exp(-lambda D) from 0.1 to 6 mm. Lambda follows from
+//! the rate by the published laws (`SLOPES_PER_MM`). N0 is set so that the drops give the rate at Gunn and Kinzer's
+//! fall speeds: with the published N0 the rate would be wrong by up to 18 %.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -17,9 +17,9 @@ use crate::{numerics::GAUSS_4, weather::Falling};
 pub const SMALLEST_MM: f64 = 0.1;
 /// Largest drop, mm.
 pub const LARGEST_MM: f64 = 6.0;
-/// Rate, mm/h, below which lambda stays constant and only the number of drops falls.
+/// Rate, mm/h, below which lambda stays constant and only the number of drops decreases.
 const LEAST_RATE_MM_H: f64 = 1e-6;
-/// Most distributions that overlap at a place: the three of the weather, and one for each rain area.
+/// Largest number of distributions that overlap at a place: the three of the weather, and one for each rain area.
 const PARTS: usize = 3 + super::MAX_AREAS;
 /// Number of entries in [`DropSizes::diameter_table`].
 pub const TABLE_LEN: usize = 64;
@@ -37,7 +37,8 @@ struct SizeMode {
     lambda: f64,
 }
 
-/// Drop size distribution of rain and drizzle in the air: a sum of exponential ones. Plain data, for any thread.
+/// Drop size distribution of rain and drizzle in the air: a sum of exponential distributions. Plain data, for any
+/// thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
     parts: [SizeMode; PARTS],
@@ -77,7 +78,7 @@ static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     nodes.collect()
 });
 
-/// Rain rate, mm/h, that one drop of 1 mm per m^3 makes when falling at 1 m/s.
+/// Rate, mm/h, from one drop of 1 mm per m^3 that falls at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3;
 
 impl SizeMode {
@@ -91,7 +92,8 @@ impl SizeMode {
         Self { n0: rate_mm_h / (unit * factor), lambda }
     }
 
-    /// Integral of D^`power` N(D) from `a` to `b` mm, found by integration by parts from power 0 upward.
+    /// Returns the integral of D^`power` N(D) dD from `a` to `b`, mm^`power`/m^3, by integration by parts from power 0
+    /// upwards.
     fn moment(&self, power: u32, a: f64, b: f64) -> f64 {
         if self.n0 <= 0.0 {
             return 0.0;
@@ -107,6 +109,7 @@ impl SizeMode {
     }
 }
 
+/// Returns the distributions of the weather, followed by empty ones for rain areas.
 fn filled(parts: [SizeMode; 3]) -> [SizeMode; PARTS] {
     let none = SizeMode { n0: 0.0, lambda: 1.0 };
     std::array::from_fn(|i| parts.get(i).copied().unwrap_or(none))
@@ -119,8 +122,8 @@ impl DropSizes {
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         let showers = falling.showers.clamp(0.0, 1.0);
         let rates = [falling.rain_mm_h * (1.0 - showers), falling.rain_mm_h * showers, falling.drizzle_mm_h];
-        // Steady rain and showers share one rate, and each has the lambda of that whole rate: while one blends into the
-        // other only the numbers of drops change.
+        // Gives steady rain and showers, which share one rate, each the lambda of that whole rate: while one blends
+        // into the other, only the numbers of drops change.
         let whole = [falling.rain_mm_h, falling.rain_mm_h, falling.drizzle_mm_h];
         let part = |i: usize| {
             let whole_part = SizeMode::new(SLOPES_PER_MM[i], whole[i], speed_factor);
@@ -156,7 +159,7 @@ impl DropSizes {
         self.parts.iter().map(f).sum()
     }
 
-    /// Number density N(D), 1/(m^3 mm); 0 outside of the range of sizes.
+    /// Returns the number density N(D), 1/(m^3 mm); 0 outside the range of sizes.
     pub fn density_per_m3_mm(&self, diameter_mm: f64) -> f64 {
         if !(SMALLEST_MM..=LARGEST_MM).contains(&diameter_mm) {
             return 0.0;
@@ -164,7 +167,7 @@ impl DropSizes {
         self.sum(|p| if p.n0 > 0.0 { p.n0 * libm::exp(-p.lambda * diameter_mm) } else { 0.0 })
     }
 
-    /// Number of drops with diameters from `a_mm` to `b_mm`, 1/m^3.
+    /// Returns the number of drops with diameters from `a_mm` to `b_mm`, 1/m^3.
     pub fn number_between(&self, a_mm: f64, b_mm: f64) -> f64 {
         let (a, b) = (a_mm.max(SMALLEST_MM), b_mm.min(LARGEST_MM));
         if a < b { self.sum(|p| p.moment(0, a, b)) } else { 0.0 }
@@ -174,34 +177,34 @@ impl DropSizes {
         self.sum(|p| p.moment(power, SMALLEST_MM, LARGEST_MM))
     }
 
-    /// Number of drops, 1/m^3.
+    /// Returns the number of drops, 1/m^3.
     pub fn number_per_m3(&self) -> f64 {
         self.moment(0)
     }
 
-    /// Water in the air, g/m^3.
+    /// Returns the mass of water in the air, g/m^3.
     pub fn liquid_g_m3(&self) -> f64 {
         PI / 6.0 * 1e-3 * self.moment(3)
     }
 
-    /// Extinction at any visible wavelength, 1/m, by geometric optics (Q = 2).
+    /// Returns the extinction at any visible wavelength, 1/m, by geometric optics (extinction efficiency 2).
     pub fn extinction_per_m(&self) -> f64 {
         PI / 2.0 * 1e-6 * self.moment(2)
     }
 
-    /// Extinction by the drops with diameters from `a_mm` to `b_mm`, 1/m.
+    /// Returns the extinction by the drops with diameters from `a_mm` to `b_mm`, 1/m.
     pub fn extinction_between_per_m(&self, a_mm: f64, b_mm: f64) -> f64 {
         let (a, b) = (a_mm.max(SMALLEST_MM), b_mm.min(LARGEST_MM));
         if a < b { PI / 2.0 * 1e-6 * self.sum(|p| p.moment(2, a, b)) } else { 0.0 }
     }
 
-    /// Mean diameter of the drops in a volume, mm; 0 without rain.
+    /// Returns the mean diameter of the drops in a volume, mm; 0 without rain.
     pub fn mean_diameter_mm(&self) -> f64 {
         let number = self.number_per_m3();
         if number > 0.0 { self.moment(1) / number } else { 0.0 }
     }
 
-    /// Median volume diameter, mm: half of the water in the air is in smaller drops. 0 without rain.
+    /// Returns the median volume diameter, mm: half of the water in the air is in smaller drops. It is 0 without rain.
     pub fn median_volume_diameter_mm(&self) -> f64 {
         let half = 0.5 * self.moment(3);
         if half <= 0.0 {
@@ -216,12 +219,13 @@ impl DropSizes {
         0.5 * (low + high)
     }
 
-    /// Terminal speed of a drop here, m/s.
+    /// Returns the terminal speed of a drop in this air, m/s.
     pub fn speed_m_s(&self, diameter_mm: f64) -> f64 {
         self.factor * terminal_speed_m_s(diameter_mm)
     }
 
-    /// Fall speeds, m/s, of three drops, each in the middle of a third of the water that lands, from small to large.
+    /// Returns the fall speeds, m/s, of the drops in the middle of each third of the water that lands on level ground,
+    /// from small to large.
     pub(crate) fn thirds_m_s(&self) -> [f64; 3] {
         let sizes = self.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]);
         sizes.map(|d| self.speed_m_s(d))
@@ -255,6 +259,7 @@ impl DropSizes {
         SurfaceFlux { drops_per_m2_s: drops, rate_mm_h: RATE * water }
     }
 
+    /// Returns the number density, times the quantity `weight` of a drop of diameter `d`, mm.
     fn weighed(&self, weight: Weight, d: f64) -> f64 {
         let number = self.density_per_m3_mm(d);
         match weight {
@@ -264,14 +269,14 @@ impl DropSizes {
         }
     }
 
-    /// Diameters, mm, at the quantiles `u` (\[0, 1\], 0 is the smallest drop) of the drops above `smallest_mm`,
-    /// weighted by `weight`. A uniform random `u` gives a random drop. Within 1e-4 mm.
+    /// Returns the diameters, mm, at the quantiles `u` (\[0, 1\], 0 is the smallest drop) of the drops above
+    /// `smallest_mm`, weighted by `weight`. A uniform random `u` gives a random drop. The error is at most 1e-4 mm.
     pub fn diameters<const N: usize>(&self, weight: Weight, smallest_mm: f64, u: [f64; N]) -> [f64; N] {
         const CELLS: usize = 512;
         let smallest = smallest_mm.clamp(SMALLEST_MM, 0.99 * LARGEST_MM);
         let step = (LARGEST_MM - smallest) / CELLS as f64;
         let edge = |i: usize| smallest + i as f64 * step;
-        // The integral above each edge, summed from the top, where the terms are smallest.
+        // Integrals above each edge, summed from the top, where the terms are smallest.
         let mut above = [0.0; CELLS + 1];
         let mut upper = self.weighed(weight, LARGEST_MM);
         for i in (0..CELLS).rev() {
@@ -292,9 +297,9 @@ impl DropSizes {
         })
     }
 
-    /// Table of [`DropSizes::diameters`] for the GPU, mm. Entry i is the diameter at u = 1 - (1 - i / 63)^4: the few
-    /// large drops get as many entries as the many small ones. [`table_diameter_mm`] reads the table. Without rain
-    /// every entry is `smallest_mm`.
+    /// Returns a table of [`DropSizes::diameters`] for the GPU, mm. Entry i is the diameter at u = 1 - (1 - i / 63)^4:
+    /// the few large drops get as many entries as the many small ones. [`table_diameter_mm`] reads the table. Without
+    /// rain every entry is `smallest_mm`.
     pub fn diameter_table(&self, weight: Weight, smallest_mm: f64) -> [f32; TABLE_LEN] {
         let u: [f64; TABLE_LEN] = std::array::from_fn(|i| {
             let left = 1.0 - i as f64 / (TABLE_LEN - 1) as f64;
@@ -304,9 +309,9 @@ impl DropSizes {
     }
 }
 
-/// Diameter, mm, at the quantile `u` (\[0, 1\]) of a [`DropSizes::diameter_table`], interpolated linearly at entry
-/// 63 (1 - (1 - u)^(1/4)). Wrong by at most 1 % for drops from 0.5 mm on, by [`Weight::Number`] and [`Weight::Flux`]
-/// (tested); not meant for [`Weight::Water`]. Shaders take the fourth root as two square roots.
+/// Returns the diameter, mm, at the quantile `u` (\[0, 1\]) of a [`DropSizes::diameter_table`], interpolated linearly
+/// at entry 63 (1 - (1 - u)^(1/4)). Its error is at most 1 % for drops from 0.5 mm on, with [`Weight::Number`] and
+/// [`Weight::Flux`] (tested). It is not meant for [`Weight::Water`]. Shaders take the fourth root as two square roots.
 pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
     let x = (TABLE_LEN - 1) as f64 * (1.0 - (1.0 - u.clamp(0.0, 1.0)).sqrt().sqrt());
     let i = (x as usize).min(TABLE_LEN - 2);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{error::Result, moment::SceneMoment};
 
-/// Air in which drawn things fall.
+/// Air in which drops and flakes fall, around a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingAir {
     /// Displacement of the air by the wind since time 0, m (east, north, up).
@@ -21,7 +21,7 @@ impl MovingAir {
     /// Returns the air of a moment, with the wind that carries precipitation.
     ///
     /// # Errors
-    /// As [`SceneMoment::carrying`].
+    /// Fails for a time for which the weather is not known, as [`SceneMoment::carrying`] does.
     pub fn of(now: &SceneMoment<'_>) -> Result<Self> {
         let (wind, c) = (now.carrying()?, &now.scene.conditions);
         Ok(Self {
@@ -33,11 +33,11 @@ impl MovingAir {
     }
 }
 
-/// Number of steps in which rain and snow set in below their cloud.
+/// Number of steps between which the share of rain and snow that has left the cloud is rounded.
 const ONSET_STEPS: f64 = 32.0;
 
-/// Rounds the share that has left the cloud up to a step, so that drops or flakes are not recounted in each frame of a
-/// climbing camera.
+/// Rounds the share of precipitation that has left the cloud up to the next step, so that drops or flakes are not
+/// recounted in each frame of a climbing camera.
 pub(crate) fn begun_in_steps(begun: f64) -> f64 {
     (begun * ONSET_STEPS).ceil() / ONSET_STEPS
 }

@@ -1,4 +1,4 @@
-//! List of the falling things that are in the picture: a few in a hundred of a lattice around the camera.
+//! List of the things (drops, flakes, splashes) that are in the picture: a few in a hundred of those around the camera.
 //!
 //! There are three compute passes. The first marks each thing that can be in the picture, with one bit. The second
 //! assigns the marked things their places in the list, in the order of their numbers (`shaders/falling/order.wgsl`,
@@ -7,23 +7,26 @@
 
 use crate::gpu::bind::{self, Slot};
 
-/// Size of a `Block` of `shaders/falling/list.wgsl`, bytes, and number of things in it.
+/// Size of a `Block` of `shaders/falling/list.wgsl`, bytes.
 const BLOCK_BYTES: u64 = 20;
+/// Number of things in a block.
 pub(crate) const BLOCK_THINGS: u32 = 128;
 /// Number of things per workgroup of the marking pass: 64 threads, a word of 32 bits each.
 const MARK_THINGS: u32 = 64 * 32;
-/// Size of `Found` of `shaders/falling/order.wgsl`, bytes, and offset of the workgroup counts in it.
+/// Size of `Found` of `shaders/falling/order.wgsl`, bytes.
 const FOUND_BYTES: u64 = 32;
+/// Offset of the number of workgroups in `Found`, bytes.
 const GROUPS_AT: u64 = 16;
 /// Smallest capacity of a list, if [`room`] would give less.
 const LEAST_ROOM: u64 = 16_384;
 
-/// A list, and the buffers in which it is computed.
+/// List of things, and the buffers in which it is computed.
 pub(crate) struct Listing {
     /// Bytes of one listed thing.
     thing_bytes: u64,
     /// Layouts of group 1: for marking and ordering, and for computing the quads.
     pub layouts: [wgpu::BindGroupLayout; 2],
+    /// Buffer of `Found`: the arguments of the draw and of the third pass.
     found: wgpu::Buffer,
     held: Option<ListBuffers>,
     /// Capacity to use instead of that derived from the lattice.
@@ -33,8 +36,11 @@ pub(crate) struct Listing {
 
 /// Buffers for the things of a lattice.
 struct ListBuffers {
+    /// Bits of all things.
     blocks: wgpu::Buffer,
+    /// Quads of the listed things.
     things: wgpu::Buffer,
+    /// Bind groups for the two layouts of [`Listing::layouts`].
     groups: [wgpu::BindGroup; 2],
 }
 
@@ -44,8 +50,9 @@ fn blocks_of([things, rows]: [u32; 2]) -> u64 {
     u64::from(things.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(rows)
 }
 
-/// Returns the capacity of a list for a number of blocks. At most half of a shell's things are within its reach, and
-/// four in ten of all things; a picture 150 degrees wide shows half of those.
+/// Returns the capacity of a list for a number of blocks: a quarter of the things. Of a shell's cube about half is
+/// within its reach, and of the things of all shells four in ten are drawn in some direction. A picture 150 degrees
+/// wide shows half of these.
 pub(crate) fn room(device: &wgpu::Device, blocks: u64, thing_bytes: u64) -> u64 {
     let most = device.limits().max_storage_buffer_binding_size / thing_bytes;
     (blocks * u64::from(BLOCK_THINGS) / 4).max(LEAST_ROOM).min(most)
@@ -65,7 +72,7 @@ impl Listing {
         }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.held.as_ref().map_or(0, |h| h.blocks.size() + h.things.size())
     }

@@ -2,8 +2,8 @@
 //! picture ([`streak`]), the air in which things fall ([`air`]), the list of things in the picture ([`listing`]), and
 //! particles stepped through a wind that varies in space ([`stepping`]).
 //!
-//! `src/falling` decides what falls, how fast and where it starts; `src/rain` and `src/snow` decide the look of a drop
-//! or a flake.
+//! `src/falling` has the physics: sizes, numbers and fall speeds. `src/rain` and `src/snow` have the places and the
+//! look of drops and flakes.
 
 mod air;
 pub(crate) mod listing;

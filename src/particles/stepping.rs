@@ -5,14 +5,13 @@
 //! lattice gives, until it leaves the cell around the camera.
 //!
 //! During a step the drag is linear and is solved exactly ([`crate::falling::drag::step`]), so steps of any length are
-//! stable. Its rate is that of quadratic drag at the start of the step, so short steps converge to the true motion. For
-//! a step that is long relative to this rate, the rate at terminal velocity is used, which ends at the right fall
-//! speed.
+//! stable. Its rate is that of quadratic drag at the start of the step, so short steps converge to the true motion. A
+//! longer step uses the rate of a particle at terminal velocity, so that it ends at the right fall speed.
 //!
 //! A particle that leaves its cell, or is left behind by the camera, enters again on the opposite side. Its new place
-//! is random (a hash of its number and of how often it has entered), its velocity is the terminal one there. As many
-//! particles enter as leave, so neither dropped frames nor a camera at 300 m/s cause gaps or bursts. After a jump in
-//! time, or of the camera if the host reports it, all particles start anew.
+//! is random: a hash of its number and of the number of times that it has entered. Its velocity is the wind there less
+//! the fall speed. As many particles enter as leave, so neither dropped frames nor a camera at 300 m/s cause gaps or
+//! bursts. After a jump in time, or of the camera if the host reports it, all particles start anew.
 
 use std::sync::Arc;
 
@@ -33,7 +32,7 @@ use crate::{
 
 /// Number of shells of each lattice.
 pub(crate) const SHELLS: usize = 4;
-/// Size of one state, bytes: place and word, velocity.
+/// Size of a `State` of `shaders/falling/state.wgsl`, bytes.
 pub(crate) const STATE_BYTES: u64 = 32;
 /// Longest time between two frames that is stepped, s. After a longer time all particles start anew.
 const MOST_S: f64 = 10.0;
@@ -47,7 +46,7 @@ const EYES: usize = 512;
 /// Factor by which a buffer that has to grow exceeds the requested size.
 const GROWTH: f64 = 1.5;
 
-/// `StepUniform` of `shaders/falling/step.wgsl`, which explains the fields.
+/// Uniform block `StepUniform` of `shaders/falling/step.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct ParticleStepUniform {
@@ -70,25 +69,28 @@ pub(crate) struct ParticleStepUniform {
 pub(crate) struct Stepped<'a> {
     /// Seed of the places where particles enter.
     pub seed: u32,
-    /// Number of particles in each shell, and side of the shell's cell, m.
+    /// Number of particles in each shell.
     pub counts: [u32; SHELLS],
+    /// Side of each shell's cell, m.
     pub sides_m: [f64; SHELLS],
     /// Smallest capacity of each shell, because more particles may come soon.
     pub least_room: u32,
     /// Position of the camera, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
     pub time_s: f64,
-    /// Current velocity of the air, m/s. `carried` returns its displacement since an earlier time (s), m.
+    /// Present velocity of the air, (east, north, up), m/s.
     pub air_m_s: DVec3,
+    /// Function that returns the displacement of the air since an earlier time, s, in m (east, north, up).
     pub carried: &'a dyn Fn(f64) -> DVec3,
-    /// Whether all particles start anew, because nothing of earlier frames may show.
+    /// Whether all particles start anew, because the picture must not depend on earlier frames.
     pub anew: bool,
     /// Texture of the wind that varies in space, and the camera's position in it if there is such a wind.
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Whether things that fall within `reach_m` of the camera are stepped. They are where the wind varies in space there.
-/// Once stepped (`was`), they stay so as long as the picture has a history (not `is_pure`), so that nothing jumps.
+/// Whether the particles within `reach_m` of the camera are stepped: if the wind varies in space there. Particles that
+/// were stepped in the last frame (`was`) stay so, unless the picture must not depend on earlier frames (`is_pure`):
+/// otherwise they would jump.
 pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
@@ -187,11 +189,13 @@ impl ShellCapacities {
 
 /// States on the GPU, and the pass that steps them.
 pub(crate) struct StepPass {
-    /// Shader and entry point, and number of threads in a workgroup.
+    /// Shader file and entry point; `group` is the number of threads in a workgroup.
     shader: (&'static str, &'static str),
     group: u32,
     block: UniformBlock,
+    /// Capacities of the shells, and the buffer of the states.
     states: Option<(ShellCapacities, wgpu::Buffer)>,
+    /// State at the end of the last step; `None` before it.
     left: Option<LastStep>,
     /// Bound texture of the wind; one texel if there is no wind that varies in space.
     wind: Option<WindView>,
@@ -252,7 +256,7 @@ impl StepPass {
         }
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.states.as_ref().map_or(0, |(_, b)| b.size())
     }

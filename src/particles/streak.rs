@@ -23,14 +23,17 @@ pub(crate) struct StreakCamera<'a> {
     /// Matrix from camera-relative east, north, up to clip space.
     pub clip: DMat4,
     pub rays: &'a ViewRays,
+    /// Height of the picture, pixels.
     pub height: u32,
+    /// 1 if row 0 of the target is the picture's top, -1 if it is the bottom.
     pub y_sign: f32,
     /// Position, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
     /// Velocity of the camera, m/s (east, north, up).
     pub velocity_m_s: DVec3,
+    /// Exposure time of the picture, s.
     pub exposure_s: f64,
-    /// Contrast of precipitation relative to nature, 1 or more.
+    /// Factor by which precipitation stands out more than in nature, 1 or more.
     pub gain: f64,
 }
 
@@ -51,7 +54,7 @@ impl<'a> StreakCamera<'a> {
     }
 }
 
-/// Properties by which the fragment shaders of rain and snow read the host's depth.
+/// Variant of the fragment shaders of rain and snow by how they read the host's depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRead {
     /// Whether the depth is multisampled.
@@ -157,20 +160,20 @@ const ANGLES: usize = 9;
 pub(crate) struct StreakContrast {
     rays: ViewRays,
     y_sign: f64,
-    /// Direction of the things' motion relative to the camera.
+    /// Unit vector of the drops' or flakes' motion relative to the camera, (east, north, up).
     axis: DVec3,
-    /// Standard deviation of the share of a pixel that things cover, tabulated over the sine of the angle between line
-    /// of sight and axis.
+    /// Standard deviation, from pixel to pixel, of the share of a pixel that drops or flakes cover, tabulated over the
+    /// sine of the angle between line of sight and axis, from 0 to 1.
     deviations: [f64; ANGLES],
     tone: Tone,
-    /// Whether there are lamps, which may make things arbitrarily bright.
+    /// Whether there are lamps, which may make drops and flakes arbitrarily bright.
     lamps: bool,
 }
 
 impl StreakContrast {
-    /// Creates the contrast of things that move with a velocity in front of a camera. `variance` takes their motion
-    /// across the line of sight during the exposure, m, and returns the variance from pixel to pixel of the share of a
-    /// pixel that they cover.
+    /// Creates the contrast of drops or flakes that move with `velocity_m_s` in front of a camera. `variance` takes the
+    /// distance that they move across the line of sight during the exposure, m, and returns the variance from pixel to
+    /// pixel of the share of a pixel that they cover.
     pub fn new(
         shot: &StreakCamera<'_>,
         velocity_m_s: DVec3,
@@ -184,10 +187,10 @@ impl StreakContrast {
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
     }
 
-    /// Returns two numbers for pixel number `i` of exposed luminance `picture` (1 = white): its relative change (Y' -
-    /// Y) / (Y + 0.01) due to things of radiance L = `radiance`(direction), and their contrast (L - Y) / (Y + 0.01),
-    /// both in exposed luminance. The change is a sample from the distribution that the pixels of a picture have, so
-    /// only many pixels together mean anything.
+    /// Returns two numbers for pixel `i` with the exposed luminance Y = `picture` (1 is white): its relative change (Y'
+    /// - Y) / (Y + 0.01) by drops or flakes of the exposed luminance L, and their contrast (L - Y) / (Y + 0.01). L
+    /// follows from `radiance`(direction). The change is a sample from the distribution over the pixels of a picture,
+    /// so only the statistics of many pixels are meaningful.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;

@@ -5,16 +5,18 @@ use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Flakes, with two rungs: single flakes near the camera, or none, so that all snow is extinction in the fog's layer.
-/// The importance is that of rain.
+/// The importance, 0.7, is that of particles, as for rain ([`crate::rain::candidates::RAIN`]).
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work per pixel of the layer of falling things, in units of a pixel with none of the parts. Derived from the times
-/// that `cargo bench --bench speed -- falling` prints, in copies of the picture.
+/// Work per pixel of the layer of rain and snow. The unit is the work of a pixel in a picture without any part of the
+/// plan. Derived from the times that `cargo bench --bench speed -- falling` prints, whose unit is a copy of the
+/// picture.
 const LAYER_OF_PIXEL: f64 = 0.1;
-/// Work of one flake of the lattice, in the same units.
+/// Work of one flake of the lattice, in units of [`LAYER_OF_PIXEL`].
 const ONE_FLAKE: f64 = 0.5;
 
-/// Returns the work saved by the step from flakes to a veil, for a picture of `pixels` pixels with `flakes` flakes.
+/// Returns the work that the step from flakes to none saves, in units of [`LAYER_OF_PIXEL`], for a picture of `pixels`
+/// pixels with `flakes` flakes.
 pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
     let fixed = ONE_FLAKE * f64::from(flakes) + LAYER_OF_PIXEL * pixels as f64;
     [StepWork { fixed, ..StepWork::default() }]
@@ -28,10 +30,10 @@ const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
-        // The fog does this much anyway; there is no layer.
+        // Counts a little for the veil, which the fog draws anyway; there is no layer.
         SnowModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         SnowModel::Automatic | SnowModel::Flakes => Work {
-            // Flakes move, so all are tested in every frame.
+            // All flakes are tested in every frame, because they move.
             view: Units::default().plus(FLAKE, f64::from(settings.most_flakes.unwrap_or(1_000_000))),
             pixel: LAYER,
             ..Work::default()

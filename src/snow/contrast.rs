@@ -3,7 +3,7 @@
 //! Flakes lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
 //! covers (Campbell 1909). A flake that covers the area A at the distance r moves by L during the exposure. It is drawn
 //! w wide and L + w long; its mean cover is c = A / ((L + w) w). Across the streak the cover follows the chords of a
-//! disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. Of n flakes a unit of volume, n / k
+//! disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. Of n flakes per cubic metre, n / k
 //! are drawn, and each stands for k. The variance is therefore
 //!
 //! ```text
@@ -26,7 +26,7 @@ use crate::{
     stage::Tone,
 };
 
-/// Number of panels of the sum over distances.
+/// Number of panels of the sum over distances, which are evenly spaced in their logarithm.
 const PANELS: usize = 24;
 
 /// Returns the variance from pixel to pixel of the share that flakes cover. `pixel_angle` is the angle of a pixel, rad;
@@ -71,9 +71,9 @@ impl FlakeContrast {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// Returns the change of pixel number `i` if flakes are left out, relative to the pixel's luminance plus a
-    /// hundredth of white. The light that the veil adds in place of the flakes is not counted. `picture` is the
-    /// luminance without flakes, `hidden` the optical depth of the flakes.
+    /// Returns the change of pixel `i` if flakes are left out, in the first number of the result, relative to the
+    /// pixel's luminance plus a hundredth of white. The light that the veil adds in place of the flakes is not counted.
+    /// `picture` is the luminance without flakes, `hidden` the optical depth of the flakes.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [flakes, contrast] = self.seen.at(i, ndc, picture, |d| flake_radiance(&self.light, d));
         [(flakes - hidden * contrast) as f32, 0.0, 0.0]

@@ -4,15 +4,16 @@
 //! A shell is a cube of side L full of flakes, repeated in all directions; each flake is drawn at the copy nearest to
 //! the camera. Places, falls and turns are fractions in 32 bits and wrap as the lattice does
 //! (`src/falling/lattice.rs`): place = random(seed, shell, class, index) + displacement of the air - speed x fall
-//! phase. The helix adds an offset at the angle random + turns x turn phase. Speeds and turns are integer multiples of
-//! [`SPEED_UNIT`] and [`TURN_UNIT`], and therefore exact at any time. Within a class each flake has its own, up to an
-//! eighth faster or slower: flakes of one size scatter by as much about the lines of Locatelli and Hobbs.
+//! phase. The fall phase is the distance fallen at a speed of one unit; the last term counts for the height only. The
+//! helix adds a horizontal offset at the angle random + turns x turn phase. The turn phase is the angle turned at a
+//! rate of one unit. Speeds and turns are integer multiples of [`SPEED_UNIT`] and [`TURN_UNIT`], and therefore exact at
+//! any time. Within a class each flake has its own speed and turns, up to an eighth faster or slower: the measured
+//! speeds of flakes of one size scatter by as much about the laws of Locatelli and Hobbs.
 //!
 //! Each shell is twice as wide as the one before. If a shell has no room for all its flakes, it draws some that stand
-//! for others. The numbers per class are chosen so that every drawn flake covers the same area, together with the
-//! flakes for which it stands: of all choices, this keeps the contrast closest to that of all flakes (importance
-//! sampling by area). Shells whose contrast would be too high by more than a factor of the square root of 3 are left to
-//! the veil.
+//! for others. The numbers per class are chosen so that every drawn flake, with the flakes for which it stands, covers
+//! the same area. Of all choices, this keeps the contrast closest to that of all flakes (importance sampling by area).
+//! Shells whose contrast would be too high by more than a factor of the square root of 3 are left to the veil.
 
 use glam::DVec3;
 
@@ -27,7 +28,7 @@ use crate::numerics::smoothstep;
 pub const SHELLS: usize = 4;
 /// Number of classes of size, of all kinds together.
 pub const CLASSES: usize = 32;
-/// Number of classes of aggregates, grains and crystals.
+/// Number of classes of aggregates, of grains and of crystals.
 const CLASSES_OF: [usize; PARTS] = [20, 6, 6];
 /// Side of the innermost shell's cell, m.
 pub const SIDE_M: f64 = 4.0;
@@ -35,10 +36,10 @@ pub const SIDE_M: f64 = 4.0;
 pub const SPEED_UNIT: f64 = 1.0 / 1024.0;
 /// Unit of turns, 1/s. Turns are integer multiples of it.
 pub const TURN_UNIT: f64 = 1.0 / 256.0;
-/// Share of its reach at which a shell begins to fade out and the next larger one to fade in. Both end at the full
-/// reach.
+/// Distance at which a shell begins to fade out and the next larger one to fade in, as a share of the shell's reach
+/// (half its side). Both fades end at the full reach.
 pub const FADE: f64 = 0.85;
-/// Distance below which flakes fade out, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
+/// Distance below which flakes fade out towards the camera, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
 pub const NEAREST_M: f64 = 0.3;
 /// Largest ratio of the variance of drawn flakes to that of all flakes up to which a shell is drawn.
 const MOST_NOISE: f64 = 3.0;
@@ -50,7 +51,7 @@ pub fn side_m(shell: usize) -> f64 {
     SIDE_M * f64::from(1u32 << shell)
 }
 
-/// Number of flakes of each class in each shell.
+/// Flakes of each class in each shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flakes {
     /// Per class: diameter (m), fall speed (speed units), radius of the helix (m), turns (turn units).
@@ -65,13 +66,14 @@ pub struct Flakes {
     pub shells: usize,
     /// Number of drawn flakes in all shells.
     pub drawn: u32,
-    /// Extinction of the flakes that covers the background, 1/m: that of their ice, which is half of the total; the
-    /// other half is diffraction.
+    /// Extinction by the flakes' ice, 1/m, which hides the background: half of their extinction. The other half is
+    /// diffraction.
     pub hidden_per_m: f64,
 }
 
 /// Returns the number of flakes that a drawn flake of each class stands for, so that `room` drawn flakes stand for all
-/// flakes of a volume, and the ratio of the variance of their cover to that of all flakes.
+/// flakes of a volume. Also returns the ratio of the variance of the drawn flakes' cover to that of all flakes.
+/// `numbers` is per cubic metre, `areas` the area of a flake, m^2.
 fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, room: f64) -> ([f64; CLASSES], f64) {
     let weights = |level: f64| areas.map(|a| (level / a.max(1e-12)).max(1.0));
     let count = |w: &[f64; CLASSES]| numbers.iter().zip(w).map(|(n, w)| n * volume_m3 / w).sum::<f64>();
@@ -167,8 +169,8 @@ impl Flakes {
         self.shells.checked_sub(1).map_or(0.0, |last| 0.5 * side_m(last))
     }
 
-    /// Returns the distance up to which drawn flakes account for the extinction of all flakes, m: the middle of their
-    /// fade.
+    /// Returns the distance within which the drawn flakes replace the extinction of the snow, m: the middle of the
+    /// outermost shell's fade.
     pub fn hidden_m(&self) -> f64 {
         0.5 * (1.0 + FADE) * self.reach_m()
     }
@@ -193,7 +195,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Creates the moment of `shell` after the air has moved by `displacement_m` and flakes have fallen for `time_s`.
+    /// Creates the moment of `shell` after the air has moved by `displacement_m`, (east, north, up), and flakes have
+    /// fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {

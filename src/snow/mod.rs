@@ -1,13 +1,14 @@
 //! Falling snow near the camera, flake by flake. Rate, kind and temperature set the sizes of flakes; the place of each
-//! flake follows from (seed, id, time) and the wind's displacement.
+//! flake is a function of (seed, id, time) and the wind's displacement.
 //!
 //! The model: [`flakes`] has sizes, numbers and fall speeds, and the helix on which a flake falls. [`lattice`] has the
 //! places: cells of air that repeat in all directions. Each flake is drawn at the copy nearest to the camera; no state
 //! is kept or updated. [`shape`] has the look of a near flake. One quad draws a flake. A flake that is some pixels wide
 //! and moves by less than its own width during the exposure shows its shape. Other flakes are discs or streaks, whose
 //! opacity is their share of ice. A flake smaller than a pixel gets fainter instead of smaller. Flakes are lit by the
-//! sky, the ground, the sun or moon and lamps, with the phase function of ice ([`mod@reference`]). They go into the
-//! layer that all falling things share, behind the host's depth, and not under its shelters and occluder maps.
+//! sky, the ground, the sun or moon and lamps, with the phase function of ice ([`mod@reference`]). They are drawn into
+//! the layer that rain and snow share. The host's depth hides flakes behind objects, and none fall under its shelters
+//! and occluder maps.
 //!
 //! *Near and far*: the fog's layer contains the extinction of all snow. Within the flakes' reach, the extinction of the
 //! drawn flakes is subtracted from it. So neither the mean nor the visibility depends on how many flakes are drawn.

@@ -34,8 +34,9 @@ pub(super) struct FlakeDraw<'a> {
     pub surroundings: &'a SurroundingsBlock,
     /// Whether the surroundings contain occluder maps.
     pub maps: bool,
-    /// Layer in front of the picture, and whether it already contains something; flakes are then drawn in front of it.
+    /// Layer in front of the picture.
     pub target: &'a wgpu::TextureView,
+    /// Whether the layer already contains rain; flakes are then drawn in front of it.
     pub over: bool,
     /// The host's depth.
     pub depth: Option<Layer<'a>>,
@@ -50,8 +51,11 @@ pub(super) struct SnowPass {
     pipelines: Made<FlakeVariant, wgpu::RenderPipeline>,
     /// List of the flakes in the picture, on devices with compute shaders while flakes are not stepped.
     listed: Option<Box<ListedFlakes>>,
+    /// Pass that steps flakes, while they are stepped.
     step: Option<Box<StepPass>>,
+    /// Placeholder for a missing depth.
     none: wgpu::TextureView,
+    /// Depth of the bind group of group 0, and the group.
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
     /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,
@@ -77,12 +81,12 @@ impl SnowPass {
         }
     }
 
-    /// Whether the pass counts its draws.
+    /// Whether the pass counts how often pixels are drawn.
     pub fn counts(&self) -> bool {
         self.counts
     }
 
-    /// Bytes of GPU memory held.
+    /// Returns the bytes of GPU memory held.
     pub fn bytes(&self) -> u64 {
         self.step.as_ref().map_or(0, |step| step.bytes()) + self.listed.as_ref().map_or(0, |l| l.listing.bytes())
     }
@@ -206,6 +210,7 @@ struct ListedFlakes {
     /// Bind group with the flakes' block.
     group: wgpu::BindGroup,
     listing: Listing,
+    /// Pipelines of `mark` and `order`.
     mark: Option<[wgpu::ComputePipeline; 2]>,
     /// Pipelines of `make_spots`, by whether there are occluder maps.
     makes: Made<bool, wgpu::ComputePipeline>,

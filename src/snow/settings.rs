@@ -8,7 +8,8 @@ use crate::{
 /// Method by which a view draws snow. It does not change the snowfall itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SnowModel {
-    /// Flakes near the camera. Under a budget ([`crate::plan`]) there are none where the picture does not need them.
+    /// Flakes near the camera. Under a budget ([`crate::plan`]) they are left out if the picture changes little without
+    /// them.
     #[default]
     Automatic,
     /// No flakes: all snow is extinction. Costs nothing in addition to the fog.
@@ -28,7 +29,8 @@ pub struct SnowSettings {
     /// software driver.
     pub most_flakes: Option<u32>,
     /// Exposure time of the picture, s, [1e-4, 0.1]. Flakes that move by more than their size in it are streaks.
-    /// Default 1/250: an eye follows flakes in a light wind and sees their shapes.
+    /// Default 1/250: short enough to show the shapes of flakes in a light wind, which an eye sees because it follows
+    /// them.
     pub shutter_s: f64,
 }
 

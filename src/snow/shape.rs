@@ -1,26 +1,29 @@
-//! Shape of a flake, as `shaders/snow/shape.wgsl` draws it.
+//! Shape of a flake: the f64 twin of `shaders/snow/shape.wgsl`.
 //!
 //! A flake is a disc eroded by noise: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, where r is the
 //! distance from the middle in radii and n the flake's own noise. The formula is that of a procedural flake in an older
-//! system. Its noise could erode a flake completely; here n lies between -1 and 1. Offset and strength are such that
-//! the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones, which
-//! are drawn as faint discs.
+//! system. There the noise could erode a flake completely; here n lies between -1 and 1. Offset and strength are such
+//! that the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones,
+//! which are drawn as faint discs.
 
 use crate::{falling::random3, numerics::smooth};
 
 /// Number of octaves of the noise.
 const OCTAVES: u32 = 4;
-/// Number of cells of the coarsest octave in a radius.
+/// Number of cells of the coarsest octave of noise in a flake's radius.
 const CELLS: f64 = 2.2;
 /// Constant added to the noise.
 const OFFSET: f64 = 0.8563;
 /// Weight of the noise.
 const NOISE: f64 = 2.0;
 
+/// Returns a random number from -1 to 1 at a corner of the noise's cells.
 fn corner(cell: [i32; 2], seed: u32) -> f64 {
     f64::from(random3([cell[0] as u32, cell[1] as u32, seed])[0] >> 8) * (2.0 / 16_777_215.0) - 1.0
 }
 
+/// Returns value noise, -1 to 1: random numbers at the corners of cells of side 1, with cubic interpolation between
+/// them.
 fn noise(p: [f64; 2], seed: u32) -> f64 {
     let cell = p.map(|v| v.floor() as i32);
     let w = p.map(|v| v - v.floor()).map(smooth);

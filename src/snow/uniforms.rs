@@ -10,7 +10,7 @@ use crate::{
     scene::DepthUniform,
 };
 
-/// `FlakesUniform` of `shaders/snow/flakes.wgsl`, which explains the fields.
+/// Uniform block `FlakesUniform` of `shaders/snow/flakes.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FlakesUniform {

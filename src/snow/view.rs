@@ -27,13 +27,16 @@ use crate::{
     wind::Remembered,
 };
 
-/// Conditions for which the flakes were counted.
+/// Conditions that determine the number of flakes.
 #[derive(Clone, Copy, PartialEq)]
 struct Counted {
     falling: Falling,
     temperature_c: f64,
+    /// Factor on fall speeds by the air's density ([`drops::factor_in`]).
     factor: f64,
+    /// Share of the flakes that has left the cloud, in steps.
     begun: f64,
+    /// Largest number of drawn flakes.
     most: u32,
 }
 
@@ -49,13 +52,15 @@ pub(crate) struct SnowView {
     is_there: bool,
     /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,
-    /// Share of the flakes that the plan draws, and whether the layer already contains something in this frame.
+    /// Share of the flakes' opacity that the plan draws, 0 to 1.
     share: f32,
+    /// Whether the layer already contains rain in this frame.
     over: bool,
     /// Whether flakes were stepped in the last frame.
     is_stepped: bool,
-    /// Memory of the wind in the last frame.
+    /// Displacement of the air in the last frame.
     last_wind: Remembered,
+    /// Identifier of the last drawn frame, and the report of its snow.
     drawn: (u64, SnowReport),
 }
 
@@ -213,7 +218,7 @@ impl DrawnEffect for SnowView {
         Ok(())
     }
 
-    /// Returns the bytes without those of the layer, which the rain always holds and counts.
+    /// Returns the bytes of GPU memory held, without the layer, which `RainView` counts.
     fn bytes(&self) -> u64 {
         self.pass.as_ref().map_or(0, |pass| pass.bytes())
     }
