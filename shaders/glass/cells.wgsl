@@ -5,21 +5,22 @@
 struct Step {
     // Hash of (seed, step), hash of the seed, columns, rows.
     key: vec4u,
-    // Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability in 1/65536 that a fine
-    // bead dries.
+    // Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability per step, in 1/65536, that
+    // a fine bead dries.
     arrive: vec4u,
-    // Declared state: water per step in 1/256 unit, drops per step in 1/65536, number of the step, volume of the
-    // largest bead that rests.
+    // Declared state: water per cell and step, in 1/256 unit; drops per cell and step, in 1/65536; index of the step;
+    // volume of the largest bead that rests, units.
     declared: vec4u,
-    // Largest volume of a cell; 1 if some cells get less than all of the rain.
+    // Largest volume of a cell, units; 1 if some cells get less than all of the rain.
     limits: vec4u,
-    // For each arm: (pivot x, y, inner radius, outer radius), (direction before x, y, direction half way x, y),
-    // (direction now x, y, half width, 1 if there is an arm).
+    // For each arm, three rows: (pivot x, y, inner radius, outer radius), in 1/16 cell; (direction of the blade at its
+    // lower angle in the step x, y, direction half way x, y), in 1/4096; (direction at its higher angle x, y, in
+    // 1/4096, half width, in 1/16 cell, 1 if there is an arm).
     arms: array<vec4i, 6>,
-    // Volumes of drops, from common to rare.
+    // Volumes of drops, units, from common to rare.
     drops: array<vec4u, 64>,
-    // Beads by class of volume: (radius + 1024 x evaporation, motion x, y, 256 times the ratio of driving force to
-    // retention).
+    // Beads by class of volume: radius, in 1/256 cell, + 1024 x evaporation, in 1/4096 unit per step; motion x, y, in
+    // 1/65536 cell per step; 256 x driving force / retention.
     beads: array<vec4i, 96>,
     // Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt per
     // step (in 1/4096), and the largest amount in a cell.
@@ -32,17 +33,22 @@ struct Step {
 override MAPPED: bool = false;
 
 @group(0) @binding(0) var<uniform> step: Step;
-// (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
+// State of each cell: (volume, units; place of the bead in the cell, x + 65536 y, in 1/65536 of the edge; speed, 0 at
+// rest, + 65536 x shape; hits since the last clearing + 4096 x clearings + 65536 x film).
 @group(0) @binding(1) var cells: texture_2d<u32>;
-// (volume that moves, its new place, speed + 65536 shape, 256 x volume left behind + 32 ran + 16 wiped + target cell).
+// Move of each cell's bead: (volume that moves, units; its new place; speed + 65536 x shape; 256 x volume left behind +
+// RAN + WIPED + target cell). Target cells are numbered 0 to 8 by rows from the lower left of the nine around the bead;
+// 4 is its own.
 @group(0) @binding(2) var moves: texture_2d<u32>;
-// Share that maps let through to each node, in the same unit as `reach`.
+// Share of the rain that occluder maps let through to each node, in 1/128.
 @group(0) @binding(3) var mapped: texture_2d<u32>;
 
 // Snow on the cells, units of water.
 @group(0) @binding(4) var snow: texture_2d<u32>;
 
+// Largest number of counted hits of a cell.
 const MOST_HITS: u32 = 4095u;
+// Value of the film where a bead has run or a blade has wiped.
 const FULL_FILM: u32 = 65535u;
 // Film above which a bead glides as if it ran.
 const WET_FILM: u32 = 2048u;
@@ -60,11 +66,12 @@ fn pcg(v: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
+// Returns a random word for a cell and a key.
 fn cell_hash(cell: vec2i, key: u32) -> u32 {
     return pcg(u32(cell.x) + pcg(u32(cell.y) + key));
 }
 
-// Position of the highest set bit; 0 for 0 and 1.
+// Returns the position of the highest set bit; 0 for 0 and 1.
 fn octave(v: u32) -> u32 {
     var x = v;
     var n = 0u;
@@ -76,11 +83,13 @@ fn octave(v: u32) -> u32 {
     return n;
 }
 
+// Returns the row of `beads` for a volume.
 fn bead(volume: u32) -> vec4i {
     let k = octave(volume);
     return step.beads[min(4u * k + (((volume << 2u) >> k) & 3u), 95u)];
 }
 
+// Returns the volume of a random drop, units.
 fn drop_volume(random: u32) -> u32 {
     let k = 31u - octave(random | 1u);
     let part = 15u - ((random >> (27u - min(k, 27u))) & 15u);
@@ -88,14 +97,17 @@ fn drop_volume(random: u32) -> u32 {
     return step.drops[i / 4u][i % 4u];
 }
 
+// Returns whether a cell is on the lattice.
 fn inside(cell: vec2i) -> bool {
     return cell.x >= 0 && cell.y >= 0 && cell.x < i32(step.key.z) && cell.y < i32(step.key.w);
 }
 
+// Unpacks x + 65536 y.
 fn place(packed: u32) -> vec2i {
     return vec2i(i32(packed & 0xffffu), i32(packed >> 16u));
 }
 
+// Packs x + 65536 y.
 fn packed(at: vec2i) -> u32 {
     return u32(at.x) | (u32(at.y) << 16u);
 }
@@ -104,7 +116,7 @@ fn perp_dot(a: vec2i, b: vec2i) -> i32 {
     return a.x * b.y - a.y * b.x;
 }
 
-// Whether a blade has passed over a point, in 1/16 cell, during the step, or lies on it.
+// Returns whether a blade has passed over a point, given in 1/16 cell, during the step, or lies on it.
 fn swept(point: vec2i) -> bool {
     for (var i = 0u; i < 6u; i += 3u) {
         let reach = step.arms[i];
@@ -131,6 +143,7 @@ fn swept(point: vec2i) -> bool {
 // Number of nodes along the pane's lower edge, and up the glass.
 const NODES: vec2u = vec2u(16u, 8u);
 
+// Returns the share of the rain that reaches a node, in 1/128.
 fn node(index: vec2u) -> u32 {
     let i = index.y * NODES.x + index.x;
     let share = (step.reach[i / 16u][(i / 4u) % 4u] >> (8u * (i % 4u))) & 255u;
@@ -140,8 +153,8 @@ fn node(index: vec2u) -> u32 {
     return share;
 }
 
-// Share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. Where all rain reaches all cells
-// the loop has no iterations, and a software driver skips it.
+// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. Where all rain reaches
+// all cells the loop has no iterations, and a software driver skips it.
 fn reached(cell: vec2i) -> u32 {
     var share = 65536u;
     for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {
@@ -155,12 +168,12 @@ fn reached(cell: vec2i) -> u32 {
     return share;
 }
 
-// The share `share` / 65536 of a number.
+// Returns number x share / 65536.
 fn part_of(number: u32, share: u32) -> u32 {
     return select((number >> 16u) * share + (((number & 0xffffu) * share) >> 16u), number, share > 65535u);
 }
 
-// Amount of snow that melts in a step. The fraction of a unit is rounded at random.
+// Returns the amount of a cell's snow `there` that melts in a step, units. The fraction of a unit is rounded at random.
 fn melted(cell: vec2i, there: u32) -> u32 {
     let random = cell_hash(cell, step.key.x + 4u) & 4095u;
     return min(there, (step.snow.z >> 12u) + select(0u, 1u, random < (step.snow.z & 4095u)));

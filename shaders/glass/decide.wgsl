@@ -2,8 +2,8 @@
 // gravity and air overcome the retention, and leaves small beads behind.
 //!include "glass/cells.wgsl"
 
-// Whether the bead `larger`, `offset` (1/256 cell) away, takes this bead in: the two touch, and `larger` does not run
-// away from this one.
+// Returns whether the bead `larger`, `offset` away, takes in the bead of `radius` (both in 1/256 cell): the two touch,
+// and `larger` does not run away.
 fn takes(larger: vec4u, offset: vec2i, radius: i32) -> bool {
     let other = bead(larger.x);
     let reach = ((radius + (other.x & 1023)) * 3) >> 2u;
@@ -13,6 +13,7 @@ fn takes(larger: vec4u, offset: vec2i, radius: i32) -> bool {
     return (larger.z & 0xffffu) == 0u || (offset.x * (other.y >> 4u) + offset.y * (other.z >> 4u)) <= 0;
 }
 
+// Returns the film of a cell; 0 outside the lattice.
 fn film_at(cell: vec2i) -> i32 {
     if !inside(cell) {
         return 0;
@@ -20,7 +21,8 @@ fn film_at(cell: vec2i) -> i32 {
     return i32(textureLoad(cells, cell, 0).w >> 16u);
 }
 
-// Sideways share of a running bead's motion, in 1/256. The glass is uneven, and wet glass attracts the bead.
+// Returns the sideways share of a running bead's motion, in 1/256. The glass is uneven, and wet glass attracts the
+// bead.
 fn steer(cell: vec2i, motion: vec2i) -> i32 {
     let size = abs(motion);
     let ahead = vec2i(select(0, sign(motion.x), 2 * size.x > size.y), select(0, sign(motion.y), 2 * size.y > size.x));
@@ -68,6 +70,7 @@ fn decide(in: FullscreenVarying) -> @location(0) vec4u {
     return run(cell, here, law, flags);
 }
 
+// Returns the move of a bead that no other takes in.
 fn run(cell: vec2i, here: vec4u, law: vec4i, flags: u32) -> vec4u {
     let pinned = 180 + i32((cell_hash(cell, step.key.y) >> 8u) % 154u);
     let glides = (here.z & 0xffffu) != 0u || (here.w >> 16u) > WET_FILM || law.w > pinned;

@@ -1,4 +1,4 @@
-// Declared state of a moment: a pure function of (seed, step, rain). Each cell collects water for about half a minute,
+// Declared state of a step: a pure function of (seed, step, rain). Each cell collects water for about half a minute,
 // starting at a random time, and never enough to run.
 //!include "glass/cells.wgsl"
 

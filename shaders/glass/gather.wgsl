@@ -1,6 +1,7 @@
 // Second half of a step: beads that move in, evaporation, wiping, and drops that land.
 //!include "glass/cells.wgsl"
 
+// Cell while its parts are joined: volume and largest part, units; place and motion of the largest part.
 struct Cell {
     volume: u32,
     largest: u32,
@@ -8,7 +9,7 @@ struct Cell {
     motion: u32,
 }
 
-// Joins water to a cell. The largest part keeps its place and shape.
+// Returns a cell with water added. The largest part keeps its place, speed and shape.
 fn join(to: Cell, volume: u32, at: u32, motion: u32) -> Cell {
     var c = to;
     c.volume += volume;
@@ -56,7 +57,7 @@ fn gather(in: FullscreenVarying) -> @location(0) vec4u {
     return landed(cell, c, cleared(cell, before.w, ran, wiped));
 }
 
-// Evaporation of a bead. The fraction of a unit is rounded at random.
+// Returns a bead after evaporation. The fraction of a unit is rounded at random.
 fn dried(cell: vec2i, bead_there: Cell) -> Cell {
     var c = bead_there;
     if c.volume > 0u {
@@ -68,7 +69,7 @@ fn dried(cell: vec2i, bead_there: Cell) -> Cell {
     return c;
 }
 
-// Hits, clearings and film after running and wiping, and after evaporation.
+// Returns hits, clearings and film, packed, after running and wiping, and after evaporation.
 fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
     var hits = packed_state & MOST_HITS;
     var clearings = (packed_state >> 12u) & 15u;
@@ -85,6 +86,7 @@ fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
     return hits | (clearings << 12u) | (film << 16u);
 }
 
+// Returns the state of a cell after the drops that land in the step.
 fn landed(cell: vec2i, bead_there: Cell, state: u32) -> vec4u {
     var c = bead_there;
     var random = cell_hash(cell, step.key.x + 3u);

@@ -8,14 +8,15 @@
 struct Lens {
     // Ray direction in the middle of the picture, and its change per unit of clip x and y.
     ray: vec3f,
-    // Cells per metre.
+    // Number of cells per metre.
     per_m: f32,
     ray_dx: vec3f,
     // 1 if row 0 of the target is the picture's top, -1 if it is the bottom.
     y_sign: f32,
     ray_dy: vec3f,
-    // Ratio of a bead's contact radius, cells, to the cube root of its volume.
+    // Ratio of a bead's contact radius, cells, to the cube root of its volume, units.
     radius: f32,
+    // Position of the eye, m.
     eye: vec3f,
     // Size of a pixel on the glass, cells.
     pixel: f32,
@@ -28,13 +29,13 @@ struct Lens {
     clip_z: vec3f,
     // Height of the glass, m.
     height: f32,
-    // Edges of the pane; inside, a u + b v + c >= 0.
+    // Edges of the pane (a, b, c, 0): a point (u, v), m, is inside if a u + b v + c >= 0 for all four.
     edges: array<vec4f, 4>,
-    // For each wiper: pivot, inner and outer radius, cells; all 0 without a wiper.
+    // For each wiper: pivot x and y, inner and outer radius, cells; all 0 without a wiper.
     arms: array<vec4f, 2>,
     // Direction in which large beads run, unit vector or 0.
     flow: vec2f,
-    // Columns and rows; hash of the seed (`key`).
+    // Numbers of columns and rows of the lattice; hash of the seed (`key`).
     size: vec2i,
     key: u32,
     // 1 if there is water.
@@ -67,20 +68,23 @@ fn pcg(v: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
+// Returns a random word for a place and a key.
 fn hash(p: vec2i, key: u32) -> u32 {
     return pcg(u32(p.x) + pcg(u32(p.y) + key));
 }
 
-// Water at a point of the glass: slope of its surface, and the share of the pixel that it covers.
+// Water at a point of the glass.
 struct Water {
+    // Slope of its surface, right and up.
     slope: vec2f,
+    // Share of the pixel that it covers.
     cover: f32,
     // Contact radius, cells.
     radius: f32,
     height: f32,
 }
 
-// Water of a spherical cap at the share `rho` of its contact radius, in the direction `to` from its middle.
+// Returns the water of a spherical cap at `rho` contact radii from its middle, in the direction `to`.
 fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
     let r = min(rho, 0.995);
     let root = sqrt(1.0 - r * r * CONTACT_SINE * CONTACT_SINE);
@@ -90,8 +94,8 @@ fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
     return Water(to * slope, cover, radius, height);
 }
 
-// Water of a cell's bead at `q`, cells from its middle. Its outline is uneven, hangs down, and is drawn out while the
-// bead runs.
+// Returns the water of a cell's bead at `q`, cells from its middle. Its outline is uneven, hangs down, and is drawn out
+// while the bead runs.
 fn bead(cell: vec4u, q: vec2f) -> Water {
     let radius = lens.radius * pow(f32(cell.x), 0.33333333);
     // Reach of the longest tail of the most uneven bead, plus half a pixel.
@@ -115,8 +119,8 @@ fn bead(cell: vec4u, q: vec2f) -> Water {
     return cap(d, far / (radius * uneven), radius, lens.pixel);
 }
 
-// Small beads in squares of their own, `per_cell` along a cell's edge. The more drops have hit, the more beads there
-// are.
+// Returns the water of small beads, one in each square; there are `per_cell` squares along a cell's edge. The more
+// drops have hit, the more beads there are: all of them after `patience` hits.
 fn fine(straight: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> Water {
     // The squares are turned and bent, so that no rows are visible.
     let s = straight * per_cell;
@@ -143,7 +147,7 @@ fn fine(straight: vec2f, per_cell: f32, key: u32, hits: f32, patience: f32) -> W
     return w;
 }
 
-// Film and hits, interpolated between the four cells around a point.
+// Returns the film (0 to 1) and the hits, interpolated between the four cells around a point.
 fn blended(c: vec2f) -> vec2f {
     let p = c - 0.5;
     let base = vec2i(floor(p));
@@ -159,13 +163,14 @@ fn blended(c: vec2f) -> vec2f {
     return sum;
 }
 
+// Returns a texel of the picture in linear light.
 fn texel(at: vec2i) -> vec3f {
     let c = textureLoad(picture, clamp(at, vec2i(0), vec2i(textureDimensions(picture)) - 1), 0).rgb;
     return select(c, srgb_decode(c), ENCODED);
 }
 
-// Scene averaged over some 2^detail >= 32 pixels. Beyond the texels of the smallest copy, four of them are averaged, so
-// that a lamp does not flash in one pixel of a drop and miss the next.
+// Returns the scene averaged over squares of about 2^detail pixels a side, at least 32. Beyond the texels of the
+// smallest copy, four of them are averaged, so that a lamp does not flash in one pixel of a drop and miss the next.
 fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     let apart = 0.25 * exp2(detail) / vec2f(textureDimensions(picture));
     if detail <= 5.0 {
@@ -179,7 +184,7 @@ fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     return sum;
 }
 
-// Scene at a position in the picture, averaged over about 2^detail pixels.
+// Returns the scene at a position in the picture, averaged over squares of about 2^detail pixels a side.
 fn scene(uv: vec2f, detail: f32) -> vec3f {
     let place = clamp(uv, vec2f(0.0), vec2f(1.0));
     if detail >= 5.0 {
@@ -197,15 +202,15 @@ fn scene(uv: vec2f, detail: f32) -> vec3f {
     return mix(sharp, middle, clamp(detail / 3.0, 0.0, 1.0));
 }
 
-// Position of a direction in the picture; (0, 0) is in its first row.
+// Returns the texture coordinates of a direction in the picture; (0, 0) is in its first row.
 fn picture_at(d: vec3f) -> vec2f {
     let clip = lens.clip_x * d.x + lens.clip_y * d.y + lens.clip_z * d.z;
     let ndc = clip.xy / max(clip.z, 1e-3 * length(clip) + 1e-20);
     return vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y * lens.y_sign);
 }
 
-// Light through water of this slope that goes towards the eye along -d: in through the outer surface, out through the
-// glass.
+// Returns the light through water towards the eye along -d: it enters through the water's outer surface and leaves
+// through the glass.
 fn through(d: vec3f, w: Water, uv: vec2f) -> vec3f {
     let normal = normalize(vec3f(w.slope, 1.0));
     let inner = refract(d, vec3f(0.0, 0.0, -1.0), 1.0 / WATER_INDEX);
@@ -221,12 +226,13 @@ fn through(d: vec3f, w: Water, uv: vec2f) -> vec3f {
     let s = (WATER_INDEX * cosine_in - cosine_out) / (WATER_INDEX * cosine_in + cosine_out);
     let p = (cosine_in - WATER_INDEX * cosine_out) / (cosine_in + WATER_INDEX * cosine_out);
     let thrown_back = 0.5 * (s * s + p * p);
-    // A bead shows some 50 degrees. `spread` is the number of the picture's pixels in one pixel of the bead.
+    // Estimates the number of the picture's pixels in one pixel of the bead (`spread`): a bead shows some 50 degrees of
+    // the scene.
     let spread = 0.4 * abs(lens.eye.z) * lens.per_m / max(w.radius, 0.02);
     return mix(scene(picture_at(outer), log2(max(spread, 1.0))), dark, thrown_back);
 }
 
-// Highest water over a point of the glass, in cells.
+// Returns the highest water over the point `c` of the glass, cells.
 fn water_over(c: vec2f, hits: f32) -> Water {
     var best = Water(vec2f(0.0), 0.0, 0.0, -1.0);
     let base = vec2i(floor(c));
@@ -257,7 +263,8 @@ fn water_over(c: vec2f, hits: f32) -> Water {
     return best;
 }
 
-// Vector from the pivot of the wiper that reaches a point, or of the nearer one if both do; 0 out of their reach.
+// Returns the vector to a point from the pivot of the wiper that reaches it, or of the nearer one if both do; 0 out of
+// their reach.
 fn from_pivot(c: vec2f) -> vec2f {
     var best = vec2f(0.0);
     var nearest = 1e9;
@@ -273,8 +280,8 @@ fn from_pivot(c: vec2f) -> vec2f {
     return best;
 }
 
-// Streaks of a film: fine ridges along the blade's path or along the flow. `arm` is the vector from the wiper's pivot,
-// or 0.
+// Returns the height of a film's streaks, -1 to 1: fine ridges along the blade's path, or along the flow. `arm` is the
+// vector from the wiper's pivot, or 0.
 fn streaks(c: vec2f, arm: vec2f) -> f32 {
     let across = dot(c, vec2f(lens.flow.y, -lens.flow.x));
     let at = 2.7 * select(across, length(arm), any(arm != vec2f(0.0)));
@@ -285,13 +292,14 @@ fn streaks(c: vec2f, arm: vec2f) -> f32 {
     return mix(a, b, f * f * (3.0 - 2.0 * f));
 }
 
+// Returns the mist at the height `v` on the glass, m, 0 to 1.
 fn mist_at(v: f32) -> f32 {
     let height = v / lens.height;
     let cleared = 1.3 * lens.demist;
     return lens.fogging * smoothstep(cleared - 0.3, cleared, height);
 }
 
-// Optical depth of the snow over a point of the glass. Flakes are some cells wide, with ragged edges.
+// Returns the optical depth of the snow over a point of the glass. Flakes are some cells wide, with ragged edges.
 fn snow_over(c: vec2f) -> f32 {
     if lens.snow_depth <= 0.0 {
         return 0.0;
@@ -315,8 +323,8 @@ fn snow_over(c: vec2f) -> f32 {
     return lens.snow_depth * sum / max(weights, 1e-3) * (0.5 + grain);
 }
 
-// Light through snow: the light of the whole picture, less the part that the snow reflects (two-stream approximation,
-// asymmetry 0.89 for ice spheres).
+// Returns the light through snow: the light L of the whole picture, less the part that the snow reflects, L / (1 + 0.75
+// (1 - g) depth) (two-stream approximation, with the asymmetry g = 0.89 of ice spheres).
 fn through_snow(depth: f32) -> vec3f {
     let around = 0.25 * (scene(vec2f(0.25, 0.3), 5.0) + scene(vec2f(0.75, 0.3), 5.0) + 2.0 * scene(vec2f(0.5, 0.5), 5.0));
     return around / (1.0 + 0.75 * 0.11 * depth);

@@ -12,7 +12,8 @@ struct PaneUniform {
     origin: vec4f,
     along: vec4f,
     up: vec4f,
-    // Velocities of drops, m/s, and the share of the water that each brings.
+    // Drops that each stand for a share of the water. xyz: velocity, (east, north, up), m/s. w: share of the water on
+    // the pane that they bring.
     drops: array<vec4f, SIZES>,
 }
 

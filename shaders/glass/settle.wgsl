@@ -2,7 +2,7 @@
 // src/glass/reference.rs.
 //!include "glass/cells.wgsl"
 
-// Snow of a cell after a step.
+// Returns the snow of a cell after a step.
 fn settled(cell: vec2i) -> u32 {
     if swept(cell * 16 + 8) {
         return 0u;
@@ -20,7 +20,7 @@ fn settle(in: FullscreenVarying) -> @location(0) u32 {
     return settled(vec2i(in.position.xy));
 }
 
-// Declared state: the snow that falls in about half a minute, less the snow that melts meanwhile.
+// Returns the declared state of a cell: the snow that falls in about half a minute, less the snow that melts meanwhile.
 @fragment
 fn declare_snow(in: FullscreenVarying) -> @location(0) u32 {
     let cell = vec2i(in.position.xy);

@@ -1,5 +1,5 @@
-// Shrinks a picture to means over squares of texels, in linear light. Drops on the glass show the scene much smaller
-// than it is, so lens.wgsl samples these means there.
+// Shrinks a picture to means over squares of texels, in linear light. Drops on the glass show the scene many times
+// smaller, so lens.wgsl samples these means in them.
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 

@@ -8,8 +8,9 @@ const STEEPEST: f32 = 12.0;
 // Range of a texel without a surface, which no path crosses.
 const NOTHING: vec2f = vec2f(1e12, -1e12);
 
-// Map as the host gives it: how its depth gives distances, and its part of the table.
+// View of a host's map, and the part of the table that it fills.
 struct MapUniform {
+    // Rays and depth mapping of the map.
     depth: DepthUniform,
     // Origin of the map in the table, and its size, texels.
     origin: vec2f,

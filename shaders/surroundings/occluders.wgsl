@@ -2,8 +2,8 @@
 // texel holds the range of distances that its surface spans, each cell of 8 x 8 and of 64 x 64 texels the range of all
 // texels in it (surroundings/occluder_map.wgsl). The path is traced from cell to cell and descends only into cells
 // whose range it meets: a path before or behind all surfaces of a cell crosses none of them. A map does not contain
-// what its surfaces hide, so a path may pass behind an edge. A map that is taken along the drops' own direction hides
-// nothing that matters.
+// what its surfaces hide, so a path may pass behind an edge. A map that is taken along the drops' direction of fall
+// hides nothing that they could meet.
 
 // Whether there are any maps.
 override MAPS: bool = false;
@@ -14,15 +14,16 @@ const MAP_STEPS: u32 = 192u;
 
 // One map.
 struct Occluder {
-    // Rows of a transform of (east, north, up, 1), relative to the camera, m. x and y give w times the column and the
-    // row in the table of ranges, w gives w, and distance gives the distance from the plane of the map's camera, m.
+    // Rows of a transform of (east, north, up, 1), relative to the camera, m. `w` gives the clip w. `x` and `y` give w
+    // times the column and w times the row in the table of ranges, texels. `distance` gives the distance from the plane
+    // of the map's camera, m.
     x: vec4f,
     y: vec4f,
     w: vec4f,
     distance: vec4f,
-    // Velocity, m/s; w is not 0 for a map whose content moves.
+    // Velocity of the map's content, (east, north, up), m/s; w is 1 if the content moves, else 0.
     velocity: vec4f,
-    // Part of the table that the map fills: its lowest and its highest corner.
+    // Part of the table that the map fills: its lowest corner (x, y) and its highest (z, w), texels.
     part: vec4f,
 }
 
@@ -37,7 +38,7 @@ struct Occluders {
 }
 
 @group(2) @binding(1) var<uniform> occluders: Occluders;
-// Bits of floats, because not all drivers can render to 32-bit floats.
+// Table of ranges (least, largest), m, as the bits of floats, because not all drivers can render to 32-bit floats.
 @group(2) @binding(2) var map_ranges: texture_2d<u32>;
 
 // Returns the range of distances of a cell. `level` 0: a texel; 1: a cell of 8 x 8 texels; 2: of 64 x 64.
@@ -47,7 +48,7 @@ fn range_of(level: u32, cell: vec2f) -> vec2f {
     return bitcast<vec2f>(textureLoad(map_ranges, vec2i(vec2u(cell) + vec2u(column, row)), 0).xy);
 }
 
-// Whether the path that led to `p` with `velocity` crosses a surface of map `i`.
+// Returns whether the path that led to `p` with `velocity` crosses a surface of map `i`.
 fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let map = occluders.maps[i];
     let back = map.velocity.xyz - velocity;
@@ -98,7 +99,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
             if next >= end {
                 break;
             }
-            // Go up one level where the path enters another cell of that level.
+            // Goes up one level where the path enters another cell of the upper level.
             let beside = cell + select(vec2f(sign(onward.x), 0.0), vec2f(0.0, sign(onward.y)), until.y < until.x);
             level = select(level, min(level + 1u, 2u), any(floor(beside / 8.0) != floor(cell / 8.0)));
             s = next;

@@ -12,7 +12,7 @@ const MAX_CUTS: u32 = 512u;
 struct Shelter {
     // Rows of the matrix from camera-relative east, north, up (m) to the box's own space, where it spans -1 to 1.
     rows: array<vec4f, 3>,
-    // Velocity, m/s; w is 1 for a box that moves, 0 for one that stands still.
+    // Velocity, (east, north, up), m/s; w is 1 for a box that moves, 0 for one that stands still.
     velocity: vec4f,
     // x: index of the first plane that cuts the box; y: index after the last one.
     cuts: vec4u,
@@ -31,13 +31,13 @@ struct Shelters {
 
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
-// Time, s, that a drop which came to `p` with `velocity` has spent inside the shape of box `i`, cut by its planes. It
-// is negative if the drop has not been inside: the further away it passed, the lower.
+// Returns the time, s, that a drop which came to `p` with `velocity` has spent inside the shape of box `i`, cut by its
+// planes. It is negative if the drop has not been inside: the farther away it passed, the lower.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     return time_nearby(i, p, velocity, 0.0);
 }
 
-// `time_within` for a box whose sides and planes lie `margin` m further out.
+// Returns the time of `time_within` for a box whose sides and planes lie `margin` m farther out.
 fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     let back = shelters.boxes[i].velocity.xyz - velocity;
     let rows = shelters.boxes[i].rows;
@@ -60,13 +60,14 @@ fn time_nearby(i: u32, p: vec3f, velocity: vec3f, margin: f32) -> f32 {
     return far - near;
 }
 
-// Whether a drop near the camera that came to `p` with `velocity` met a box or a mapped surface on its way. False where
-// the answer is not `wanted`: the loops then start at their end, and a software driver skips such loops.
+// Returns whether a drop near the camera that came to `p` with `velocity` met a box or a mapped surface on its way.
+// Returns false if the answer is not `wanted`: the loops then start at their end, and a software driver skips such
+// loops.
 fn sheltered(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return sheltered_nearby(p, velocity, 0.0, wanted);
 }
 
-// `sheltered` for boxes whose sides lie `margin` m further out.
+// Returns the answer of `sheltered` for boxes whose sides lie `margin` m farther out.
 fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> bool {
     for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.near & 63u); i++) {
         if time_nearby(i, p, velocity, margin) >= 0.0 {
@@ -83,8 +84,8 @@ fn sheltered_nearby(p: vec3f, velocity: vec3f, margin: f32, wanted: bool) -> boo
     return false;
 }
 
-// Whether a mapped surface that stands still keeps rain off the ground at `p`. Moving ones do not count: ground stays
-// wet when something only passes over it.
+// Returns whether a mapped surface that stands still keeps rain off the ground at `p`. Moving surfaces do not count:
+// ground stays wet when an object only passes over it.
 fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     if MAPS {
         for (var i = select(MAX_MAPS, 0u, wanted); i < (occluders.count & 7u); i++) {
@@ -96,7 +97,7 @@ fn mapped_ground(p: vec3f, velocity: vec3f, wanted: bool) -> bool {
     return false;
 }
 
-// Longest `time_within` among the boxes that stand still; negative if the drop met none of them.
+// Returns the longest `time_within` among the boxes that stand still; negative if the drop met none of them.
 fn time_in_standing(p: vec3f, velocity: vec3f, wanted: bool) -> f32 {
     var time = -1e9;
     for (var i = select(MAX_SHELTERS, 0u, wanted); i < (shelters.count & 63u); i++) {

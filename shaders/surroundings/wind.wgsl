@@ -1,6 +1,7 @@
-// The wind that varies in space, as src/surroundings/wind.rs uploads it, one texel per node. w: share of the weather's
-// wind that it replaces. xyz: its velocity times this share, m/s. Sample the texture at `wind_place` with its sampler
-// (linear, clamped), and pass the result to `wind_at`, which returns xyz + (1 - w) weathers.
+// Wind that varies in space: a texture with one texel per node (src/surroundings/wind.rs). w: share of the weather's
+// wind that it replaces, 0 to 1. xyz: its velocity (east, north, up) times this share, m/s. Sample the texture at
+// `wind_place` with its sampler (linear, clamped), and pass the result to `wind_at`, which returns xyz + (1 - w)
+// weathers.
 
 // Mapping from camera-relative positions to the texture.
 struct WindMap {

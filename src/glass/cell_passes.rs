@@ -10,7 +10,7 @@ use crate::{
 
 /// Format of the water in the cells.
 pub(super) const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Format of the shares of the rain that maps let through, and of snow.
+/// Format of the shares of the rain that occluder maps let through, and of snow.
 pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 pub(super) fn texture(

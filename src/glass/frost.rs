@@ -7,7 +7,7 @@ use crate::{falling::flakes::aggregate_speed_m_s, weather::Falling};
 
 /// Latent heat of melting ice, J/kg.
 const MELTING_J_KG: f64 = 3.34e5;
-/// Diameter of a flake whose fall speed stands for that of all flakes, mm.
+/// Diameter of the flake whose fall speed is taken for all flakes, mm.
 const TYPICAL_MM: f64 = 4.0;
 /// Width of the body that the air flows around, glass and cab, m.
 const BLUFF_M: f64 = 1.0;
@@ -17,7 +17,7 @@ const MOST_M: f64 = 5e-3;
 /// Snowfall at the glass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snowing {
-    /// Rate of water on level ground, m/s.
+    /// Rate of melted water on level ground, m/s.
     pub water_m_s: f64,
     /// Fall speed of the flakes, m/s.
     pub fall_m_s: f64,
@@ -41,11 +41,11 @@ impl Snowing {
         }
     }
 
-    /// Returns the rate of water that stays on a surface, m/s. `normal_up` is the upward component of the surface's
-    /// outward normal, and `approach_m_s` its speed outwards against the air. The air that flows around the glass takes
-    /// light flakes with it. Of the flakes blown towards the glass the share S^3 / (S^3 + 0.77 S^2 + 0.22) arrives,
-    /// where S is their Stokes number (Landahl & Herrmann 1949). Of flakes that arrive at a speed v above 1 m/s, the
-    /// share (1 m/s) / v stays (ISO 12494:2001, wet snow).
+    /// Returns the rate at which snow stays on a surface, as water, m/s. `normal_up` is the upward component of the
+    /// surface's outward normal, and `approach_m_s` its speed outwards against the air. The air that flows around the
+    /// glass takes light flakes with it. Of the flakes blown towards the glass the share S^3 / (S^3 + 0.77 S^2 + 0.22)
+    /// arrives, where S is their Stokes number (Landahl & Herrmann 1949). Of flakes that arrive at a speed v above 1
+    /// m/s, the share (1 m/s) / v stays (ISO 12494:2001, wet snow).
     pub fn stays_m_s(&self, normal_up: f64, approach_m_s: f64) -> f64 {
         if self.water_m_s <= 0.0 {
             return 0.0;
@@ -58,21 +58,22 @@ impl Snowing {
     }
 }
 
-/// Returns the heat transfer from glass to air, W/(m^2 K): a plate in wind (McAdams 1954, *Heat Transmission*, 3rd
-/// edition, eq. 9-42).
+/// Returns the heat transfer from glass to air, W/(m^2 K), by the law of a plate in wind: 5.7 + 3.8 v below 5 m/s, and
+/// 6.47 v^0.78 above (McAdams 1954, *Heat Transmission*, 3rd edition, eq. 9-42).
 fn exchange_w_m2_k(wind_m_s: f64) -> f64 {
     let v = wind_m_s.abs();
     if v < 5.0 { 5.7 + 3.8 * v } else { 6.47 * libm::pow(v, 0.78) }
 }
 
-/// Returns the rate at which snow melts on heated glass, m/s of water. The glass is at 0 C. Warmer air adds heat, and
-/// colder air takes heat away.
+/// Returns the rate at which snow melts on heated glass, m/s of water: (H + h T) / (L rho), at least 0. H is the
+/// heating, W/m^2; h the heat transfer, W/(m^2 K), from glass at 0 C to air of the temperature T, C; L the latent heat
+/// of melting, J/kg; rho the density of water, kg/m^3.
 pub fn melts_m_s(heat_w_m2: f64, temperature_c: f64, wind_m_s: f64) -> f64 {
     (heat_w_m2 + exchange_w_m2_k(wind_m_s) * temperature_c).max(0.0) / (MELTING_J_KG * WATER)
 }
 
-/// Returns the largest volume of water that one flake brings to a cell, m^3. A large flake covers several cells: one of
-/// 5 mm and 2 mg is 0.1 mm of water over its disc.
+/// Returns the largest volume of water that one flake brings to a cell, m^3. It is 0.1 mm of water over the cell. A
+/// large flake covers several cells: one of 5 mm and 2 mg is as deep over its disc.
 pub fn of_a_flake_m3(cell_m: f64) -> f64 {
     1e-4 * cell_m * cell_m
 }

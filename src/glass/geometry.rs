@@ -15,7 +15,7 @@ pub enum Pane {
     /// A flat window. Its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
     /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
     Quad([DVec3; 4]),
-    /// The whole picture: glass across the view at this distance, m, [0.1, 3].
+    /// Glass over the whole picture, at right angles to the view at this distance, m, [0.1, 3].
     WholeView(f64),
 }
 
@@ -92,7 +92,7 @@ impl Plane {
             Pane::Quad(corners) => Self::of(corners),
             Pane::WholeView(distance_m) => {
                 let rays = PictureRays::of(projection)?;
-                // Slightly larger than the picture, so that the picture's edge is on the glass.
+                // Makes the pane 2 % larger than the picture, so that the picture's edge is on the glass.
                 let at = |x: f64, y: f64| {
                     let d = rays.direction + 1.02 * (x * rays.dx + y * rays.dy);
                     d * (distance_m / -d.z)
@@ -104,7 +104,7 @@ impl Plane {
         }
     }
 
-    /// Returns the edge of a cell, m, and the lattice's columns and rows.
+    /// Returns the edge of a cell, m, and the numbers of the lattice's columns and rows.
     pub fn lattice(&self) -> (f64, [u32; 2]) {
         let cell = CELL_M.max(self.size_m.max_element() / f64::from(MAX_CELLS));
         (cell, self.size_m.to_array().map(|m| ((m / cell).round() as u32).clamp(4, MAX_CELLS)))
@@ -129,9 +129,9 @@ impl PictureRays {
     /// # Errors
     /// [`crate::Status::Unsupported`] for parallel rays: there is no eye behind the glass.
     pub fn of(projection: &DMat4) -> Result<Self> {
-        // p = (x, y, z, 1) lies on the ray of (x', y') where (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0. These are two
-        // planes through the eye. The cross product of their normals is the ray's direction; it is affine in x' and y'
-        // because r_w x r_w = 0.
+        // The point p = (x, y, z, 1) lies on the ray of (x', y') if (r_x - x' r_w) . p = (r_y - y' r_w) . p = 0. These
+        // are two planes through the eye. The cross product of their normals is the ray's direction; it is affine in x'
+        // and y' because r_w x r_w = 0.
         let row = |i: usize| {
             let r: DVec4 = projection.row(i);
             r.truncate()

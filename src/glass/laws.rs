@@ -14,7 +14,7 @@ const AIR: f64 = 1.2;
 const VISCOSITY: f64 = 1.0e-3;
 /// Acceleration of gravity, m/s^2.
 pub const GRAVITY: f64 = 9.81;
-/// Contact angle for the shape and volume of beads, degrees; it lies between the two below.
+/// Contact angle for the shape and volume of beads, degrees. It lies between the receding and the advancing angle.
 pub const CONTACT_DEG: f64 = 50.0;
 /// Advancing contact angle of water on glass in use, degrees. Clean glass has less than 20, waxed glass more than 80;
 /// road film lies between.
@@ -23,8 +23,8 @@ const ADVANCING_DEG: f64 = 62.0;
 const RECEDING_DEG: f64 = 32.0;
 /// Share of the retention that remains under a running bead or on wet glass.
 const MOVING_RETENTION: f64 = 0.5;
-/// Slope of the capillary number against the excess of the Bond number: beads run some centimetres a second on upright
-/// glass.
+/// Increase of the capillary number per increase of the Bond number in [`speed_m_s`]. With it beads run some
+/// centimetres a second on upright glass.
 const MOBILITY: f64 = 0.003;
 /// Drag coefficient of a sessile drop for the air's speed at its height. With it a drop of 10 uL on level glass starts
 /// to move near 13 m/s, about as Milne & Amirfazli (2009) measured.
@@ -34,7 +34,8 @@ const CLASSES: usize = 295;
 /// Width of a class, mm.
 const STEP_MM: f64 = (LARGEST_MM - SMALLEST_MM) / CLASSES as f64;
 
-/// Returns the ratio of the volume of a spherical cap to the cube of its contact radius.
+/// Returns the ratio of the volume of a spherical cap to the cube of its contact radius: pi (2 - 3 c + c^3) / (3 s^3),
+/// with the cosine c and the sine s of the contact angle.
 pub fn volume_factor() -> f64 {
     let (s, c) = libm::sincos(CONTACT_DEG.to_radians());
     PI * (2.0 - 3.0 * c + c * c * c) / (3.0 * s * s * s)
@@ -52,8 +53,8 @@ pub fn retention_n(radius_m: f64) -> f64 {
     SURFACE_TENSION * 2.0 * radius_m * difference
 }
 
-/// Returns the force of the air on a bead, N: 1/2 rho C A u |u|, with the air's density rho and speed u, the drag
-/// coefficient C (`DRAG`) and the cap's frontal area A.
+/// Returns the force of the air along the glass on a bead, N: 1/2 rho C A u |u|, with the air's density rho and speed
+/// u, the drag coefficient C (`DRAG`) and the cap's frontal area A.
 pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     let theta = CONTACT_DEG.to_radians();
     let (s, c) = libm::sincos(theta);
@@ -61,9 +62,10 @@ pub fn drag_n(radius_m: f64, airflow_m_s: f64) -> f64 {
     0.5 * AIR * DRAG * area * airflow_m_s * airflow_m_s.abs()
 }
 
-/// Returns the speed of a bead that runs or lies on wet glass, m/s. The capillary number rises linearly with the Bond
-/// number above the one at which the bead stops (Le Grand, Daerr & Limat 2005). A Bond number here is a force divided
-/// by gamma V^(1/3), with the surface tension gamma and the volume V.
+/// Returns the speed of a bead that runs or lies on wet glass, m/s, under the driving force `drive_n`. Above the Bond
+/// number at which the bead stops, the capillary number rises linearly with the Bond number (Le Grand, Daerr and Limat
+/// 2005). The capillary number is viscosity x speed / gamma. A Bond number here is a force divided by gamma V^(1/3),
+/// with the surface tension gamma and the volume V.
 pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
     let excess = drive_n - MOVING_RETENTION * retention_n(radius_m(volume_m3));
     if excess <= 0.0 {
@@ -94,7 +96,7 @@ pub fn drop_volume_m3(d: f64) -> f64 {
     PI / 6.0 * d * d * d * 1e-9
 }
 
-/// Drops that hit a surface, by size.
+/// Drops that hit a surface, by diameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrivals {
     /// Diameter, mm, and drops per m^2 and second of each class, from the largest down.

@@ -19,16 +19,18 @@ const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
 #[derive(Clone, Copy)]
 pub(crate) struct LensFrame<'a> {
     pub camera: &'a Camera,
-    /// Finished picture to read, with the size of the target.
+    /// Finished picture to read; it has the size of the target.
     pub picture: &'a wgpu::Texture,
+    /// Mask of the host; where it is 1, the glass is not drawn.
     pub mask: Option<Layer<'a>>,
     pub target: &'a wgpu::TextureView,
-    /// Whether its values are sRGB-encoded.
+    /// Whether the picture's values are sRGB-encoded.
     pub encoded: bool,
+    /// Whether row 0 of the target is the picture's bottom.
     pub bottom_left: bool,
 }
 
-/// `Lens` of `shaders/glass/lens.wgsl`.
+/// Uniform block `Lens` of `shaders/glass/lens.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct LensUniform {
@@ -56,7 +58,7 @@ pub(super) struct LensUniform {
     pub pad: u32,
 }
 
-/// Lattice that the lens draws.
+/// Lattice of water and snow that the lens draws.
 #[derive(Clone, Copy)]
 pub(super) struct LensLattice {
     pub cell_m: f64,
@@ -65,7 +67,7 @@ pub(super) struct LensLattice {
     pub wet: bool,
     /// Whether snow may lie on it.
     pub snowy: bool,
-    /// Direction in which large beads run, (u, v), with any length.
+    /// Direction in which large beads run, (u, v), of any length; 0 if they rest.
     pub flow: DVec2,
     pub key: u32,
 }
@@ -77,8 +79,7 @@ impl LensUniform {
         let clip = rays.to_clip() * to_glass.transpose();
         let eye = to_glass * -plane.origin;
         let f3 = |v: DVec3| v.as_vec3().to_array();
-        // Size of a pixel where the middle of the view meets the glass, or would meet it if the glass were across the
-        // view.
+        // Computes the size of a pixel on the glass in the middle of the picture, with the slant of the glass limited.
         let ray = rays.direction.normalize();
         let distance = eye.z.abs() / (to_glass * ray).z.abs().max(0.2);
         let angle = 2.0 * rays.dy.length() / rays.direction.length() / f64::from(frame.picture.height());

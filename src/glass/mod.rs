@@ -1,5 +1,5 @@
-//! Water on the windscreen: drops land on the glass that a host looks through, merge, run down, are wiped, and refract
-//! the picture behind them.
+//! Water on the windscreen: drops land on the glass through which a view looks, merge, run down, are wiped off, and
+//! refract the picture behind them.
 //!
 //! **State.** The glass is a lattice of cells of 4 mm. A cell holds at most one bead of water, with its volume, its
 //! position in the cell and whether it runs. It also has the number of drops that have hit it since it was last cleared
@@ -12,9 +12,9 @@
 //! meltwater forms beads ([`frost`], `shaders/glass/settle.wgsl`).
 //!
 //! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a
-//! cut, at the first frame, and where more than [`MAX_STEPS`] would be due, the glass takes the declared state of that
-//! moment. It is a pure function of (seed, time, rain), with beads below the size at which they run. `NO_HISTORY`
-//! always shows that state.
+//! cut, at the first frame, and if more than [`MAX_STEPS`] would be due, the glass takes the declared state of that
+//! time: a pure function of (seed, time, rain), with beads below the size at which they run. A frame with `NO_HISTORY`
+//! always shows the declared state.
 //!
 //! **Cost.** Each step takes two passes over the lattice, and a third with snow on the glass or falling. Each frame
 //! takes two small copies of the picture and one pass over it. There is no cost without a windscreen or on dry glass.

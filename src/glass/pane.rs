@@ -1,4 +1,4 @@
-//! A pane of glass in the host's world: the drops that arrive at it, and the share that the host's boxes keep off.
+//! Pane of glass in the host's world: the drops that arrive at it, and the share that the host's boxes keep off.
 
 use glam::{DMat3, DVec3};
 
@@ -15,12 +15,12 @@ use crate::{
     surroundings::{MAX_SHELTERS, Shelter, shelter::sheltered},
 };
 
-/// Distance in front of the surface at which a drop is tested against the boxes, m.
+/// Distance in front of the glass of the points for which shelter by boxes is tested, m.
 const BEFORE_M: f64 = 0.05;
 /// Largest distance that a vehicle extends in front of its windscreen, m.
 const VEHICLE_M: f64 = 3.0;
 
-/// A pane of glass and the eye behind it, in the host's world.
+/// Pane of glass and the eye behind it, in the host's world, m.
 pub(super) struct PaneAt {
     eye: DVec3,
     /// Lower left corner of its bounds, and the vectors from there to the lower right and the upper left, m.
@@ -47,8 +47,8 @@ impl PaneAt {
         }
     }
 
-    /// Whether a box is the vehicle's own: it contains the eye and ends within [`VEHICLE_M`] in front of the glass. A
-    /// tunnel goes on beyond.
+    /// Whether a box is the vehicle's own: it contains the eye and ends within [`VEHICLE_M`] in front of the glass. The
+    /// box of a tunnel extends farther.
     fn sits_in(&self, shelter: &Shelter) -> bool {
         let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
         // The box is convex: a point is inside if both directions of a line through it meet the box.
@@ -80,8 +80,8 @@ impl PaneAt {
         drops
     }
 
-    /// Returns the share of these drops that boxes now let through to each part of the pane. The vehicle's own box does
-    /// not count.
+    /// Returns the share of the rain, given by the results of [`Self::drops`], that boxes now let through to each part
+    /// of the pane. The vehicle's own box does not count.
     pub fn reach(&self, shelters: &[Shelter], drops: &[(DVec3, f64); SIZES]) -> Reach {
         if shelters.is_empty() {
             return Reach::ALL;
@@ -96,8 +96,8 @@ impl PaneAt {
         })
     }
 
-    /// Returns the pane and its drops as uniforms for the maps' pass. The camera is at `eye`, and `to_enu` turns its
-    /// axes.
+    /// Returns the pane and its drops as uniforms for the maps' pass. The camera is at `eye`; `to_enu` is the rotation
+    /// from the host's axes to its east, north, up.
     pub fn uniform(&self, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
         let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
         PaneUniform {

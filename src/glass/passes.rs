@@ -20,13 +20,14 @@ use crate::{
     stage::flag,
 };
 
+/// Format of the smaller copies of the picture.
 const SMALL: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Factor by which the first copy of the picture is smaller along an edge.
+/// Factor by which width and height of the picture are larger than those of its first copy.
 const SMALLER: u32 = 8;
-/// Factor by which the second copy is smaller than the first.
+/// Factor by which width and height of the first copy are larger than those of the second.
 const SMALLEST: u32 = 4;
 
-/// Key of a lens pipeline.
+/// Properties that select a lens pipeline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct LensVariant {
     pub format: wgpu::TextureFormat,
@@ -43,10 +44,12 @@ pub(crate) struct GlassKit {
     decide: wgpu::RenderPipeline,
     gather: wgpu::RenderPipeline,
     declare: wgpu::RenderPipeline,
+    /// Pipelines of a step and of the declared state of snow.
     settle: [wgpu::RenderPipeline; 2],
-    /// Additional pipelines, created when a view first looks through glass below maps.
+    /// Additional pipelines for glass below occluder maps, created when a view first needs them.
     mapped: Option<MappedKit>,
     shrink_layout: wgpu::BindGroupLayout,
+    /// Pipelines of the first copy of a linear and of an sRGB-encoded picture, and of the second copy.
     shrink: [wgpu::RenderPipeline; 3],
     lens_layout: wgpu::BindGroupLayout,
     lenses: LruCache<LensVariant, wgpu::RenderPipeline, MOST_LENSES>,
@@ -140,31 +143,36 @@ impl GlassKit {
 /// Kind of a step's work on the lattice.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum LatticeWork {
-    /// Takes the declared state of the moment.
+    /// Takes the declared state of a time.
     Declare,
     /// Advances by one step.
     Move,
 }
 
-/// Cells of a view's glass on the GPU.
+/// Water and snow in the cells of a view's glass, on the GPU.
 pub(super) struct PaneLattice {
     pub size: [u32; 2],
+    /// Water in the cells, in two states: the present one, and the target of the next step.
     cells: [wgpu::Texture; 2],
     views: [wgpu::TextureView; 2],
+    /// Motion of each bead in a step, between its two passes.
     moves: wgpu::TextureView,
-    /// Snow on the cells, in two states.
+    /// Snow on the cells, in two states: the present one, and the target of the next step.
     snow: [wgpu::Texture; 2],
     snow_views: [wgpu::TextureView; 2],
     /// Shares of the rain that maps let through to the nodes over the pane.
     mapped: (wgpu::Texture, wgpu::TextureView),
-    /// Index of the present state of the cells (`now`) and of the snow (`snow_now`).
+    /// Index of the present state of the cells.
     now: usize,
+    /// Index of the present state of the snow.
     snow_now: usize,
-    /// Bind groups by the present state of the snow, then of the cells. The first reads the cells, with the other state
-    /// in place of the moves; the second reads the cells and the moves.
+    /// Bind groups by the present state of the snow, then of the cells. The first is for the pass that writes the
+    /// moves: it has the other state of the cells in their place. The second reads the cells and the moves.
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
+    /// Uniform blocks of the due steps, every `stride` bytes.
     steps: wgpu::Buffer,
     stride: usize,
+    /// Bytes of these blocks, before they are uploaded.
     slots: Vec<u8>,
     /// Work that is due, and whether snow takes part in it.
     due: Vec<(LatticeWork, bool)>,
@@ -294,7 +302,7 @@ impl PaneLattice {
     }
 }
 
-/// Does the work of [`pass::draw`] into a cleared target, with one bind group and the offset of the step's uniforms.
+/// Draws a full-screen pass into a cleared target, with one bind group and the offset of the step's uniforms, bytes.
 fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
@@ -328,11 +336,13 @@ pub(super) struct LensDraw<'a> {
 pub(super) struct LensPass {
     picture: wgpu::Texture,
     mask: Option<KeptLayer>,
+    /// Smaller copies of the picture.
     smaller: [wgpu::TextureView; 2],
     shrinks: [wgpu::BindGroup; 2],
     uniform: wgpu::Buffer,
     /// Bind groups by the state of the lattice's snow, then of its cells.
     groups: [[wgpu::BindGroup; 2]; 2],
+    /// Size of the lattice whose textures the bind groups have.
     lattice: Option<[u32; 2]>,
     bytes: u64,
 }

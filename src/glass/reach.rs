@@ -10,7 +10,7 @@ use std::array::from_fn;
 pub const NODES: [usize; 2] = [16, 8];
 /// Value of a node that all of the rain reaches.
 pub const ALL: u8 = 128;
-/// Number of vectors that hold the nodes, with sixteen nodes each.
+/// Number of vectors of four words that hold the nodes; each vector holds sixteen nodes.
 const WORDS: usize = NODES[0] * NODES[1] / 16;
 /// Number of drop sizes tested at each node. Each stands for an equal share of the water.
 pub const SIZES: usize = 6;
@@ -21,7 +21,7 @@ pub const SIZES: usize = 6;
 pub struct Reach([[u32; 4]; WORDS]);
 
 impl Reach {
-    /// All of the rain everywhere.
+    /// Reach of all of the rain everywhere.
     pub const ALL: Self = Self([[ALL as u32 * 0x0101_0101; 4]; WORDS]);
 
     /// Creates the shares. `share` returns the share, 0 to 1, at a position in the pane's bounds, 0 to 1 to the right
@@ -55,7 +55,7 @@ impl Reach {
         self.0.iter().flatten().any(|w| *w != 0)
     }
 
-    /// Returns the share that passes both this and `other`.
+    /// Returns the product of this share and `other` at each node: the rain that passes both.
     pub fn and(&self, other: &Self) -> Self {
         let mut nodes = [0u8; NODES[0] * NODES[1]];
         for ((node, a), b) in nodes.iter_mut().zip(self.nodes()).zip(other.nodes()) {

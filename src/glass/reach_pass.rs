@@ -15,7 +15,7 @@ use crate::{
     surroundings::{HostSurroundings, SurroundingsBlock, layout as around_layout},
 };
 
-/// `PaneUniform` of `shaders/glass/maps.wgsl`, which explains the fields.
+/// Uniform block `PaneUniform` of `shaders/glass/maps.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PaneUniform {
@@ -34,7 +34,7 @@ pub(super) struct MappedKit {
     pub settle: [wgpu::RenderPipeline; 2],
 }
 
-/// Bindings of a view's maps for its glass.
+/// Bindings of a view's occluder maps for its glass.
 pub(super) struct MapReach {
     surroundings: SurroundingsBlock,
     uniform: wgpu::Buffer,
@@ -43,6 +43,7 @@ pub(super) struct MapReach {
 
 /// Maps of a frame, and the pane below them.
 pub(crate) struct Mapped<'a> {
+    /// Occluder maps of the host, without boxes and lamps.
     pub told: HostSurroundings<'a>,
     pub pane: PaneUniform,
 }

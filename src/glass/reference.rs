@@ -1,5 +1,5 @@
-//! Reference of the cells on the CPU, with the same bits as `shaders/glass/{cells,decide,gather,declare,settle}.wgsl`,
-//! the same names and the same order.
+//! Reference of the cells on the CPU, a twin to the bit of `shaders/glass/{cells,decide,gather,declare,settle}.wgsl`,
+//! with functions of the same names, which the shaders describe.
 
 use glam::DVec2;
 
@@ -10,22 +10,30 @@ use super::{
     step::{StepUniform, VOLUME_UNIT_M3, pcg},
 };
 
+/// Largest number of counted hits of a cell.
 const MOST_HITS: u32 = 4095;
+/// Value of the film where a bead has run or a blade has wiped.
 const FULL_FILM: u32 = 65_535;
+/// Film above which a bead glides as if it ran.
 const WET_FILM: u32 = 2048;
+/// Flag of a move: a blade has wiped the bead.
 const WIPED: u32 = 16;
+/// Flag of a move: the bead has run.
 const RAN: u32 = 32;
+/// Number of steps in which a cell collects the water of its declared state.
 const LIFE_STEPS: u32 = 2048;
 
-/// A cell: (volume, place x + 65536 y, speed + 65536 shape, hits + 4096 clearings + 65536 film).
+/// Cell, four words. Volume, units of [`VOLUME_UNIT_M3`]. Place of the bead in the cell, x + 65536 y, each in 1/65536
+/// of the edge. Speed, 0 at rest, + 65536 x shape (seed of the outline). Hits since the last clearing + 4096 x
+/// clearings (modulo 16) + 65536 x film.
 pub type Cell = [u32; 4];
 
-/// A lattice of cells, row by row from the lower left.
+/// Lattice of cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cells {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// Cells, row by row.
+    /// Cells, row by row from the lower left.
     pub cells: Vec<Cell>,
 }
 
@@ -129,7 +137,7 @@ impl Cells {
                 area += std::f64::consts::PI * laws::radius_m(volume).powi(2);
             }
         }
-        // Beads overlap at random.
+        // Takes beads as overlapping at random: the covered share is 1 - exp(-sum of areas / area of the pane).
         (1.0 - libm::exp(-area / plane.area_m2()), water)
     }
 

@@ -23,11 +23,10 @@ use crate::{
     weather::Conditions,
 };
 
-/// Share of the rain that boxes let through to each part of the glass, and the host's maps that keep rain off, if there
-/// are any.
+/// Share of the rain that boxes let through to each part of the glass, and the host's occluder maps, if there are any.
 pub(super) type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
-/// Weather and frame at the glass at a moment.
+/// Weather, camera and time of a frame, for its glass.
 pub(super) struct AtGlass<'a> {
     pub time_s: f64,
     pub seed: u64,
@@ -40,7 +39,7 @@ pub(super) struct AtGlass<'a> {
     pub weather: &'a dyn Fn(f64) -> Conditions,
     /// Function that returns the share of the rain that reaches the glass now.
     pub reach: &'a dyn Fn(&Plane, &Windscreen) -> Result<Reached<'a>>,
-    /// Whether nothing of earlier frames may remain.
+    /// Whether the frame must not depend on earlier frames.
     pub cut: bool,
 }
 
@@ -51,7 +50,7 @@ pub struct GlassReport {
     pub drops_per_s: f64,
     /// Water that hits the pane, mm/h over its area.
     pub water_mm_h: f64,
-    /// Share of the pane under water.
+    /// Share of the pane under beads of water, 0 to 1.
     pub covered: f64,
     /// Water on the pane, m^3.
     pub water_m3: f64,
@@ -66,17 +65,21 @@ pub(crate) struct Glass {
     screen: Windscreen,
     /// Simulation time of the last frame, s, and the windscreen then.
     last: Option<(f64, Windscreen)>,
+    /// Plane of the glass in the last frame.
     plane: Option<Plane>,
+    /// Conditions on the glass in the last frame.
     acting: Option<StepConditions>,
     /// Share of the rain that boxes let through in the last frame, and whether there were maps.
     reach: (Reach, bool),
     lattice: Option<PaneLattice>,
+    /// Bindings of the occluder maps, once there are any.
     below: Option<Box<MapReach>>,
     lens: Option<LensPass>,
     tables: Box<Tables>,
-    /// Number of the last step that was done.
+    /// Index of the last step that was done: its time in 1/60 s.
     step: Option<i64>,
-    /// 1 after rain; falls to 0 until the last bead has dried.
+    /// Upper bound of the wetness: 1 in rain and meltwater, then falling linearly to 0 in the time in which the largest
+    /// bead dries.
     moisture: f64,
     /// Upper bound of the snow in a cell, units; 0 without snow.
     frost: f64,
@@ -84,14 +87,15 @@ pub(crate) struct Glass {
     key: u32,
 }
 
-/// Returns the number of the last step at or before a time. The time n / 60 s, as a host rounds it, is step n.
+/// Returns the index of the last step at or before a time. A host's rounding of the time n / 60 s still gives step n.
 fn step_at(time_s: f64) -> i64 {
     (time_s * STEPS_PER_S + 1e-6).floor() as i64
 }
 
+/// Returns the conditions on the glass in a weather.
 fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Conditions) -> StepConditions {
     let up = moment.camera.rotation() * moment.up;
-    // Altitude in steps of 50 m, so that a hilly road does not need new tables all the time.
+    // Rounds the altitude to 50 m, so that a hilly road does not need new tables all the time.
     let level = (moment.altitude_m / 50.0).round() * 50.0;
     StepConditions {
         cell_m: plane.lattice().0,
@@ -155,7 +159,7 @@ impl Glass {
     ) -> Result<u32> {
         let plane = Plane::of_pane(&self.screen.pane, &moment.camera.projection)?;
         let (cell_m, size) = plane.lattice();
-        // Rounding changes the pane's size a little when the head moves; the water on it stays.
+        // Tolerates small changes of the pane's size, which rounding causes when the head moves: the water stays.
         let same = |old: [u32; 2]| (0..2).all(|i| old[i].abs_diff(size[i]) <= 1 + size[i] / 50);
         let fits = self.lattice.as_ref().is_some_and(|l| same(l.size));
         if self.lattice.is_some() && !fits {
@@ -199,7 +203,7 @@ impl Glass {
         lattice.record(device, kit, encoder, mapped.map(|m| (&mut self.below, m)))
     }
 
-    /// Takes the declared state of a moment.
+    /// Takes the declared state of the present time.
     fn begin(
         &mut self,
         device: &Device,
@@ -221,7 +225,7 @@ impl Glass {
         }
     }
 
-    /// Does one step of water and snow, if there are any.
+    /// Adds the work of one step of water and snow, if there are any.
     #[allow(clippy::too_many_arguments, reason = "the step's inputs, which only this call brings together")]
     fn take_step(
         &mut self,
@@ -245,7 +249,7 @@ impl Glass {
             None => *screen,
         };
         let is_wiped = (0..MAX_ARMS).any(|i| screen.arms[i] != earlier.arms[i]);
-        // Snow that just lies needs no step.
+        // Skips the step if snow only lies.
         if !rains && self.moisture <= 0.0 && !snows && melts <= 0.0 && !is_wiped {
             return;
         }
@@ -253,7 +257,7 @@ impl Glass {
         let has_snow = snows || self.frost > 0.0;
         let wets = rains || (self.frost > 0.0 && melts > 0.0);
         self.moisture = if wets { 1.0 } else { (self.moisture - 1.0 / (STEPS_PER_S * acts.drying_s())).max(0.0) };
-        // Cells melt by random amounts around the mean.
+        // Lowers the bound by less than the mean melt, because cells melt by random amounts around the mean.
         self.frost = if snows { self.tables.most_snow() } else { (self.frost - 0.99 * melts).max(0.0) };
         let lattice = self.lattice.get_or_insert_with(|| PaneLattice::new(device, kit, size, MAX_STEPS as usize + 1));
         if was_dry {
@@ -268,7 +272,7 @@ impl Glass {
         });
         let mut numbers = self.tables.at((acts, &self.reach.0), seed, step, lattice.size, &arms);
         if !has_snow {
-            // Melting is off without snow.
+            // Switches melting off without snow.
             numbers.snow = [0; 4];
         }
         lattice.add(&numbers, (LatticeWork::Move, has_snow));
@@ -298,7 +302,7 @@ impl Glass {
             self.lens = Some(LensPass::new(device, kit, frame, lattice));
         }
         let Some(lens) = &self.lens else { return Ok(0) };
-        // Flow of the largest beads that a cell holds.
+        // Direction in which the largest beads of a cell run.
         let large = self.tables.flow();
         let size = lattice.map_or(plane.lattice().1, |l| l.size);
         let shown = LensLattice { cell_m: acts.cell_m, size, wet, snowy, flow: large, key: self.key };
@@ -365,11 +369,12 @@ impl Glass {
     }
 }
 
+/// Returns the position of a time between two times, 0 to 1.
 fn share(from_s: f64, until_s: f64, time_s: f64) -> f64 {
     if until_s <= from_s { 1.0 } else { ((time_s - from_s) / (until_s - from_s)).clamp(0.0, 1.0) }
 }
 
-/// Interpolates the wind and the wipers between two frames. All other fields are taken from the later one.
+/// Interpolates the air speeds and the wipers between two frames. All other fields are those of the later frame.
 fn blend(a: &Windscreen, b: &Windscreen, share: f64) -> Windscreen {
     let lerp = |a: f64, b: f64| if a == b { b } else { a + (b - a) * share };
     let mut s = *b;

@@ -1,4 +1,4 @@
-//! Uniforms of one step: the laws for a lattice, as integers for the cells.
+//! Uniforms of one step: the laws of [`laws`] for a lattice, as integer tables for the cells.
 
 use std::f64::consts::LN_2;
 
@@ -19,11 +19,12 @@ pub const STEPS_PER_S: f64 = 60.0;
 pub const MAX_STEPS: i64 = 30;
 /// Volume of one unit of water in a cell, m^3.
 pub const VOLUME_UNIT_M3: f64 = 1e-13;
-/// Number of drop classes: sixteen octaves of rarity with sixteen parts each.
+/// Number of drop classes: sixteen octaves of rarity ([`drop_classes`]) with sixteen parts each.
 const DROP_CLASSES: usize = 256;
 /// Number of bead classes: four in each octave of volume.
 const BEAD_CLASSES: usize = 96;
-/// Largest ratio of a bead's contact radius to the cell's edge. With it a bead stays within the neighbouring cells.
+/// Largest ratio of a bead's contact radius to the cell's edge. A bead then does not reach beyond the neighbouring
+/// cells.
 const LARGEST: f64 = 0.95;
 /// Longest distance that a bead moves in a step, 1/65536 cell.
 const FARTHEST: f64 = 58_000.0;
@@ -32,33 +33,34 @@ const ARM_UNIT: f64 = 16.0;
 /// Units per 1 of an arm's directions.
 const DIRECTION_UNIT: f64 = 4096.0;
 
-/// `Step` of `shaders/glass/cells.wgsl`.
+/// Uniform block `Step` of `shaders/glass/cells.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[doc(hidden)]
 pub struct StepUniform {
     /// Hash of (seed, step), hash of the seed, columns, rows.
     pub key: [u32; 4],
-    /// Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability in 1/65536 that a fine
-    /// bead dries.
+    /// Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability per step, in 1/65536,
+    /// that a fine bead dries.
     pub arrive: [u32; 4],
-    /// Declared state: water per step in 1/256 unit, drops per step in 1/65536, number of the step, volume of the
-    /// largest bead that rests.
+    /// Declared state: water per cell and step, in 1/256 unit; drops per cell and step, in 1/65536; index of the step;
+    /// volume of the largest bead that rests, units.
     pub declared: [u32; 4],
     /// Largest volume of a cell, units; 1 if some cells get less than all of the rain.
     pub limits: [u32; 4],
-    /// For each arm: (pivot x, y, inner radius, outer radius), (direction before x, y, direction half way x, y),
-    /// (direction now x, y, half width, 1 if there is an arm).
+    /// For each arm, three rows: (pivot x, y, inner radius, outer radius), in 1/16 cell; (direction of the blade at its
+    /// lower angle in the step x, y, direction half way x, y), in 1/4096; (direction at its higher angle x, y, in
+    /// 1/4096, half width, in 1/16 cell, 1 if there is an arm).
     pub arms: [[i32; 4]; 6],
-    /// Volumes of drops, from common to rare, units.
+    /// Volumes of drops, units, from common to rare.
     pub drops: [[u32; 4]; DROP_CLASSES / 4],
-    /// Beads by class of volume: (radius in 1/256 cell + 1024 x evaporation in 1/4096 unit per step), motion x, y in
-    /// 1/65536 cell per step, 256 times the ratio of driving force to retention.
+    /// Beads by class of volume: radius, in 1/256 cell, + 1024 x evaporation, in 1/4096 unit per step; motion x, y, in
+    /// 1/65536 cell per step; 256 x driving force / retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
     /// Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt
     /// per step (in 1/4096), and the largest amount in a cell.
     pub snow: [u32; 4],
-    /// [`Reach`]: shares of the rain that reach the nodes.
+    /// Shares of the rain that reach the nodes over the pane ([`Reach`]).
     pub reach: [[u32; 4]; 8],
 }
 
@@ -104,7 +106,7 @@ impl StepConditions {
     }
 }
 
-/// Uniforms of a step that follow from the conditions, kept while these do not change.
+/// Cache of the uniforms that depend on the conditions alone.
 pub struct Tables {
     of: Option<StepConditions>,
     numbers: StepUniform,
@@ -140,7 +142,7 @@ impl Tables {
         }
     }
 
-    /// Whether drops arrive.
+    /// Returns whether drops arrive at the glass.
     pub fn arrive(&mut self, acting: &StepConditions) -> bool {
         if acting.exposed <= 0.0 || acting.rain.number_per_m3() <= 0.0 {
             return false;
@@ -149,7 +151,7 @@ impl Tables {
         self.numbers.arrive[0] > 0
     }
 
-    /// Whether snow lands, and how much melts in a step, units.
+    /// Returns whether snow lands, and how much of a cell's snow melts in a step, units.
     pub fn snows(&mut self, acting: &StepConditions) -> (bool, f64) {
         self.update(acting);
         let [chance, _, melt, _] = self.numbers.snow;
@@ -167,8 +169,8 @@ impl Tables {
         DVec2::new(largest[1].into(), largest[2].into())
     }
 
-    /// Returns the uniforms of `step`. `arms` has the wipers and the lower and higher angle of their blades in the
-    /// step, rad.
+    /// Returns the uniforms of `step`. `arms` has the wipers, each with the angles of its blade at the beginning and at
+    /// the end of the step, rad.
     #[doc(hidden)]
     pub fn at(
         &mut self,
@@ -191,12 +193,13 @@ impl Tables {
     }
 }
 
+/// Returns the uniforms that depend on the conditions alone.
 fn numbers(acting: &StepConditions) -> StepUniform {
     let mut n = StepUniform::zeroed();
     let arrivals = acting.arrivals();
     let per_cell = acting.cell_m * acting.cell_m / STEPS_PER_S;
     let mean = arrivals.number_m2_s * per_cell;
-    // Poisson distribution: 1 - P(0), less P(1), less P(2). Four and more drops count as three.
+    // Takes the chances of at least 1, 2 and 3 drops from the Poisson distribution. Four and more drops count as three.
     let none = libm::exp(-mean);
     let at_least = [1.0 - none, 1.0 - none * (1.0 + mean), 1.0 - none * (1.0 + mean + 0.5 * mean * mean)];
     let chance = |p: f64| (p.clamp(0.0, 1.0) * 4_294_967_295.0) as u32;
@@ -243,7 +246,7 @@ fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
     let full = r >= 0.93 * LARGEST * acting.cell_m;
     let mut speed = laws::speed_m_s(volume, drive) / STEPS_PER_S / acting.cell_m * 65_536.0;
     if full && drive > 0.0 {
-        // A cell that overflows loses its water at the speed of a film.
+        // Lets a cell that is full lose its water at the speed of a film, about a tenth of a cell per step.
         speed = speed.max(6_000.0);
     }
     let motion = if drive > 0.0 { force * (speed.min(FARTHEST) / drive) } else { DVec2::ZERO };
@@ -261,7 +264,7 @@ fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
         return;
     }
     let mut classes = arrivals.classes.iter();
-    // Start from the largest drops. `left` is the rest of the present size, as a share of all drops.
+    // Starts from the largest drops. `left` is the rest of the present diameter class, as a share of all drops.
     let (mut left, mut volume) = (0.0, 0.0);
     let mut from = 0.0;
     for i in (0..DROP_CLASSES).rev() {
@@ -286,9 +289,10 @@ fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
     }
 }
 
+/// Returns the three rows of [`StepUniform::arms`] for a wiper whose blade moves between two angles, rad.
 fn arm_numbers(arm: &WiperArm, [before, now]: [f64; 2], cell_m: f64) -> [[i32; 4]; 3] {
     let place = |m: f64| (m / cell_m * ARM_UNIT).round() as i32;
-    // A blade takes the shorter way. The half plane around its mean direction contains the sector.
+    // Limits the sector to 170 degrees: the test of cells needs it within the half plane around its middle direction.
     let widest = 170f64.to_radians();
     let before = before.clamp(now - widest, now + widest);
     let (low, high) = if before < now { (before, now) } else { (now, before) };

@@ -84,7 +84,7 @@ fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
     kit.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked over a windscreen"))
 }
 
-/// Returns the share of the rain that boxes let through to a pane now, and the maps above it.
+/// Returns the share of the rain that boxes let through to a pane now, and the host's occluder maps.
 fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, screen: &Windscreen) -> Result<Reached<'a>> {
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));

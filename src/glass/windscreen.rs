@@ -1,4 +1,4 @@
-//! The windscreen as a host describes it: pane, wipers, air speeds, mist and heating.
+//! Windscreen of a host: pane, wipers, air speeds, mist and heating.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::error::{Error, Result, check_range};
 /// Largest number of wiper arms.
 pub const MAX_ARMS: usize = 2;
 
-/// A wiper: a blade on an arm that turns around a pivot in the plane of the glass.
+/// Wiper: a blade on an arm that turns around a pivot in the plane of the glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiperArm {
     /// Position of the pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
@@ -41,8 +41,8 @@ impl Default for WiperArm {
     }
 }
 
-/// The window that a view looks through, with its wipers, air speeds, mist and heating. A host that drives sets it
-/// before each frame.
+/// Window that a view looks through, with its wipers, air speeds, mist and heating. A host that drives sets it before
+/// each frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windscreen {
     /// Shape and position of the glass.
@@ -52,14 +52,14 @@ pub struct Windscreen {
     pub velocity_m_s: DVec3,
     /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]. It drives the beads.
     pub airflow_m_s: f64,
-    /// Share of the weather's rain that reaches the glass, [0, 1]; 0 in a tunnel without a box. The context's boxes and
-    /// maps ([`crate::context::Context::set_shelters`], [`crate::context::Context::set_occluder_maps`]) further reduce
-    /// the rain on each part of the pane. A box that contains the camera and ends within 3 m in front of the glass is
-    /// the vehicle's own, and keeps no rain off.
+    /// Share of the weather's rain that reaches the glass, [0, 1]; for example 0 in a tunnel for which the host has set
+    /// no box. The context's boxes and maps ([`crate::context::Context::set_shelters`],
+    /// [`crate::context::Context::set_occluder_maps`]) further reduce the rain on each part of the pane. A box that
+    /// contains the camera and ends within 3 m in front of the glass is the vehicle's own, and keeps no rain off.
     pub exposed: f64,
-    /// Mist on the inside, [0, 1].
+    /// Mist on the inside: 0 is clear glass, 1 the densest mist.
     pub fogging: f64,
-    /// Part that the blower has cleared of mist, from the lower edge upwards, [0, 1].
+    /// Share of the glass's height, from the lower edge upwards, that the blower has cleared of mist, [0, 1].
     pub demist: f64,
     /// Wipers, 0 to 2.
     pub arms: [Option<WiperArm>; MAX_ARMS],

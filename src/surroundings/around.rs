@@ -1,5 +1,5 @@
-//! Shelters, occluder maps and lamps around a camera, as shaders read them: one bind group (2) for all shaders. They
-//! are uploaded once a frame; nothing is uploaded while there are none.
+//! Uniform blocks of the shelters, occluder maps and lamps around a camera: one bind group, of index 2, for all
+//! shaders. They are uploaded once a frame; nothing is uploaded while there are none.
 
 use glam::{DMat3, DVec3};
 
@@ -18,7 +18,7 @@ use crate::{
 
 /// Bytes of a box: its rows, its velocity, and the indices of the planes that cut it.
 const BOX_BYTES: usize = 80;
-/// Byte offset of the planes.
+/// Byte offset of the planes in the block of shelters.
 const CUTS_AT: usize = 16 + MAX_SHELTERS * BOX_BYTES;
 /// Bytes of the block of shelters: two counts, the boxes, and the planes.
 const SHELTER_BYTES: usize = CUTS_AT + MAX_SHELTERS * MAX_PLANES * 16;
@@ -37,12 +37,15 @@ const STARTS: [usize; 4] = {
 pub(crate) struct SurroundingsBlock {
     layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
+    /// Bytes of the blocks, before they are uploaded.
     staged: Vec<u8>,
     /// Whether the last upload contained any surroundings.
     holds_any: bool,
     /// Whether any box or map keeps rain off near the camera.
     sheltered: bool,
+    /// Placeholder for a missing table of maps.
     none: wgpu::TextureView,
+    /// Table of maps of the bind group, and the group.
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
 
@@ -76,18 +79,18 @@ impl ShelterReach {
     }
 }
 
-/// The host's shelters, occluder maps and lamps, and the camera for which they are prepared: at `eye`, with axes
-/// `to_enu`.
+/// Shelters, occluder maps and lamps of the host, and the camera for which they are prepared: at `eye` in the host's
+/// world, m, with the rotation `to_enu` from the host's axes to its east, north, up.
 pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
-    /// Lightning flashes, which use the slots for lamps that the host leaves free.
+    /// Lightning flashes, which take the places in the block of lamps that the host leaves free.
     pub flash: &'a [FlashLamp],
     pub eye: DVec3,
     pub to_enu: DMat3,
     pub time_s: f64,
-    /// Velocity of the air in the camera's axes, m/s.
+    /// Velocity of the air, (east, north, up), m/s.
     pub wind_m_s: DVec3,
     pub near: ShelterReach,
     /// Exposure of the picture, applied to the lamps.
@@ -187,7 +190,7 @@ impl SurroundingsBlock {
             count += 1;
         }
         put(STARTS[2], &(count as u32).to_ne_bytes());
-        // Shaders do not read beyond the last lamp.
+        // Leaves out the rest: shaders do not read beyond the last lamp.
         STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 

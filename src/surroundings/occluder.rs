@@ -3,7 +3,8 @@
 //!
 //! A drop is removed if its slanted path, traced back, crosses a surface in a map:
 //! `shaders/surroundings/occluders.wgsl`. A map does not contain what its surfaces hide. If it is taken along the
-//! drops' own direction ([`crate::context::RainAt`]), nothing that matters is hidden, whatever the wind.
+//! drops' direction of fall (`fall_velocity_m_s` of [`crate::context::RainAt`]), it hides nothing that drops could
+//! meet, whatever the wind.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -17,7 +18,7 @@ pub const MAX_OCCLUDER_MAPS: usize = 4;
 /// Least and largest number of texels of a map along either side.
 pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
 
-/// A depth texture of surfaces that keep rain off, and the view from which the host drew it.
+/// Depth texture of surfaces that keep rain off, and the view from which the host drew it.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
     /// Depth texture: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
@@ -39,14 +40,14 @@ pub struct Taken {
     pub clip: ClipSpace,
     /// Whether row 0 of the texture lies at clip y = -1, as OpenGL draws.
     pub first_row_at_minus_y: bool,
-    /// Simulation time at which its content was right, s.
+    /// Simulation time for which its content is right, s.
     pub time_s: f64,
     /// Velocity of its content in the host's world, m/s, of a magnitude of at most 2000. With it, the map of a moving
-    /// truck need not be drawn anew every frame. 0 for content that stands still.
+    /// truck need not be drawn anew every frame. It is 0 for content that stands still.
     pub velocity_m_s: DVec3,
 }
 
-/// [`Taken`], checked, in the form from which both the shaders' uniform and the f64 code work.
+/// View of a map, checked, from which the shaders' uniform is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occluder {
     /// Rows from the world relative to `origin_m` to clip x, y and w, and to the distance from the map's plane, m.
@@ -57,13 +58,13 @@ pub(crate) struct Occluder {
     pub rays: ViewRays,
     /// 1 if row 0 of the texture is the map's top, -1 if it is the bottom.
     pub y_sign: f64,
-    /// Simulation time at which the content was right, s.
+    /// Simulation time for which the content is right, s.
     time_s: f64,
     /// Velocity of the content in the host's world, m/s.
     velocity_m_s: DVec3,
 }
 
-/// `Occluder` of `shaders/surroundings/occluders.wgsl`.
+/// Part `Occluder` of the block in `shaders/surroundings/occluders.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct OccluderUniform {
@@ -95,7 +96,8 @@ impl Taken {
         }
     }
 
-    /// Checks that the view is one of the world and can be inverted.
+    /// Checks that the matrix can be inverted and that its near plane lies in the world, and the ranges of the other
+    /// fields.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -146,8 +148,9 @@ impl Taken {
 }
 
 impl Occluder {
-    /// Returns the map as shaders read it, at a time, for a camera at `eye` with axes `to_enu`. `part`: origin and size
-    /// of the map in the table, texels.
+    /// Returns the map as shaders read it, at a time, for a camera at `eye` in the host's world, m. `to_enu` is the
+    /// rotation from the host's axes to the camera's east, north, up. `part` is the origin and the size of the map in
+    /// the table, texels.
     pub fn uniform(&self, eye: DVec3, to_enu: DMat3, time_s: f64, part: [[u32; 2]; 2]) -> OccluderUniform {
         let [low, size] = part.map(|p| p.map(f64::from));
         let moved = eye - self.origin_m - self.velocity_m_s * (time_s - self.time_s);

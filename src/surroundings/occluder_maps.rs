@@ -21,7 +21,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Value of a texel without a surface, which no path crosses: the bits of 1e12 and of -1e12.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
-/// Constants for drawing one map's texels: `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
+/// Uniform block of the pass that computes one map's texels: `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MapUniform {
@@ -39,17 +39,19 @@ struct MapUniform {
 /// Bytes reserved for one map's uniform block.
 const BLOCK: u64 = 256;
 
-/// The table, and the textures from which it is assembled, finest first.
+/// Table of all maps, and the textures from which it is assembled.
 struct OccluderTable {
     /// Ranges of texels and of cells.
     ranges: wgpu::Texture,
-    /// Size of the part that holds texels: (width, height), multiples of 64.
+    /// Width and height of the part of the table that holds texels; multiples of 64.
     size: [u32; 2],
+    /// Ranges of the texels.
     fine: wgpu::Texture,
+    /// Ranges of the cells of 8 x 8 texels, and of 64 x 64 texels.
     cells: [wgpu::Texture; 2],
 }
 
-/// One map in the table.
+/// Map in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Placed {
     occluder: Occluder,
@@ -57,7 +59,7 @@ struct Placed {
     part: [[u32; 2]; 2],
 }
 
-/// The occluder maps of a context.
+/// Occluder maps of a context.
 pub(crate) struct OccluderMaps {
     /// Layouts for the passes that draw texels and cells.
     layouts: [wgpu::BindGroupLayout; 2],

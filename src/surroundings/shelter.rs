@@ -14,10 +14,10 @@ pub const MAX_SHELTERS: usize = 32;
 
 /// Maximum number of planes that cut one box.
 pub const MAX_PLANES: usize = 16;
-/// Minimum thickness of what planes leave of a box, m: the least distance from a point inside to the faces.
+/// Least thickness, m, that planes must leave of a box ([`Shelter::thickness_m`]).
 const THINNEST_M: f64 = 1e-5;
 
-/// Planes that cut a box to a convex shape: the parts beyond any of them are removed.
+/// Planes that cut a box to a convex shape: the parts of the box beyond each plane are removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Planes {
     all: [[f64; 4]; MAX_PLANES],
@@ -25,7 +25,7 @@ pub struct Planes {
 }
 
 impl Planes {
-    /// No planes: the box stays whole.
+    /// Empty list of planes: the box stays whole.
     pub const NONE: Self = Self { all: [[0.0; 4]; MAX_PLANES], count: 0 };
 
     /// Creates planes from normals and distances. Each is a unit vector in the box's axes that points out of the shape,
@@ -53,7 +53,7 @@ impl Planes {
     }
 }
 
-/// A box that rain does not pass.
+/// Box that rain does not pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shelter {
     /// Middle of the box in the host's world, m.
@@ -134,17 +134,18 @@ impl Shelter {
         if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
-    /// Whether the box stands still: one that moves does not keep the ground dry.
+    /// Whether the box stands still, at up to 0.1 m/s: one that moves does not keep the ground dry.
     pub(crate) fn stands(&self) -> bool {
         self.velocity_m_s.length() <= 0.1
     }
 
     /// Whether the box can keep rain off a drop within `reach_m` of a camera. Other boxes need not be tested. `wind` is
-    /// the air's velocity in the camera's axes; drops fall at `slowest_m_s` at least. True if in doubt.
+    /// the air's velocity, (east, north, up), m/s; drops fall at `slowest_m_s` or faster. The answer may be true for a
+    /// box that keeps no rain off, but not the reverse.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
         let center = to_enu * (self.center_m - eye);
         let radius = self.half_size_m.length();
-        // Relative to the box, a drop was upwind when it was at the box's height.
+        // Computes the largest height over which a drop falls from the box to the place where it is drawn, m.
         let rise = center.z + radius + reach_m;
         if rise < 0.0 {
             return false;
@@ -154,8 +155,9 @@ impl Shelter {
         (center.truncate() - drift * along).length() <= reach_m + radius
     }
 
-    /// Returns the box as shaders test it, for a camera at `eye` with axes `to_enu`: three rows from camera-relative
-    /// east, north, up into the box's own space, where it spans -1 to 1; then its velocity, and whether it moves.
+    /// Returns the box as shaders test it, for a camera at `eye` in the host's world, m. `to_enu` is the rotation from
+    /// the host's axes to the camera's east, north, up. Three rows map camera-relative east, north, up, m, into the
+    /// box's own space, where it spans -1 to 1. The fourth has its velocity, m/s, and 1 if it moves.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
         let axes = to_enu * self.axes;
         let center = to_enu * (self.center_m - eye);

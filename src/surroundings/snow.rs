@@ -1,4 +1,4 @@
-//! Lying snow in the form that other effects read: to draw it, to take its meltwater, and to count its light.
+//! Lying snow in the form that other effects read, for drawing, meltwater and reflected light.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -14,7 +14,7 @@ pub(crate) struct SnowHere {
     pub depth_m: f64,
     /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Liquid water in the snow over the most that it can hold.
+    /// Ratio of the liquid water in the snow to the most that it can hold, 0 to 1.
     pub wetness: f64,
     /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
@@ -23,27 +23,27 @@ pub(crate) struct SnowHere {
 /// Effect of snow on the water below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meltwater {
-    /// Share of the ground on which the snow takes up the rain.
+    /// Share of the ground under snow, which takes up the rain, 0 to 1.
     pub covered: f64,
-    /// Runoff, mm/h as a mean over all of the ground.
+    /// Run-off from the snow, mm/h, averaged over all of the ground.
     pub runoff_mm_h: f64,
 }
 
-/// The snow on a tile of the host's terrain.
+/// Snow on a tile of the host's terrain.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TileSnow {
     /// Snow of each cell in half floats: depth in m, density in kg/m^3, wetness, albedo.
     pub cells: Vec<[u16; 4]>,
-    /// Differs whenever `cells` may differ.
+    /// Revision of `cells`, changed whenever they may have changed.
     pub revision: u64,
 }
 
-/// The lying snow of a world.
+/// Lying snow of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LyingSnow {
     /// Snow on level, open ground.
     pub country: SnowHere,
-    /// Share of that ground that snow covers.
+    /// Share of level, open ground that snow covers, 0 to 1.
     pub cover: f64,
     /// Wind speed at 10 m above which the snow drifts, m/s.
     pub threshold_m_s: f64,
@@ -54,14 +54,14 @@ pub(crate) struct LyingSnow {
     pub tiles: BTreeMap<[i32; 2], TileSnow>,
     /// Incremented whenever `cells` or `tiles` change.
     pub revision: u64,
-    /// Whether any of these cells has snow.
+    /// Whether any node or tile has snow.
     pub has_cells: bool,
-    /// Meltwater of each time slot, by the slot's number.
+    /// Meltwater of each time slot, by the slot's index: time / [`MELT_SLOT_S`], rounded down.
     melt: VecDeque<(i64, Meltwater)>,
 }
 
 impl LyingSnow {
-    /// Records the water that leaves the snow from `from_s` on for `seconds`.
+    /// Records the water that leaves the snow during `seconds` from the time `from_s` on.
     pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
         let first = (from_s / MELT_SLOT_S).floor() as i64;
         let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;
@@ -90,7 +90,7 @@ impl LyingSnow {
         self.tiles.clear();
     }
 
-    /// Removes the snow of all cells.
+    /// Removes the snow of all nodes and tiles.
     pub fn show_none(&mut self) {
         self.cells.clear();
         self.tiles.clear();

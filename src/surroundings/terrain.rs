@@ -1,8 +1,8 @@
-//! The host's terrain as effects read it: heights on a regular grid.
+//! Terrain of the host in the form that effects read: heights on a regular grid.
 
 use glam::{DMat3, DVec2, DVec3};
 
-/// Heights on a grid that is level and aligned to north at its origin; linear between nodes.
+/// Heights on a grid that is level and aligned to north at its origin; bilinear between nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TerrainHeights {
     /// Position of the south-western node in the host's world. `heights_m` count from its height.
@@ -13,7 +13,7 @@ pub(crate) struct TerrainHeights {
     pub cell_m: f64,
     /// Numbers of nodes east and north, at least two each.
     pub nodes: [u32; 2],
-    /// Heights above the origin, m. East varies fastest, then north.
+    /// Heights above the origin, m, by rows: each from west to east, rows from south to north.
     pub heights_m: Vec<f32>,
     /// Hash, equal for equal terrain.
     pub hash: u64,

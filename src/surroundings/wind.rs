@@ -1,5 +1,5 @@
-//! The wind that varies in space, as shaders read it: a texture that all views of a context share, and each camera's
-//! mapping into it. The shaders' side is `shaders/surroundings/wind.wgsl`.
+//! Wind that varies in space, for shaders: a texture that all views of a context share, and each camera's mapping into
+//! it. Shaders read it by `shaders/surroundings/wind.wgsl`.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use crate::{gpu::Device, wind::WindVolume};
 
-/// Mapping from camera-relative places to the texture: `WindMap` of `shaders/surroundings/wind.wgsl`.
+/// Mapping from camera-relative places to the texture: `WindMap` of `shaders/surroundings/wind.wgsl`, which describes
+/// the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct WindMap {
@@ -34,14 +35,16 @@ impl WindMap {
     }
 }
 
-/// A texture of the wind, with a number that tells whether it is still the same.
+/// View of the wind's texture.
 #[derive(Clone)]
 pub(crate) struct WindView {
     pub view: wgpu::TextureView,
-    /// Changes with the texture; bind groups that hold it must then be recreated.
+    /// Generation of the texture: it changes if the texture is replaced. Bind groups that contain the texture must then
+    /// be recreated.
     pub generation: u64,
 }
 
+/// Texture with one texel per node.
 struct NodeTexture {
     texture: wgpu::Texture,
     nodes: [u32; 3],
@@ -50,7 +53,7 @@ struct NodeTexture {
     shown: WindView,
 }
 
-/// Texture of a context, created when a view first needs it and uploaded again when the wind has changed.
+/// Texture of a context's wind, created when a view first needs it and uploaded again when the wind has changed.
 #[derive(Default)]
 pub(crate) struct WindTexture {
     held: Mutex<WindState>,
@@ -69,7 +72,7 @@ impl WindTexture {
     pub fn view(&self, device: &Device, volume: Option<&WindVolume>) -> WindView {
         let state = &mut *self.held.lock().unwrap_or_else(PoisonError::into_inner);
         let nodes = volume.map_or([1; 3], |v| v.nodes);
-        // Revisions of volumes begin at 1.
+        // Takes 0 without a volume, because the revisions of volumes begin at 1.
         let revision = volume.map_or(0, WindVolume::revision);
         if let Some(held) = state.texture.as_ref().filter(|t| volume.is_none() || t.revision == revision) {
             return held.shown.clone();
