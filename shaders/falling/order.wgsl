@@ -2,6 +2,7 @@
 // workgroup.
 //!include "falling/list.wgsl"
 
+// Arguments of the draw and of the pass that prepares it.
 struct Found {
     // Arguments of the draw: vertices, instances, first vertex, first instance.
     draw: vec4u,

@@ -1,5 +1,6 @@
 // State of a drop or flake that is integrated step by step (falling/step.wgsl).
 
+// State of one particle.
 struct State {
     // Position in the cell, in units of 2^-32 of its side.
     place: vec3u,

@@ -6,11 +6,13 @@
 // Number of shells of the lattice.
 const STEPPED_SHELLS: u32 = 4u;
 
+// Block of a frame's steps.
 struct StepUniform {
     // Velocity of the air by the weather's wind, (east, north, up), m/s.
     air: vec3f,
     // Length of a step, s.
     dt: f32,
+    // Mapping to the texture of the wind that varies in space.
     wind: WindMap,
     // Displacement of the camera since the last frame, (east, north, up), m.
     moved: vec3f,
@@ -38,6 +40,7 @@ struct StepUniform {
 // Whether the wind varies in space.
 override WIND: bool = false;
 
+// Standard gravity, m/s^2.
 const GRAVITY: f32 = 9.80665;
 
 // Returns the velocity of the air at `p`, relative to the camera, m/s.

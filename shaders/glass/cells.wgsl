@@ -2,6 +2,7 @@
 // src/glass/reference.rs; the uniforms of a step come from src/glass/step.rs.
 //!include "common/fullscreen.wgsl"
 
+// Block of a step.
 struct Step {
     // Hash of (seed, step), hash of the seed, columns, rows.
     key: vec4u,

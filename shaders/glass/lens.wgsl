@@ -5,6 +5,7 @@
 //!include "common/fullscreen.wgsl"
 //!include "common/tone.wgsl"
 
+// Block of the lens.
 struct Lens {
     // Ray direction in the middle of the picture, and its change per unit of clip x and y.
     ray: vec3f,
@@ -54,14 +55,18 @@ struct Lens {
 @group(0) @binding(6) var host_mask: texture_2d<f32>;
 @group(0) @binding(7) var snow: texture_2d<u32>;
 
+// Whether the picture's values are sRGB-encoded.
 override ENCODED: bool = false;
+// Whether the host has a mask; where it is 1, the glass is not drawn.
 override HAS_MASK: bool = false;
 
+// Refractive index of water relative to air.
 const WATER_INDEX: f32 = 1.333;
 // Sine and cotangent of the contact angle of 50 degrees (src/glass/laws.rs).
 const CONTACT_SINE: f32 = 0.7660444;
 const CONTACT_COTANGENT: f32 = 0.8390996;
 
+// Returns the 32-bit PCG hash of a number (Jarzynski and Olano 2020).
 fn pcg(v: u32) -> u32 {
     let state = v * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -81,6 +86,7 @@ struct Water {
     cover: f32,
     // Contact radius, cells.
     radius: f32,
+    // Height of the water's surface above the glass, cells.
     height: f32,
 }
 

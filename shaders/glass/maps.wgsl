@@ -2,10 +2,12 @@
 //!include "common/fullscreen.wgsl"
 //!include "surroundings/occluders.wgsl"
 
+// Number of drop sizes tested at each node.
 const SIZES: u32 = 6u;
 // Value of a node that all of the rain reaches.
 const ALL_OF_IT: f32 = 128.0;
 
+// Block of the pane and its drops.
 struct PaneUniform {
     // Position in front of the first node, and the vectors from there to the last node along the lower edge and up the
     // glass; relative to the camera, m.

@@ -98,6 +98,7 @@ fn rained_on(p: vec3f, boxes: bool) -> f32 {
 struct Wetted {
     facing: Facing,
     look: SurfaceLook,
+    // Albedo of the dry ground.
     albedo: vec3f,
 }
 
@@ -130,7 +131,9 @@ struct Spot {
     to_eye: vec3f,
     // Distance from the camera, m.
     range: f32,
+    // Host's terrain at the place.
     terrain: TerrainPoint,
+    // Surface at the place.
     ground: Wetted,
     // Cosine of the slope; 1 where the depth gives no slope.
     level: f32,

@@ -11,7 +11,9 @@ override SNOW: bool = false;
 struct TerrainPoint {
     // 1 on the terrain; 0 beyond it and on objects that stand on it.
     share: f32,
+    // Water on the terrain (snippets/welkin_ground.wgsl).
     water: WelkinGround,
+    // Unit normal of the terrain, (east, north, up).
     normal: vec3f,
     // Classes of the four nodes around the point.
     classes: vec4f,

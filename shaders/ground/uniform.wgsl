@@ -23,6 +23,7 @@ struct SurfaceLook {
     snow: f32,
 }
 
+// Block of the ground. Vectors without another note are (east, north, up).
 struct GroundUniform {
     // Unit vector towards the apparent position of the lamp that lights the ground (sun or moon).
     to_lamp: vec3f,

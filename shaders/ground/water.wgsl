@@ -87,7 +87,9 @@ var<private> water_cover: f32;
 
 // Water on a surface: a film, and standing water in hollows and on the host's terrain.
 struct Water {
+    // Surface of the film.
     film: Film,
+    // Surface of the standing water.
     pool: Film,
     // Share of the surface under standing water.
     pooled: f32,

@@ -1,6 +1,7 @@
 // Columns of rain under rain areas: the share of each column in the rain at a place. src/rain/shaft.rs has the f64 twin
 // and the derivation.
 
+// Largest number of rain areas, and of corners of a polygon.
 const MAX_AREAS: u32 = 16u;
 const MAX_CORNERS: u32 = 8u;
 
@@ -45,6 +46,7 @@ struct Column {
     edges: array<vec4f, MAX_CORNERS>,
 }
 
+// Block of columns, in the order of the host's list.
 struct Columns {
     count: u32,
     list: array<Column, MAX_AREAS>,

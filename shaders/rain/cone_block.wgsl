@@ -1,8 +1,10 @@
 // Uniform block of rain on cones; src/rain/cones.rs explains the model.
 
+// Number of cones, and of stretches of a ray that are tested for shelter.
 const CONES: u32 = 3u;
 const STRETCHES: u32 = 4u;
 
+// Block of the cones.
 struct ConeUniform {
     // Unit vector of the drops' mean motion relative to the camera; `east` and `north` are two unit vectors at right
     // angles to it.

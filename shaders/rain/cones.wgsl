@@ -61,6 +61,7 @@ fn on_cone(d: vec3f) -> OnCone {
 
 // Look-up in the texture for a cone, before its sets are moved.
 struct Look {
+    // Texture coordinates.
     uv: vec2f,
     // Tiles in a radian of latitude.
     along: f32,

@@ -5,6 +5,7 @@
 
 @group(1) @binding(1) var<storage, read_write> crowns: array<Crown>;
 
+// Returns the number of slots around the camera.
 fn all_slots() -> u32 {
     return splash.slots * splash.cells * splash.cells;
 }

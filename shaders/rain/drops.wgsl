@@ -14,7 +14,9 @@ override AREAS: bool = false;
 // Number of classes of diameter.
 const CLASSES: u32 = 32u;
 
+// Block of the drops.
 struct RainUniform {
+    // View rays of the camera, and its depth mapping.
     depth: DepthUniform,
     // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
@@ -57,6 +59,7 @@ struct RainUniform {
     classes: array<vec4f, CLASSES>,
 }
 
+// Number of shells of the lattice.
 const SHELLS: u32 = 4u;
 // Unit of fall speeds, m/s. Speeds are integer multiples of it, so a drop's fall phase is a product of integers and
 // exact at any time.
@@ -66,10 +69,13 @@ const NEAREST: f32 = 0.25;
 
 @group(0) @binding(0) var<uniform> rain: RainUniform;
 
+// Drop of the lattice.
 struct Drop {
     // Position relative to the camera, m.
     position: vec3f,
+    // Diameter, m.
     diameter: f32,
+    // Fall speed, m/s.
     speed: f32,
     // Share of the drop that its shell shows at its distance, 0 to 1.
     share: f32,
@@ -88,14 +94,18 @@ fn class_of(index: u32) -> u32 {
 
 // Properties shared by the drops of one class in one shell.
 struct ClassInShell {
+    // Shell.
     s: u32,
+    // Class.
     k: u32,
     // Index of its first drop in the shell, and of the drop after its last.
     first: u32,
     end: u32,
+    // Diameter, m.
     diameter: f32,
     // Fall speed, speed units.
     speed: u32,
+    // Rows of `cell` and `shell` in `RainUniform` for the shell.
     cell: vec4u,
     shell: vec4f,
 }
@@ -151,6 +161,7 @@ fn drop_light(p: vec3f, d: vec3f) -> vec3f {
     return day_light(d) + lamp_light(p, d);
 }
 
+// Corner of a streak's quad.
 struct RainVarying {
     @builtin(position) position: vec4f,
     // Premultiplied light.
@@ -250,6 +261,7 @@ fn rain_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) inst
     return corner_of(streak_of(drop, velocity, may_show(drop, velocity)), corner);
 }
 
+// Streak from the list, as vertex attributes.
 struct Listed {
     @location(0) middle_width: vec4f,
     @location(1) half: vec3f,

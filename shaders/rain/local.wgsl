@@ -7,6 +7,7 @@ const LOCAL_ROWS: u32 = 5u;
 // Number of these vectors for all 32 classes.
 const LOCAL_COUNTS: u32 = 160u;
 
+// Block of the mixture.
 struct Local {
     // Per class: number of drops in a shell of the weather, then of each column.
     counts: array<vec4f, LOCAL_COUNTS>,

@@ -20,6 +20,7 @@ const FRONT: f32 = 500.0;
 // Share of the light of a column that varies with the pattern of its front.
 const FRONT_SHARE: f32 = 0.3;
 
+// Block of the columns' light and of the weather's own rain.
 struct ShaftUniform {
     // Mean radiance of the sky (`above`) and of the ground (`below`), cd/m^2 per channel.
     above: vec3f,
@@ -45,6 +46,7 @@ struct ShaftUniform {
 
 @group(0) @binding(8) var<uniform> shaft: ShaftUniform;
 
+// Corner of a column's quad.
 struct ShaftVarying {
     @builtin(position) position: vec4f,
     @location(0) @interpolate(flat) column: u32,

@@ -8,6 +8,7 @@
 // Number of groups of splashing drops; all groups have the same number of drops, and each has its size.
 const SIZES: u32 = 8u;
 
+// Block of the splashes.
 struct SplashUniform {
     // Cell of the grid under the camera, and the camera's place in it, m.
     cell: vec2i,
@@ -40,6 +41,7 @@ const LOOKS: u32 = 8u;
 // Steepest surface on which a splash is drawn, as the upward component of its normal.
 const STEEPEST: f32 = 0.3;
 
+// Place and age of a splash.
 struct Landing {
     // Camera-relative east and north, m.
     xy: vec2f,
@@ -54,8 +56,11 @@ struct Arrival {
     landing: Landing,
     // Acceptance threshold: the drop lands where the ground gets at least this share of the flux on level ground.
     chance: f32,
+    // Diameter of the drop, m.
     diameter: f32,
+    // Fall speed of the drop, m/s.
     speed: f32,
+    // Index of the slot among all around the camera.
     slot: u32,
 }
 
@@ -109,6 +114,7 @@ fn is_found(landing: Landing, surface: vec3f) -> bool {
 
 // Search for the height at which the vertical line through a landing meets the visible surface.
 struct Search {
+    // Height of the next read, m.
     z: f32,
     // Bounds of the height, m.
     low: f32,
@@ -229,6 +235,7 @@ struct Crown {
     height: f32,
     // Age, 0 to 1.
     age: f32,
+    // Index of the slot among all around the camera.
     slot: u32,
 }
 
@@ -261,6 +268,7 @@ fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     return Crown(at, size.x, vec4f(drop_light(at, at / d) * cover, cover), normal.xy, size.y, age, arrival.slot);
 }
 
+// Corner of a crown's quad.
 struct CrownVarying {
     @builtin(position) position: vec4f,
     // Premultiplied light.
@@ -324,6 +332,7 @@ fn crown_color(in: CrownVarying, shown: f32, pixel: f32) -> vec4f {
     return in.light * min(profile * soft, 1.0 / max(in.light.a, 1e-6));
 }
 
+// Crown from the list, as vertex attributes.
 struct ListedCrown {
     @location(0) at_width: vec4f,
     @location(1) light: vec4f,

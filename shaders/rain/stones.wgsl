@@ -4,10 +4,13 @@
 //!include "common/guarded.wgsl"
 //!include "rain/splash.wgsl"
 
+// Number of classes of pellets and of hail together.
 const STONE_CLASSES: u32 = 16u;
 
+// Number of shells of the stones' lattice.
 const STONE_SHELLS: u32 = 4u;
 
+// Block of the stones.
 struct StoneUniform {
     // Lattice of the stones, per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that
     // moves with the air. w: distance that a stone with a speed of one unit has fallen.
@@ -27,6 +30,7 @@ struct StoneUniform {
     // Grid of landings: the cell under the camera (`cell`), and the camera's place in it, m (`place`).
     cell: vec2i,
     place: vec2f,
+    // Side of a cell, m; time for which a landed stone is drawn, s (`life`).
     side: f32,
     life: f32,
     // Number of slots in a cell; number of cells along one side of the square around the camera (`cells`).
@@ -35,8 +39,11 @@ struct StoneUniform {
     // Time since time 0 in units of `life`: its whole part (`tick`) and its fraction (`part`).
     tick: u32,
     part: f32,
+    // Chance that a slot is taken.
     share: f32,
+    // Height at which the search for the ground starts, relative to the camera, m.
     ground: f32,
+    // Distance at which landed stones have faded out, m.
     reach: f32,
     // Gravity, m/s^2.
     gravity: f32,
@@ -54,11 +61,15 @@ const REBOUND: f32 = 0.45;
 // Number of bounces that are drawn.
 const HOPS: u32 = 3u;
 
+// Stone in the air or on the ground.
 struct Stone {
     // Position relative to the camera, m.
     position: vec3f,
+    // Velocity, (east, north, up), m/s.
     velocity: vec3f,
+    // Diameter, m.
     diameter: f32,
+    // 1 for clear ice, 0 for milky ice.
     clear: f32,
     // Share of the stone that is drawn, and number of stones that it stands for.
     share: f32,
@@ -91,6 +102,7 @@ fn falling_stone(instance: u32) -> Stone {
 
 // Stone that lands.
 struct Touch {
+    // Place and age of the landing.
     landing: Landing,
     // Three random numbers of the landing, 0 to 1.
     chance: vec3f,
@@ -169,6 +181,7 @@ fn stone_light(p: vec3f, d: vec3f, clear: f32) -> vec3f {
     return mix(matt, drop_light(p, d), 0.5 * clear);
 }
 
+// Corner of a stone's quad.
 struct StoneVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,

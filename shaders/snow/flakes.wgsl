@@ -15,7 +15,9 @@ const CLASSES: u32 = 32u;
 // Number of shells of the lattice.
 const SHELLS: u32 = 4u;
 
+// Block of the flakes.
 struct FlakesUniform {
+    // View rays of the camera, and its depth mapping.
     depth: DepthUniform,
     // Matrix from camera-relative east, north, up to clip space.
     clip: mat4x4f,
@@ -77,9 +79,11 @@ const TAU: f32 = 6.2831853;
 
 @group(0) @binding(0) var<uniform> flakes: FlakesUniform;
 
+// Flake of the lattice, or a stepped one.
 struct Flake {
     // Position relative to the camera, m.
     position: vec3f,
+    // Diameter, m.
     diameter: f32,
     // Velocity, m/s.
     velocity: vec3f,
@@ -104,6 +108,7 @@ fn scattered(units: i32, random: u32) -> i32 {
 struct Own {
     shell: u32,
     size_class: u32,
+    // Three random words, from which its place, speed, turns and shape follow.
     random: vec3u,
     // Fall speed, speed units.
     speed: i32,
@@ -202,6 +207,7 @@ fn flake_light(p: vec3f, d: vec3f) -> vec3f {
     return mix(flakes.below, flakes.above, flake_sky_share(d.z)) + beams * 0.07957747;
 }
 
+// Corner of a flake's quad.
 struct FlakeVarying {
     @builtin(position) position: vec4f,
     @location(0) light: vec3f,
@@ -254,6 +260,7 @@ struct Spot {
     half: vec3f,
     // Angle on its helix, rad.
     angle: f32,
+    // Radiance of the flake, display units per channel.
     light: vec3f,
     // Number of flakes that it stands for, times the share of it that is drawn.
     weight: f32,
@@ -325,6 +332,7 @@ fn flake_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) ins
     return lone_corner(flake_of(flakes.count - 1u - instance), corner);
 }
 
+// Flake from the list, as vertex attributes.
 struct ListedFlake {
     @location(0) middle_diameter: vec4f,
     @location(1) half_angle: vec4f,

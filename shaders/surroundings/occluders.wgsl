@@ -8,6 +8,7 @@
 // Whether there are any maps.
 override MAPS: bool = false;
 
+// Largest number of maps.
 const MAX_MAPS: u32 = 4u;
 // Maximum number of cells tested per path. A longer path counts as free.
 const MAP_STEPS: u32 = 192u;
@@ -29,6 +30,7 @@ struct Occluder {
 
 // All maps.
 struct Occluders {
+    // Number of maps.
     count: u32,
     pad: u32,
     // y: row of the table at which the cells of both sizes begin, below the texels; x: column at which the cells of

@@ -5,6 +5,7 @@
 // Whether there is any shelter. Shaders that run in every pixel read it to leave the tests out.
 override SHELTER: bool = false;
 
+// Largest number of boxes, and of planes that cut them.
 const MAX_SHELTERS: u32 = 32u;
 const MAX_CUTS: u32 = 512u;
 

@@ -158,6 +158,7 @@ impl RainArea {
     }
 }
 
+/// Checks that the corners are those of a convex region of more than 1 m^2.
 fn validate_corners(corners: &[[f64; 2]; MAX_CORNERS], count: usize) -> Result<()> {
     check_range("rain_area.corner_count", count as f64, 3.0, MAX_CORNERS as f64, "")?;
     let corners = &corners[..count];
@@ -214,6 +215,7 @@ fn twice_area(corners: &[[f64; 2]]) -> f64 {
 pub(crate) struct Edge {
     /// Unit vector inwards, (right, ahead).
     pub normal: DVec2,
+    /// Depth of the plan's centre inside the side, m.
     pub offset: f64,
 }
 

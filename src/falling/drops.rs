@@ -79,8 +79,8 @@ pub fn density_factor(density_kg_m3: f64) -> f64 {
     libm::pow(SEA_LEVEL_DENSITY_KG_M3 / density_kg_m3, 0.4)
 }
 
-/// Returns the [`density_factor`] in the standard atmosphere at an altitude above the sea, m, clamped to \[-1000, 11
-/// 000\].
+/// Returns the [`density_factor`] in the standard atmosphere at an altitude in m above the sea. Below -1000 m and above
+/// 11 000 m it is constant.
 pub fn altitude_factor(altitude_m: f64) -> f64 {
     libm::pow(standard_density_ratio(altitude_m), -0.4)
 }

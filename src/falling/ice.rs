@@ -141,7 +141,9 @@ impl StoneMode {
 /// Size distribution of the stones in a cubic metre of air. Plain data, for any thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoneSizes {
+    /// Distributions of pellets and of hail.
     parts: [StoneMode; 2],
+    /// Ratio of the speed of raindrops here to that at sea level.
     factor: f64,
 }
 

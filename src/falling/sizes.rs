@@ -41,6 +41,7 @@ struct SizeMode {
 /// thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DropSizes {
+    /// Exponential distributions; those with an N0 of 0 are empty.
     parts: [SizeMode; PARTS],
     /// Ratio of fall speeds to those at sea level.
     factor: f64,

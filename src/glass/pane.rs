@@ -23,9 +23,11 @@ const VEHICLE_M: f64 = 3.0;
 /// Pane of glass and the eye behind it, in the host's world, m.
 pub(super) struct PaneAt {
     eye: DVec3,
-    /// Lower left corner of its bounds, and the vectors from there to the lower right and the upper left, m.
+    /// Lower left corner of its bounds, m.
     origin: DVec3,
+    /// Vector from `origin` to the lower right corner of its bounds, m.
     along: DVec3,
+    /// Vector from `origin` to the upper left corner of its bounds, m.
     up: DVec3,
     /// Unit vector outwards.
     out: DVec3,

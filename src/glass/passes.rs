@@ -30,7 +30,9 @@ const SMALLEST: u32 = 4;
 /// Properties that select a lens pipeline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct LensVariant {
+    /// Format of the target.
     pub format: wgpu::TextureFormat,
+    /// Whether the picture's values are sRGB-encoded.
     pub encoded: bool,
     pub has_mask: bool,
 }
@@ -52,8 +54,10 @@ pub(crate) struct GlassKit {
     /// Pipelines of the first copy of a linear and of an sRGB-encoded picture, and of the second copy.
     shrink: [wgpu::RenderPipeline; 3],
     lens_layout: wgpu::BindGroupLayout,
+    /// Pipelines of the lens.
     lenses: LruCache<LensVariant, wgpu::RenderPipeline, MOST_LENSES>,
     sampler: wgpu::Sampler,
+    /// Placeholder for a missing mask; `no_cells` and `no_snow` are those for dry glass.
     no_mask: wgpu::TextureView,
     no_cells: wgpu::TextureView,
     no_snow: wgpu::TextureView,
@@ -151,6 +155,7 @@ pub(super) enum LatticeWork {
 
 /// Water and snow in the cells of a view's glass, on the GPU.
 pub(super) struct PaneLattice {
+    /// Columns and rows.
     pub size: [u32; 2],
     /// Water in the cells, in two states: the present one, and the target of the next step.
     cells: [wgpu::Texture; 2],
@@ -171,6 +176,7 @@ pub(super) struct PaneLattice {
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     /// Uniform blocks of the due steps, every `stride` bytes.
     steps: wgpu::Buffer,
+    /// Distance between the blocks of two steps, bytes.
     stride: usize,
     /// Bytes of these blocks, before they are uploaded.
     slots: Vec<u8>,

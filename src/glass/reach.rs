@@ -42,10 +42,12 @@ impl Reach {
         Self(from_fn(|w| from_fn(|k| u32::from_le_bytes(from_fn(|b| byte(16 * w + 4 * k + b))))))
     }
 
+    /// Returns the shares in the layout of the shaders: four nodes in a word, the first in the lowest byte.
     pub(super) fn words(&self) -> [[u32; 4]; WORDS] {
         self.0
     }
 
+    /// Returns the share of each node, 0 to 1.
     fn nodes(&self) -> impl Iterator<Item = f64> + '_ {
         self.0.iter().flatten().flat_map(|w| w.to_le_bytes()).map(|b| f64::from(b) / f64::from(ALL))
     }

@@ -329,6 +329,7 @@ fn melted(step: &StepUniform, cell: [i32; 2], there: u32) -> u32 {
     there.min((step.snow[2] >> 12) + u32::from(random < step.snow[2] & 4095))
 }
 
+/// Cell while its parts are joined: volume and largest part, units; place and motion of the largest part.
 #[derive(Default)]
 struct Joined {
     volume: u32,

@@ -71,10 +71,12 @@ pub(crate) struct Glass {
     acting: Option<StepConditions>,
     /// Share of the rain that boxes let through in the last frame, and whether there were maps.
     reach: (Reach, bool),
+    /// Cells on the GPU; `None` on glass that has been dry so far.
     lattice: Option<PaneLattice>,
     /// Bindings of the occluder maps, once there are any.
     below: Option<Box<MapReach>>,
     lens: Option<LensPass>,
+    /// Cache of the steps' uniforms.
     tables: Box<Tables>,
     /// Index of the last step that was done: its time in 1/60 s.
     step: Option<i64>,

@@ -108,6 +108,7 @@ impl StepConditions {
 
 /// Cache of the uniforms that depend on the conditions alone.
 pub struct Tables {
+    /// Conditions for which `numbers` was computed.
     of: Option<StepConditions>,
     numbers: StepUniform,
 }
@@ -125,6 +126,7 @@ pub fn pcg(v: u32) -> u32 {
     (word >> 22) ^ word
 }
 
+/// Returns a hash of two numbers.
 fn key(a: u64, b: u64) -> u32 {
     [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32].into_iter().fold(0x9e37_79b9, |k, part| pcg(k ^ part))
 }

@@ -77,11 +77,13 @@ fn whole_of(wholes: &mut [u32], mut basin: u32) -> u32 {
 /// State of the visit of all cells from the lowest up.
 struct Rising<'a> {
     heights_mm: &'a [f64],
+    /// Hollows found so far.
     list: Vec<Basin>,
     /// Larger hollow of each hollow so far; the hollow itself while it has none, [`OUT`] once it has met the border.
     wholes: Vec<u32>,
     /// Hollow in which each cell lies; [`OUT`] for ground that drains off the grid.
     owner: Vec<u32>,
+    /// Pit in which the run-off of each cell ends, or [`OUT`].
     drains_to: Vec<u32>,
 }
 

@@ -55,6 +55,7 @@ pub(crate) struct HeldGround {
     pub model: GroundModel,
     /// Pattern of hollows in which water stands where heights are unknown.
     pub hollows: Hollows,
+    /// Simulated water of level, open ground; `None` before the first update.
     state: Option<GroundState>,
     /// Host's grid and the water on it.
     pub(super) host: Option<Box<HostGround>>,

@@ -38,6 +38,7 @@ pub(super) struct HostGround {
     pub terrain: GridTerrain,
     /// Rotation from the host's axes to east, north, up at the grid's origin.
     pub to_enu: DMat3,
+    /// Precipitation on the grid's cells, less the part that boxes keep off.
     pub rain: GridRain,
     pub water: TerrainWater,
     /// Whether `water` is a simulated state; otherwise it is derived from `shown`.
@@ -49,11 +50,14 @@ pub(super) struct HostGround {
 /// Inputs from which the water of cells without a state is derived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CellInputs {
+    /// Water of level, open ground.
     water: GroundWater,
     falling: Falling,
+    /// Wind, east and north, m/s.
     wind: DVec2,
+    /// Relative humidity, 0 to 1.
     humidity: f64,
-    /// Begin of the 10-s slot of the present, s, if there are rain areas, which move; otherwise 0.
+    /// Beginning of the present 10-s slot, s, if there are rain areas, which move; otherwise 0.
     slot: f64,
     /// Revision of the rain areas and shelters.
     surroundings: u64,

@@ -26,6 +26,7 @@ pub(super) type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Rain areas over a grid, in the order of the world's list.
 pub(super) struct AreasOverGrid {
+    /// Areas that there are now; `None` for the rest.
     pub list: [Option<AreaOverGrid>; MAX_AREAS],
     /// Shares that are uniform over the whole grid.
     pub evens: Evens,

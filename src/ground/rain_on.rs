@@ -39,7 +39,9 @@ impl Shadow {
 /// Ice of the present weather: the share of open ground under it, and the freezing rain that boxes keep off.
 #[derive(Default)]
 struct Glaze {
+    /// Share of open ground under ice, 0 to 1.
     ice: f64,
+    /// Freezing rain that boxes keep off each cell.
     shadow: Shadow,
 }
 
@@ -49,6 +51,7 @@ pub(super) struct RainStep<'a> {
     /// Weather in the middle of the step, and its effect on the ground.
     pub conditions: &'a Conditions,
     pub forcing: &'a Forcing,
+    /// Length of the step, s.
     pub seconds: f64,
 }
 
@@ -63,7 +66,9 @@ pub(super) struct GridRain {
     pub runs: Vec<CellBounds>,
     /// Heights of the lowest and the highest node, m.
     range_m: (f64, f64),
+    /// Rain that boxes keep off each cell.
     shadow: Shadow,
+    /// Ice on the grid.
     glaze: Glaze,
     /// Precipitation on every cell in this step, mm, before the part that boxes keep off; `None` if cells differ.
     even_mm: Option<f64>,

@@ -64,8 +64,11 @@ impl GroundState {
 #[derive(Clone, Copy)]
 pub(super) struct GroundStep<'a> {
     pub from_s: f64,
+    /// Length of the step, s.
     pub seconds: f64,
+    /// Weather in the middle of the step.
     pub conditions: &'a Conditions,
+    /// Liquid that falls and water that evaporates in the step.
     pub forcing: &'a Forcing,
     /// Water of level ground at the beginning of the step.
     pub water: &'a GroundWater,

@@ -38,6 +38,7 @@ impl GridTerrain {
 /// Water that a step added (rain) or removed, mm times cells.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Flows {
+    /// Rain that fell on the cells.
     pub rain: f64,
     pub evaporated: f64,
     /// Water that leaked into the ground below.
@@ -74,9 +75,11 @@ impl CellWater {
 pub(crate) struct TerrainWater {
     /// Water of each cell in its film and in its pores, mm.
     pub top: Vec<[f64; 2]>,
+    /// Standing water in the hollows.
     pools: Pools,
     /// Depths as in [`CellWater::standing_mm`].
     standing: Vec<f32>,
+    /// Whether there is no water at all.
     dry: bool,
     /// Whether a step without rain may change a cell, for each run: true if a cell has a film, or wet pores that are
     /// not under water.

@@ -54,6 +54,7 @@ pub(crate) fn uv_from_world(drawn: &DrawnTerrain) -> [DVec4; 2] {
 /// GPU textures of a terrain.
 #[derive(Clone, Debug)]
 pub(crate) struct UploadedTerrain {
+    /// Texture of the water ([`TerrainWater::texels`]).
     pub water: wgpu::Texture,
     /// Texture of the surface ([`surface_texels`]), followed by as many rows of the snow: depth in m, density in
     /// kg/m^3, wetness, albedo.

@@ -30,11 +30,15 @@ pub(crate) struct GroundView {
     uniform: UniformBlock,
     /// Uniform block of the frame; `None` if no surface has water or snow.
     block: Option<GroundUniform>,
+    /// Whether the host's terrain is around the camera.
     has_terrain: bool,
+    /// Whether there is snow on any surface.
     has_snow: bool,
+    /// Whether there is water or clear ice on any surface.
     has_water: bool,
     /// Texture views of the water and the surface of the host's terrain.
     views: [Option<wgpu::TextureView>; 2],
+    /// Textures of the host's tiles around the camera.
     window: TerrainWindow,
     drops: DropsKept,
 }

@@ -107,11 +107,17 @@ pub(super) struct Shown<'a> {
 /// Inputs from which the textures were filled; a part is filled again if its inputs change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WindowContents {
+    /// Cells of the window.
     rect: CellRect,
+    /// Identity of the terrain.
     id: u64,
+    /// Revision of the terrain.
     revision: u64,
+    /// Version of the water ([`TiledWater::version`]).
     water: (u64, u64),
+    /// Water of level ground.
     even: GroundWater,
+    /// Share of the ground under ice.
     ice: f32,
     /// Revision of the snow; 0 before there is any.
     snow: u64,
@@ -129,11 +135,15 @@ enum WindowPart {
 /// Textures of a window: for drawing, the water, and the surface with its snow; for a host, water and snow.
 #[derive(Default)]
 pub(crate) struct TerrainWindow {
+    /// Whether the textures are for the host's own shaders.
     is_for_host: bool,
     /// Number of writes to the textures.
     pub(super) writes: u64,
+    /// Textures of water and surface, or of water and snow for a host, and their views.
     textures: Option<([wgpu::Texture; 2], [wgpu::TextureView; 2])>,
+    /// Inputs from which the textures were filled last.
     filled: Option<WindowContents>,
+    /// Scratch space for texels of the water, or of the snow for a host.
     water: Vec<[u16; 4]>,
     /// Texels of the surface, or of the snow, which is stored in the rows below the surface.
     surface: Vec<[f32; 4]>,

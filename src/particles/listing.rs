@@ -28,6 +28,7 @@ pub(crate) struct Listing {
     pub layouts: [wgpu::BindGroupLayout; 2],
     /// Buffer of `Found`: the arguments of the draw and of the third pass.
     found: wgpu::Buffer,
+    /// Buffers, once there is room for any things.
     held: Option<ListBuffers>,
     /// Capacity to use instead of that derived from the lattice.
     #[cfg(test)]

@@ -101,6 +101,7 @@ pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: 
 struct LastStep {
     time_s: f64,
     position_m: DVec3,
+    /// Number of particles with a state in each shell.
     counts: [u32; SHELLS],
 }
 
@@ -204,6 +205,7 @@ pub(crate) struct StepPass {
     layouts: [wgpu::BindGroupLayout; 3],
     /// Pipelines without and with a wind that varies in space.
     steps: [Option<wgpu::ComputePipeline>; 2],
+    /// Bind groups for the three layouts.
     groups: Option<[wgpu::BindGroup; 3]>,
 }
 

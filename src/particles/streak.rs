@@ -22,6 +22,7 @@ pub(crate) const LEAST_PIXELS: f64 = 1.2;
 pub(crate) struct StreakCamera<'a> {
     /// Matrix from camera-relative east, north, up to clip space.
     pub clip: DMat4,
+    /// View rays of the camera.
     pub rays: &'a ViewRays,
     /// Height of the picture, pixels.
     pub height: u32,
@@ -165,6 +166,7 @@ pub(crate) struct StreakContrast {
     /// Standard deviation, from pixel to pixel, of the share of a pixel that drops or flakes cover, tabulated over the
     /// sine of the angle between line of sight and axis, from 0 to 1.
     deviations: [f64; ANGLES],
+    /// Function from a luminance to the picture's exposed luminance.
     tone: Tone,
     /// Whether there are lamps, which may make drops and flakes arbitrarily bright.
     lamps: bool,
@@ -187,10 +189,10 @@ impl StreakContrast {
         Self { rays: *shot.rays, y_sign: shot.y_sign.into(), axis, deviations, tone, lamps }
     }
 
-    /// Returns two numbers for pixel `i` with the exposed luminance Y = `picture` (1 is white): its relative change (Y'
-    /// - Y) / (Y + 0.01) by drops or flakes of the exposed luminance L, and their contrast (L - Y) / (Y + 0.01). L
-    /// follows from `radiance`(direction). The change is a sample from the distribution over the pixels of a picture,
-    /// so only the statistics of many pixels are meaningful.
+    /// Returns two numbers for pixel `i` with the exposed luminance Y = `picture` (1 is white). The first is the
+    /// pixel's relative change dY / (Y + 0.01) by drops or flakes of the exposed luminance L, the second their contrast
+    /// (L - Y) / (Y + 0.01). L follows from `radiance`(direction). The change is a sample from the distribution over
+    /// the pixels of a picture, so only the statistics of many pixels are meaningful.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;

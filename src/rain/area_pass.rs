@@ -132,6 +132,7 @@ fn part_of_picture(column: &RainColumn, own_top: f64, clip: &DMat4) -> Option<[f
 pub(super) struct Columns<'a> {
     pub field: &'a AreaField,
     pub scene: &'a Scene,
+    /// Matrix from camera-relative east, north, up to clip space.
     pub clip: DMat4,
     /// Whether fog is drawn in front of the picture; it contains the weather's own rain, which columns replace.
     pub veiled: bool,

@@ -30,8 +30,10 @@ pub(super) struct ConePass {
     group: wgpu::BindGroup,
     /// Pass for the grid of the rain that passes shelters, once it is needed.
     open: Option<OpenPass>,
+    /// Bytes of the texture of streaks.
     bytes: u64,
     pipelines: Made<ConeKind, wgpu::RenderPipeline>,
+    /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
 

@@ -22,6 +22,7 @@ pub(super) struct CrownPass {
     marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
     /// Pipelines of `make_crowns`.
     makes: Made<CrownKind, wgpu::ComputePipeline>,
+    /// Pipelines of the draw, by how depth is read.
     draws: Made<DepthRead, wgpu::RenderPipeline>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,

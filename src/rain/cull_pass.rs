@@ -35,10 +35,13 @@ pub(super) struct CullPass {
     listing: Listing,
     /// Pipelines of `mark`, by whether drops are stepped.
     marks: Made<bool, wgpu::ComputePipeline>,
+    /// Pipeline of `order`.
     order: Option<wgpu::ComputePipeline>,
     /// Pipelines of `make_streaks`, by whether drops are stepped, and whether area rims and occluder maps are in use.
     makes: Made<[bool; 3], wgpu::ComputePipeline>,
+    /// Pipelines of the draw, by how depth is read.
     draws: Made<DepthRead, wgpu::RenderPipeline>,
+    /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
 
@@ -51,8 +54,9 @@ pub(super) struct DropLattice<'a> {
     pub per_shell: u32,
     /// States of the drops, if they are stepped: [`source_layout`].
     pub states: Option<&'a wgpu::BindGroup>,
-    /// Whether a rim of a rain area is near, and whether there are occluder maps.
+    /// Whether a rim of a rain area is near.
     pub areas: bool,
+    /// Whether there are occluder maps.
     pub maps: bool,
 }
 

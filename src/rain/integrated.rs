@@ -26,6 +26,7 @@ pub(super) fn pass(device: &Device, blocks: &Blocks) -> StepPass {
 /// Drops of the lattice that are stepped in a frame.
 pub(super) struct SteppedDrops<'a> {
     pub seed: u64,
+    /// Number of drops of each class in a shell.
     pub classes: &'a Classes,
     /// Number of drawn shells of the lattice.
     pub shells: usize,

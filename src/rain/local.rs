@@ -44,9 +44,11 @@ pub(super) const LOCAL: Range<usize> = {
 
 /// Rain of one column that reaches the camera.
 pub(crate) struct LocalColumn<'a> {
+    /// Column in the layout of the shaders.
     pub uniform: ColumnUniform,
     /// Share of its rain that has left its cloud at the camera's altitude.
     pub begun: f64,
+    /// Number of drops of each class in a shell of the column's rain.
     pub classes: &'a Classes,
 }
 
@@ -105,8 +107,8 @@ impl Classes {
         envelope
     }
 
-    /// Returns the share `share` of all drops, each drawn one standing for one: flux, extinction and the number of all
-    /// drops (drawn times weight) are multiplied by `share`.
+    /// Returns these classes for a part of all drops: flux, extinction and the number of all drops (drawn drops times
+    /// weight) are multiplied by `share`. Each drop then stands for itself alone.
     pub(crate) fn part(&self, share: f64) -> Self {
         let mut part = *self;
         part.flux.iter_mut().for_each(|c| c.2 *= share);
@@ -116,8 +118,8 @@ impl Classes {
         part
     }
 
-    /// Returns these classes with the share `share` of `other` added to number, flux and extinction. The table of
-    /// counts is unchanged.
+    /// Returns these classes with `share` times the number, flux and extinction of `other` added. The table of counts
+    /// is unchanged.
     pub(crate) fn with(&self, share: f64, other: &Self) -> Self {
         let (mut sum, other) = (*self, other.part(share));
         for (to, from) in sum.flux.iter_mut().zip(other.flux) {

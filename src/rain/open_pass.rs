@@ -31,6 +31,7 @@ pub(super) struct OpenPass {
     groups: [wgpu::BindGroup; 2],
     /// Pipelines without and with occluder maps.
     pipelines: [Option<wgpu::RenderPipeline>; 2],
+    /// Texture of the grid, with one layer for each stretch.
     grid: wgpu::Texture,
     /// Views of the grid's layers, one for each stretch.
     layers: [wgpu::TextureView; STRETCHES],

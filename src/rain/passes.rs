@@ -70,8 +70,9 @@ pub(crate) struct LayerDraw<'a> {
     pub rays: &'a ViewRays,
     /// Surroundings: shelters, occluder maps and lamps.
     pub surroundings: &'a SurroundingsBlock,
-    /// Whether the surroundings contain occluder maps, and lamps.
+    /// Whether the surroundings contain occluder maps.
     pub maps: bool,
+    /// Whether the surroundings contain lamps.
     pub lamps: bool,
     /// Block of the splashes.
     pub splash: &'a SplashUniform,

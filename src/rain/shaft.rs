@@ -108,6 +108,7 @@ pub(crate) struct RainColumn {
 /// All columns around a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AreaField {
+    /// Columns, in the order of the host's list.
     pub columns: Vec<RainColumn>,
     /// Weather's own rain, outside the columns.
     pub own: FallingLayer,

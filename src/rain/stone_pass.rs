@@ -35,6 +35,7 @@ pub(super) struct StonePass {
     group: wgpu::BindGroup,
     /// Pipelines of stones in the air and of stones that hop on the ground.
     pipelines: Made<StoneKind, [wgpu::RenderPipeline; 2]>,
+    /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
 

@@ -58,6 +58,7 @@ pub(crate) struct RainView {
     local: Option<Local>,
     /// Pass for columns, once there are any.
     areas: Option<Box<AreaPass>>,
+    /// Hail and ice pellets at the camera.
     ice: Ice,
     /// Displacement of the air at the births of the cones' sets.
     births: Remembered,

@@ -47,6 +47,7 @@ pub(super) struct SnowPass {
     block: UniformBlock,
     /// Layout of group 0 for depth with one and with several samples.
     layouts: [wgpu::BindGroupLayout; 2],
+    /// Layout of the group of shelters, occluder maps and lamps.
     surroundings: wgpu::BindGroupLayout,
     pipelines: Made<FlakeVariant, wgpu::RenderPipeline>,
     /// List of the flakes in the picture, on devices with compute shaders while flakes are not stepped.

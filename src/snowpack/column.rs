@@ -146,6 +146,7 @@ impl Column {
         self.ice + self.water
     }
 
+    /// Returns the mass of ice and liquid water, kg/m^2.
     pub fn mass_kg_m2(&self) -> f64 {
         self.mass() as f64 / UNITS
     }
@@ -164,6 +165,7 @@ impl Column {
         if self.ice > 0 { (self.water as f64 / (laws::HELD_SHARE * self.ice as f64)).min(1.0) } else { 0.0 }
     }
 
+    /// Whether the liquid water exceeds [`laws::WET_SHARE`] of the ice.
     pub fn is_wet(&self) -> bool {
         self.water as f64 > laws::WET_SHARE * self.ice as f64
     }

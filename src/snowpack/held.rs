@@ -73,7 +73,9 @@ pub(crate) struct HeldSnow {
 /// Ground of the host on which snow lies: a grid, tiles, or neither.
 #[derive(Clone)]
 struct SnowGround {
+    /// Heights of the host's grid.
     grid: Option<Arc<TerrainHeights>>,
+    /// Tiles, if there is no grid.
     tiles: Option<Arc<Terrain>>,
 }
 

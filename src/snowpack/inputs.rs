@@ -15,6 +15,7 @@ pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 /// Wind at 10 m over a field, m/s east and north.
 #[derive(Clone, Copy)]
 pub(super) struct FieldWind<'a> {
+    /// Mean wind over the field.
     pub mean: DVec2,
     /// Wind over each cell, if the wind varies in space. `None`: drift derives it from `mean` and the surface's shape.
     pub local: Option<CellWind<'a>>,
@@ -22,11 +23,13 @@ pub(super) struct FieldWind<'a> {
 
 /// Inputs of a step of a field.
 pub(super) struct SnowStep<'a> {
+    /// Length of the step, s.
     pub seconds: f64,
     /// Forcing of all cells.
     pub even: &'a ColumnForcing,
     /// Forcing of single cells, which replaces `even` if precipitation varies from place to place.
     pub falls: Option<FallsAt<'a>>,
+    /// Settling in the step, by density.
     pub settling: &'a Settling,
     pub wind: FieldWind<'a>,
     /// Snow of the level, open country around the field, from which snow drifts in.

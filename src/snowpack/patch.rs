@@ -34,6 +34,7 @@ pub(super) struct Patch {
     pub near: [u32; 4],
     /// State of the drift: snow that the wind carries over the patch's borders, and the wind over its cells.
     pub edges: Edges,
+    /// Cached hash of the columns, until they change.
     hash: OnceLock<u64>,
 }
 
@@ -61,6 +62,7 @@ impl Patch {
         (self.heights_m, self.holes) = (heights_m, holes);
     }
 
+    /// Whether no snow lies on the patch.
     pub fn is_bare(&self) -> bool {
         self.columns.is_empty()
     }

@@ -49,6 +49,7 @@ struct SavedCells {
     tiles: Vec<SavedTile>,
 }
 
+/// Saved snow of a tile, by the tile's index east and north.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedTile {
@@ -65,10 +66,12 @@ fn is_zero(v: &f64) -> bool {
     *v == 0.0
 }
 
+/// Returns ice, water, depth and albedo of a column, in units.
 fn numbers(c: &Column) -> [i64; 4] {
     [c.ice, c.water, c.depth, c.albedo]
 }
 
+/// Returns the column of these numbers; `None` if they are out of range.
 fn column([ice, water, depth, albedo]: [i64; 4]) -> Option<Column> {
     Some(Column { ice, water, depth, albedo }).filter(Column::is_sound)
 }

@@ -49,10 +49,14 @@ enum Ground {
 /// Ground of a snow field.
 pub(super) struct Site {
     ground: Ground,
+    /// Position in the host's world, m, of the lattice's first cell at height 0.
     origin: DVec3,
+    /// Rotation from the host's axes to east, north, up.
     to_enu: DMat3,
     cell_m: f64,
+    /// Standing boxes for which shelter was found last.
     boxes: Vec<Shelter>,
+    /// Direction of the flakes, relative to their fall, for which shelter was found last ([`slant`]).
     slant: DVec3,
     /// Key of the wind that varies in space for which shelter was found last; `None` for a uniform wind.
     air: Option<ShadedIn>,
@@ -64,7 +68,9 @@ pub(super) struct Site {
 /// otherwise a loaded state would have another shelter.
 #[derive(Clone, Copy, PartialEq)]
 struct ShadedIn {
+    /// Revision of the wind volume.
     revision: u64,
+    /// Wind of the weather.
     weathers: WindProfile,
     /// Fall speed of the flakes, m/s.
     fall: f64,
@@ -199,6 +205,7 @@ impl Site {
         self.to_enu * (position - self.origin)
     }
 
+    /// Returns the position in the host's world, m, of a result of [`Self::local`].
     pub fn position(&self, local: DVec3) -> DVec3 {
         self.origin + self.to_enu.transpose() * local
     }
@@ -272,6 +279,8 @@ impl Site {
         !same
     }
 
+    /// Marks the cells of a patch that a box shelters from falling snow and, if `stands_anew`, those on which it
+    /// stands. `air` is a wind that varies in space and the flakes' fall speed, m/s.
     fn shade_box(
         &self,
         (patch, size): (&mut Patch, [usize; 2]),
@@ -373,8 +382,11 @@ pub(super) struct SiteWind<'w> {
     volume: &'w WindVolume,
     /// Wind of the weather at 10 m, east and north, m/s.
     mean: DVec2,
+    /// Weather, from whose profile the wind at other heights follows.
     c: &'w Conditions,
+    /// Position of the lattice's first cell at height 0 in the host's world, m.
     origin: DVec3,
+    /// Rotation from east, north, up to the host's axes.
     from_enu: DMat3,
     cell_m: f64,
 }

@@ -47,6 +47,7 @@ fn around(field: &SnowField, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u3
     })
 }
 
+/// Returns the height of ground and snow, m, at a cell given by its patch and its index there.
 fn surface_m(field: &SnowField, (patch, cell): (u32, u32)) -> f64 {
     field.patches[patch as usize].surface_m(cell as usize)
 }

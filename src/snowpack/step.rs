@@ -25,6 +25,7 @@ struct Sums {
 }
 
 impl Sums {
+    /// Adds a column after its step, and what it gained and lost.
     fn add(&mut self, gone: MassExchange, column: &Column) {
         self.fallen += gone.fallen;
         self.ran_off += gone.ran_off;

@@ -67,6 +67,7 @@ pub(crate) struct OccluderMaps {
     pipelines: [wgpu::RenderPipeline; 2],
     /// Buffer with a [`MapUniform`] for each map, every [`BLOCK`] bytes.
     blocks: wgpu::Buffer,
+    /// Table of ranges, once the host has set a map.
     table: Option<OccluderTable>,
     /// Maps in use; empty if the host has set none.
     list: Vec<Placed>,

@@ -20,6 +20,7 @@ const THINNEST_M: f64 = 1e-5;
 /// Planes that cut a box to a convex shape: the parts of the box beyond each plane are removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Planes {
+    /// Normal and distance of each plane; only the first `count` are in use.
     all: [[f64; 4]; MAX_PLANES],
     count: usize,
 }

@@ -39,6 +39,7 @@ pub(super) struct Drains {
     bits: u32,
     /// Index of each cell's sink in its block's list.
     of_cell: Vec<u16>,
+    /// Blocks of the tile, by rows from the south-west.
     pub blocks: Vec<DrainBlock>,
 }
 

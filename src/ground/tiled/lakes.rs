@@ -26,6 +26,7 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rim {
     height_mm: f64,
+    /// Place of the cell on the lattice, cells east and north.
     place: [i32; 2],
     cell: CellId,
 }
@@ -90,9 +91,13 @@ struct Lake {
 /// Standing water on a terrain.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lakes {
+    /// Hollows, by index; `None` for a free place.
     hollows: Vec<Option<Hollow>>,
+    /// Indices of the free places in `hollows`.
     free_hollows: Vec<u32>,
+    /// Lakes, by index; `None` for a free place.
     lakes: Vec<Option<Lake>>,
+    /// Indices of the free places in `lakes`.
     free_lakes: Vec<u32>,
     /// Lake of each cell, by the tile's slot and then by cell: the index of the lake plus 1, or 0 for none. Empty for a
     /// tile without lakes.
@@ -104,6 +109,7 @@ pub(super) struct Lakes {
 /// Function that returns the pit in which the run-off of a cell ends, or `None` if it leaves the terrain.
 pub(super) type PitBelow<'a> = &'a dyn Fn(CellId) -> Option<CellId>;
 
+/// Returns the height of a cell, mm.
 fn height_mm(terrain: &Terrain, cell: CellId) -> f64 {
     f64::from(terrain.height(cell)) * 1e3
 }
@@ -143,6 +149,7 @@ impl Hollow {
         held + (self.below + self.cells.len() as f64) * (level_mm - from)
     }
 
+    /// Returns the number of known cells of the hollow and of its parts.
     fn cells_under(&self) -> f64 {
         self.below + self.cells.len() as f64
     }

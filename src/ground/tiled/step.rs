@@ -37,6 +37,7 @@ pub(crate) struct TiledStep<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SteppedTiles {
     pub flows: Flows,
+    /// Whether any water may have changed.
     pub changes: bool,
 }
 
@@ -72,6 +73,7 @@ impl TiledWater {
         Ok(Some(SteppedTiles { flows: part.flows, changes: part.changes || !dry || self.lakes.count > 0 }))
     }
 
+    /// Advances the water on one tile by a step.
     fn step_tile(&mut self, slot: u32, now: &TiledStep<'_>, step: &Step, part: &mut StepInParts) -> Result<()> {
         let Some(tile) = self.tiles[slot as usize].as_mut() else { return Ok(()) };
         let quiet = now.forcing.liquid_mm_h <= 0.0 && now.world.set.regions.is_empty();

@@ -24,6 +24,7 @@ pub(super) struct TileWater {
     top: Vec<[f32; 2]>,
     /// Whether anything flows or dries on each run of cells.
     awake: Vec<bool>,
+    /// Whether any run of cells is awake.
     any_awake: bool,
     /// Cached hash of film and pores, until they change.
     hash: OnceLock<u64>,

@@ -27,6 +27,7 @@ const AROUND_LAKES: i32 = 2;
 pub(crate) struct Changed {
     /// Revision of the terrain after this change.
     pub revision: u64,
+    /// Rectangle of cells that changed.
     pub rect: CellRect,
     /// Whether a tile was removed.
     pub is_removal: bool,
@@ -37,6 +38,7 @@ pub(crate) struct Changed {
 pub(super) struct StepInParts {
     /// Last tile that is done.
     pub last: Option<TileKey>,
+    /// Sums over the tiles that are done.
     pub flows: Flows,
     pub changes: bool,
 }
@@ -47,7 +49,9 @@ pub(crate) struct TiledWater {
     id: u64,
     /// Water of each tile, by the tile's number in the terrain.
     pub(super) tiles: Vec<Option<Box<TileWater>>>,
+    /// Slot of each tile in the terrain, by the tile's key.
     pub(super) keys: BTreeMap<TileKey, u32>,
+    /// Standing water.
     pub(super) lakes: Lakes,
     /// Progress of a step, if only some tiles are done.
     pub(super) part: Option<StepInParts>,
