@@ -17,7 +17,7 @@ struct SurfaceLook {
     most_albedo: f32,
     // Share of the pattern's puddles that the class has.
     hollows: f32,
-    // Confidence that the ground is level where nothing else gives its slope.
+    // Confidence that the ground is level, 0 to 1, used if neither terrain, normals nor depth give its slope.
     level: f32,
     // Share of the ground on which snow lies.
     snow: f32,

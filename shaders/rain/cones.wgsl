@@ -17,9 +17,9 @@ const CONE_SIDE: f32 = 256.0;
 @group(1) @binding(3) var open_parts: texture_2d_array<f32>;
 @group(1) @binding(4) var open_sampler: sampler;
 
-// Whether anything near keeps rain off.
+// Whether a box or an occluder map near the camera keeps rain off.
 override SHELTERED: bool = false;
-// Whether the innermost cone shows anything.
+// Whether the innermost cone is drawn.
 override INNERMOST: bool = true;
 // Whether one set of streaks is replacing another.
 override GROWING: bool = true;
@@ -37,7 +37,7 @@ struct OnCone {
     left: f32,
 }
 
-// Number of sectors about the axis. In each the tiles are halved at another angle from the axis.
+// Number of sectors about the axis. The tiles are halved at a different angle from the axis in each sector.
 const COLUMNS: f32 = 512.0;
 
 // Returns the coordinates of the view direction `d`.
@@ -52,7 +52,7 @@ fn on_cone(d: vec3f) -> OnCone {
     // Each halving of the sine halves the tiles. The exact angle differs from sector to sector, so that no ring shows.
     let whole = floor(halvings);
     let left = exp2(-whole);
-    // Multiples of the golden ratio are spread evenly, and those of neighbouring sectors lie far apart.
+    // Uses multiples of the golden ratio, which are spread evenly and differ much between neighbouring sectors.
     let chance = fract(floor(turn * COLUMNS * left) * 0.61803399 + whole * 0.37);
     let halved = halvings - whole > 0.25 + 0.75 * chance;
     let octave = whole + select(0.0, 1.0, halved);

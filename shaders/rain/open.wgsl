@@ -5,8 +5,8 @@
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
 
-// Per stretch: the open shares of its four quarters, near to far. 1 where the mean drop arrives, 0 where something
-// shelters the place.
+// Per stretch: the open shares of its four quarters, near to far. A share is 1 if the mean drop arrives, and 0 if a box
+// or an occluder map shelters the place.
 struct OpenParts {
     @location(0) first: vec4f,
     @location(1) second: vec4f,

@@ -54,7 +54,7 @@ struct Landing {
 // Drop that lands.
 struct Arrival {
     landing: Landing,
-    // Acceptance threshold: the drop lands where the ground gets at least this share of the flux on level ground.
+    // Acceptance threshold: the drop lands if the ground gets at least this multiple of the flux on level ground.
     chance: f32,
     // Diameter of the drop, m.
     diameter: f32,
@@ -239,14 +239,14 @@ struct Crown {
     slot: u32,
 }
 
-// Returns the number of drops that land on a surface with a `normal`, relative to level ground of the same horizontal
-// extent.
+// Returns the number of drops of a `velocity` that land on a surface with a `normal`, relative to level ground of the
+// same horizontal extent.
 fn landing_share(normal: vec3f, velocity: vec3f) -> f32 {
     return max(-dot(velocity, normal), 0.0) / max(-velocity.z * normal.z, 1e-6);
 }
 
-// Returns the crown on a surface with a `normal` at the height `z`: it rises, opens and falls. Sizes in drop diameters
-// after Yarin 2006, Drop Impact Dynamics.
+// Returns the crown on a surface with a `normal` at the height `z`: it rises, opens and falls. Its size in drop
+// diameters is that of Yarin (2006, Drop Impact Dynamics).
 fn crown_of(arrival: Arrival, z: f32, normal: vec3f) -> Crown {
     let landing = arrival.landing;
     let at = vec3f(landing.xy, z);

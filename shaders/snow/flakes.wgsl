@@ -189,9 +189,9 @@ fn flake_phase(c: f32) -> f32 {
     return henyey(0.54, c);
 }
 
-// Returns the share of light from above the horizon in what a flake scatters along a ray whose sine of elevation is
-// `z`: the integral of flake_phase over the upper hemisphere, by its first three Legendre terms, 1/2 + 3/4 g z - 7/16
-// g^3 P3(z).
+// Returns the share of light from above the horizon in the light that a flake scatters along a ray whose sine of
+// elevation is `z`: the integral of flake_phase over the upper hemisphere, by its first three Legendre terms, 1/2 + 3/4
+// g z - 7/16 g^3 P3(z).
 fn flake_sky_share(z: f32) -> f32 {
     return 0.5 + z * (0.50835 - 0.17222 * z * z);
 }

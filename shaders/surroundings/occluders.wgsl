@@ -10,7 +10,7 @@ override MAPS: bool = false;
 
 // Largest number of maps.
 const MAX_MAPS: u32 = 4u;
-// Maximum number of cells tested per path. A longer path counts as free.
+// Largest number of cells tested per path. A path that needs more counts as free.
 const MAP_STEPS: u32 = 192u;
 
 // One map.

@@ -86,7 +86,8 @@ impl Plane {
     /// Creates the plane of a pane in a picture with this projection.
     ///
     /// # Errors
-    /// As [`Plane::of`].
+    /// [`crate::Status::InvalidArgument`] for corners that [`Plane::of`] refuses; [`crate::Status::Unsupported`] for
+    /// glass over the whole view with a projection that gives no such corners.
     pub fn of_pane(pane: &Pane, projection: &DMat4) -> Result<Self> {
         match pane {
             Pane::Quad(corners) => Self::of(corners),

@@ -148,7 +148,7 @@ impl Glass {
         self.lattice.as_ref().map_or(0, PaneLattice::bytes) + self.lens.as_ref().map_or(0, LensPass::bytes)
     }
 
-    /// Advances the glass to a moment. Returns the number of passes.
+    /// Advances the glass to the time of a frame. Returns the number of passes.
     ///
     /// # Errors
     /// [`Status::Unsupported`] for a projection of parallel rays.
@@ -288,7 +288,7 @@ impl Glass {
     /// Draws the lens over the finished picture. Returns the number of passes.
     ///
     /// # Errors
-    /// As [`Glass::advance`].
+    /// [`Status::Unsupported`] for a projection of parallel rays, or a missing shader file.
     pub fn draw(
         &mut self,
         device: &Arc<Device>,
@@ -350,7 +350,7 @@ impl Glass {
     /// Returns the snow, if there may be any. Waits for the GPU.
     ///
     /// # Errors
-    /// As [`Glass::report`].
+    /// [`Status::DeviceLost`], or a GPU fault.
     pub fn snow(&self, device: &Device) -> Result<Option<Snow>> {
         let Some(lattice) = self.lattice.as_ref().filter(|_| self.frost > 0.0) else { return Ok(None) };
         let bytes = readback::bytes(device, lattice.snow(), 0)?;
@@ -361,7 +361,7 @@ impl Glass {
     /// Returns the cells, if there is water. Waits for the GPU.
     ///
     /// # Errors
-    /// As [`Glass::report`].
+    /// [`Status::DeviceLost`], or a GPU fault.
     pub fn cells(&self, device: &Device) -> Result<Option<Cells>> {
         let Some(lattice) = self.lattice.as_ref().filter(|_| self.moisture > 0.0) else { return Ok(None) };
         let bytes = readback::bytes(device, lattice.texture(), 0)?;

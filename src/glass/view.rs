@@ -61,7 +61,7 @@ impl GlassView {
     /// Returns the cells of the water, or `None` if the glass is dry. Waits for the GPU.
     ///
     /// # Errors
-    /// As [`GlassView::water`].
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn cells(&self, device: &Device) -> Result<Option<Cells>> {
         self.glass.as_ref().map_or(Ok(None), |g| g.cells(device))
     }
@@ -69,7 +69,7 @@ impl GlassView {
     /// Returns the snow, or `None` if there is none. Waits for the GPU.
     ///
     /// # Errors
-    /// As [`GlassView::water`].
+    /// [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn snow(&self, device: &Device) -> Result<Option<Snow>> {
         self.glass.as_ref().map_or(Ok(None), |g| g.snow(device))
     }

@@ -61,7 +61,7 @@ pub(crate) struct SurfaceLook {
     pub most_albedo: f32,
     /// Share of the pattern's puddles that the class has.
     pub hollows: f32,
-    /// Confidence that the ground is level where nothing else gives its slope, 0 to 1.
+    /// Confidence that the ground is level, 0 to 1, used if neither terrain, normals nor depth give its slope.
     pub level: f32,
     /// Share of the ground on which snow lies.
     pub snow: f32,

@@ -118,7 +118,8 @@ impl HeldGround {
         }
     }
 
-    /// Replaces the grid; see [`Context::set_ground_grid`](crate::context::Context::set_ground_grid).
+    /// Replaces the grid, for [`Context::set_ground_grid`](crate::context::Context::set_ground_grid). A grid with the
+    /// same heights keeps its water.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -256,7 +257,8 @@ impl HeldGround {
         }
     }
 
-    /// Returns the water on the ground at a place; see [`Context::ground_at`](crate::context::Context::ground_at).
+    /// Returns the water on the ground at a position in the host's world, for
+    /// [`Context::ground_at`](crate::context::Context::ground_at).
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if the position is not finite, farther than 1e12 m from the world's origin, or not

@@ -117,7 +117,7 @@ impl HostGround {
         (self.begun, self.shown) = (false, None);
     }
 
-    /// Updates the values that follow from weather, areas and shelter without a state: the ice, and the water of a grid
+    /// Updates the values that depend only on the present weather, areas and shelter: the ice, and the water of a grid
     /// without a state. Returns whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Updated as often as a state is stepped: weather and areas may change at any time.

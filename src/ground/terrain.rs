@@ -81,8 +81,8 @@ pub(crate) struct TerrainWater {
     standing: Vec<f32>,
     /// Whether there is no water at all.
     dry: bool,
-    /// Whether a step without rain may change a cell, for each run: true if a cell has a film, or wet pores that are
-    /// not under water.
+    /// Whether a step without rain may change a run, for each run: true if one of its cells has a film, or wet pores
+    /// that are not under water.
     awake: Vec<bool>,
     /// Cached water level of each hollow.
     levels: Vec<WaterLevel>,

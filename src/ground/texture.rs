@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{gpu::Device, surroundings::LyingSnow};
 
-/// WGSL text of functions that compute the look of the water; see [`GroundTexture`].
+/// WGSL text of functions that compute the look of the water from a [`GroundTexture`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_ground.wgsl");
 /// GLSL text of the same functions, for 3.30 and ES 3.00.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");

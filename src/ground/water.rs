@@ -216,7 +216,7 @@ impl Step {
         let left = film / (1.0 + self.run_off * film * film).sqrt();
         let wet = left + half;
         let from_film = wet.min(self.evaporated_mm);
-        // Pores lose water at a rate proportional to what is left.
+        // Pores lose water at a rate proportional to the water in them.
         let kept = match self.evaporated_mm - from_film {
             0.0 => soaked,
             more if more == self.evaporated_mm => soaked * self.drying,

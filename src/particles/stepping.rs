@@ -1,7 +1,7 @@
 //! Particles integrated through a wind that varies in space, such as that around a building.
 //!
 //! Drops and flakes keep the shells and numbers of their lattice, but each has its own position and velocity, in a
-//! buffer of the view. Each starts at its place in the lattice. In an even wind it then stays at the place that the
+//! buffer of the view. Each starts at its place in the lattice. In a uniform wind it then stays at the place that the
 //! lattice gives, until it leaves the cell around the camera.
 //!
 //! During a step the drag is linear and is solved exactly ([`crate::falling::drag::step`]), so steps of any length are

@@ -93,8 +93,8 @@ impl FallingTexture {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the layer for a picture of this size, recreated if the size has changed. Its content is what was drawn
-    /// last.
+    /// Returns the layer for a picture of this size, recreated if the size has changed. It still has the content of its
+    /// last draw.
     pub fn view(&self, device: &Device, size: wgpu::Extent3d) -> wgpu::TextureView {
         let mut held = self.locked();
         if held.as_ref().is_none_or(|(t, _)| (t.width(), t.height()) != (size.width, size.height)) {

@@ -1,5 +1,6 @@
-//! Rain on cones on the GPU: the texture of streaks, the uniform block, and one full-screen draw. Where something near
-//! shelters the cones, the share of rain that reaches each cell of a coarse grid is drawn first ([`super::open_pass`]).
+//! Rain on cones on the GPU: the texture of streaks, the uniform block, and one full-screen draw. If boxes or occluder
+//! maps near the camera keep rain off, the share of rain that reaches each cell of a coarse grid is drawn first
+//! ([`super::open_pass`]).
 
 use super::{
     cones::{ConeUniform, SIDE, STRETCHES, texture},
@@ -120,7 +121,7 @@ impl ConePass {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct ConeKind {
     pub depth: DepthRead,
-    /// Whether something near the camera keeps rain off.
+    /// Whether a box or an occluder map near the camera keeps rain off.
     pub sheltered: bool,
     /// Whether the rim of a rain area is near.
     pub areas: bool,
@@ -128,7 +129,7 @@ pub(super) struct ConeKind {
     pub lamps: bool,
     /// Whether the layer already contains columns of rain areas.
     pub over: bool,
-    /// Whether the innermost cone shows anything, because not all near drops are drawn one by one.
+    /// Whether the innermost cone is drawn, because not all near drops are drawn one by one.
     pub innermost: bool,
     /// Whether one set of streaks is replacing another.
     pub growing: bool,

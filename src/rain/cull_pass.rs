@@ -136,7 +136,7 @@ impl CullPass {
         Ok(())
     }
 
-    /// Compiles the pipeline of the draw for a kind of depth if it does not exist yet.
+    /// Compiles the pipeline of the draw for a way of reading depth if it does not exist yet.
     ///
     /// # Errors
     /// A missing shader file.

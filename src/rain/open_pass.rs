@@ -1,5 +1,6 @@
 //! Shares of the rain that reach the cones past shelters, on a coarse grid over the picture. Each cell is tested once
-//! for every stretch of its ray, and every pixel looks the result up. Drawn only where something near keeps rain off.
+//! for every stretch of its ray, and every pixel looks the result up. The grid is drawn only if a box or an occluder
+//! map near the camera keeps rain off.
 
 use std::sync::Arc;
 
@@ -21,7 +22,7 @@ use crate::{
 const CELL: u32 = 10;
 /// Smallest number of cells along the width and along the height of the picture.
 const FEWEST: u32 = 40;
-/// Format with one channel for each quarter of a stretch.
+/// Format of the grid: one channel for each quarter of a stretch.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Grid of a view and its pass, created when it is first needed.

@@ -9,8 +9,8 @@ use crate::{
 /// Method by which a view draws rain. It does not change the precipitation itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
-    /// Single drops to 1.9 m, and cones beyond, to 14.8 m. Under a budget ([`crate::plan`]) less is drawn where the
-    /// picture does not need it.
+    /// Single drops to 1.9 m, and cones beyond, to 14.8 m. Under a budget ([`crate::plan`]) less is drawn if the
+    /// picture changes little without it.
     #[default]
     Automatic,
     /// No drops: all rain is extinction. Costs nothing in addition to the fog.

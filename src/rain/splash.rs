@@ -16,7 +16,7 @@ pub const LIFE_S: f64 = 0.08;
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
 /// Largest number of slots in a cell.
 const MOST_SLOTS: u32 = 8;
-/// Smallest diameter of drops whose crown can be seen, mm.
+/// Smallest diameter of drops whose crown is drawn, mm: the crowns of smaller drops are too small to see.
 pub const LEAST_MM: f64 = 1.2;
 
 /// Number of groups of drops, equal in number; each group has its mean size.
@@ -56,8 +56,8 @@ pub struct Landing {
     pub diameter_mm: f64,
     /// Fall speed of the drop, m/s.
     pub speed_m_s: f64,
-    /// Acceptance threshold: the drop lands where the ground gets at least this share of the flux on level ground.
-    /// Below 1, it lands on level ground.
+    /// Acceptance threshold: the drop lands if the ground gets at least this multiple of the flux on level ground. With
+    /// a threshold below 1 it lands on level ground.
     pub chance: f64,
 }
 

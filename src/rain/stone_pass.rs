@@ -60,8 +60,8 @@ impl StonePass {
         Self { block, layout, group, pipelines: Made::NONE, counts }
     }
 
-    /// Uploads the block, and compiles the pipelines for a kind of depth if they do not exist yet. `rain` is the layout
-    /// of group 0 of the drops' pass, `around` that of the surroundings; `format` is that of the layer.
+    /// Uploads the block, and compiles the pipelines for `kind` if they do not exist yet. `rain` is the layout of group
+    /// 0 of the drops' pass, `around` that of the surroundings; `format` is that of the layer.
     ///
     /// # Errors
     /// A missing shader file.

@@ -154,7 +154,7 @@ impl SnowPass {
     }
 }
 
-/// Source of the drawn flakes: all of the lattice, the list of those in the picture, or their states.
+/// Source of the drawn flakes: all flakes of the lattice, the list of those in the picture, or stepped states.
 #[derive(Clone, Copy, PartialEq)]
 enum FlakeSource {
     All,

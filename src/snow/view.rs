@@ -1,4 +1,4 @@
-//! Falling snow of a view: what it draws for a moment and a camera.
+//! Falling snow of a view: the flakes that it draws for a scene and a camera.
 
 use super::{
     candidates,

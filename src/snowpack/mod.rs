@@ -17,8 +17,8 @@
 //! Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state records how much time was covered
 //! this way. A column is a single layer: there is no hard crust under new snow, and no frozen ground.
 //!
-//! This room draws nothing. Whatever draws snow, takes its meltwater or is lit by it reads the world's `LyingSnow`. So
-//! there are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.
+//! This room draws nothing. Effects that draw snow, take its meltwater or are lit by it read the world's `LyingSnow`.
+//! So there are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.
 
 mod column;
 mod drift;

@@ -210,7 +210,8 @@ impl Site {
         self.origin + self.to_enu.transpose() * local
     }
 
-    /// Returns the position of a place of the lattice at a height.
+    /// Returns the position in the host's world, m, of a cell of the lattice, given by its index east and north, at a
+    /// height above the origin, m.
     pub fn place(&self, place: [i32; 2], height_m: f64) -> DVec3 {
         self.position((DVec2::new(f64::from(place[0]), f64::from(place[1])) * self.cell_m).extend(height_m))
     }
@@ -327,8 +328,8 @@ impl Site {
         }
     }
 
-    /// Whether flakes on their way to a place of the host's world meet a box. The path is followed back until it is
-    /// above the box.
+    /// Whether flakes on their way to `landed`, a position in the host's world, meet a box. The path is traced back
+    /// until it is above the box. `fall` is the flakes' fall speed, m/s.
     fn meets(&self, shelter: &Shelter, landed: DVec3, air: &SiteWind<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
         let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
@@ -404,8 +405,9 @@ impl SiteWind<'_> {
         self.volume.wind(position, weathers).unwrap_or(weathers)
     }
 
-    /// Returns the wind at 10 m over a place of the lattice: the wind at 2 m over the snow, extrapolated by the
-    /// logarithmic law.
+    /// Returns the wind at 10 m over a cell of the lattice, given by its index east and north and the height of its
+    /// snow's surface, m: east and north, m/s. It is the wind 2 m above the snow (one cell of the wind above it, if
+    /// that is more), extrapolated to 10 m by the logarithmic law.
     pub fn over(&self, place: [i32; 2], surface_m: f64) -> DVec2 {
         let asked_m = ASKED_M.max(self.volume.cell_m.z);
         let lower = self.lower(asked_m);
@@ -422,12 +424,13 @@ fn slanted(wind: DVec2, fall: f64) -> DVec2 {
     wind * (fall / wind.length().max(fall))
 }
 
-/// Returns the direction of flakes in a wind, relative to their fall and rounded to sixteenths.
+/// Returns the direction of flakes in a wind, (east, north, -1): the horizontal distance per metre of fall, rounded to
+/// sixteenths so that small changes of the wind do not change it.
 fn slant(wind: DVec2, fall: f64) -> DVec3 {
     (slanted(wind, fall) / fall * 16.0).round().extend(-16.0) / 16.0
 }
 
-/// Returns the height of the ground at a place, m.
+/// Returns the mean height of the ground of four cells with their weights, m.
 pub(super) fn ground_m(field: &SnowField, corners: &CornerShares) -> f64 {
     corners
         .iter()
