@@ -132,6 +132,8 @@ pub fn relax(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) 
 mod tests {
     use super::*;
 
+    /// Returns the errors of a fall speed at Gunn and Kinzer's sizes: their root mean square and the largest, m/s; and
+    /// the largest relative error from 0.6 mm on.
     fn rms(speed: impl Fn(f64) -> f64) -> (f64, f64, f64) {
         let errors = GUNN_KINZER.map(|(d, v)| (d, v, speed(d) - v));
         let rms = (errors.iter().map(|e| e.2 * e.2).sum::<f64>() / errors.len() as f64).sqrt();

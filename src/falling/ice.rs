@@ -229,6 +229,7 @@ mod tests {
         weather::hydrometeors::{hail_extinction_per_m, ice_pellet_extinction_per_m},
     };
 
+    /// Precipitation rates of the tests, mm/h.
     const RATES: [f64; 10] = [0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 30.0, 60.0, 150.0, 500.0];
 
     #[test]

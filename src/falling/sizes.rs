@@ -326,8 +326,10 @@ mod tests {
     use crate::falling::drops::altitude_factor;
     use crate::weather::hydrometeors::{drizzle_extinction_per_m, rain_extinction_per_m, shower_extinction_per_m};
 
+    /// Rates of the tests, mm/h.
     const RATES: [f64; 12] = [0.01, 0.1, 0.3, 1.0, 2.5, 5.0, 10.0, 25.0, 50.0, 100.0, 150.0, 500.0];
 
+    /// Returns rain and drizzle of these rates, mm/h; `showers` is from 0 (steady) to 1 (convective).
     fn falling(rain: f64, drizzle: f64, showers: f64) -> Falling {
         let dry = crate::weather::derive(&Default::default()).unwrap().precipitation;
         Falling { rain_mm_h: rain, drizzle_mm_h: drizzle, showers, ..dry }

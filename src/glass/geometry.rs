@@ -160,6 +160,7 @@ mod tests {
     use super::*;
     use crate::scene::Camera;
 
+    /// Returns the corners of a window: low left, low right, high right, high left; m.
     fn quad() -> [DVec3; 4] {
         // The windscreen of a car: 1.2 m wide, leaning back.
         [(-0.7, -0.2, -0.9), (0.7, -0.2, -0.9), (0.5, 0.3, -0.4), (-0.5, 0.3, -0.4)].map(DVec3::from)

@@ -168,6 +168,7 @@ impl CellGrid<'_> {
 mod tests {
     use super::*;
 
+    /// Creates a grid that rises by 0.5 m a cell to the east and by 1 m a cell to the north.
     fn grid() -> GroundGrid {
         let heights_m = (0..12).map(|i| (i % 4) as f32 * 0.5 + (i / 4) as f32).collect();
         GroundGrid { origin: DVec3::new(10.0, 20.0, 30.0), cell_m: 2.0, nodes: [4, 3], heights_m, classes: Vec::new() }

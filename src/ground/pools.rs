@@ -143,6 +143,7 @@ mod tests {
     use super::*;
     use crate::ground::basins::tests::rough;
 
+    /// Returns the level of each basin's water, mm; where basins have joined, that of the joint pool.
     fn levels(pools: &Pools, basins: &Basins) -> Vec<f64> {
         let level = |mut basin: usize| {
             while let Some(whole) = pools.whole_of(basins, basin) {
@@ -153,6 +154,8 @@ mod tests {
         (0..basins.list.len()).map(level).collect()
     }
 
+    /// Creates basins of level ground with two pits, 0.3 m and 0.2 m deep, and a saddle 0.1 m below the ground between
+    /// them.
     fn two_pits() -> Basins {
         let mut row = vec![0.0f32; 9];
         (row[2], row[3], row[4], row[5]) = (-0.3, -0.3, -0.1, -0.2);

@@ -283,6 +283,7 @@ mod tests {
         water::{Forcing, STEP_S},
     };
 
+    /// Creates a terrain with cells of 1 m; `heights_m` is row by row from the south-west.
     fn terrain(columns: u32, rows: u32, heights_m: Vec<f32>) -> GridTerrain {
         let grid =
             GroundGrid { origin: DVec3::ZERO, cell_m: 1.0, nodes: [columns, rows], heights_m, classes: Vec::new() };
@@ -290,6 +291,7 @@ mod tests {
         GridTerrain::new(grid)
     }
 
+    /// Returns a step in this rain and evaporation, and the depth of rain that falls in it, mm.
     fn rain(mm_h: f64, evaporation_mm_h: f64) -> (Step, f64) {
         let forcing = Forcing { liquid_mm_h: mm_h, evaporation_mm_h };
         (Step::new(&forcing, STEP_S), mm_h * STEP_S / 3600.0)

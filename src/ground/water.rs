@@ -259,12 +259,14 @@ mod tests {
     use super::*;
     use crate::weather::{Weather, derive};
 
+    /// Returns the conditions in a wind of `wind` m/s; the humidity is from 0 to 1.
     fn conditions(temperature_c: f64, relative_humidity: f64, wind: f64) -> Conditions {
         let mut w = Weather { temperature_c, relative_humidity, ..Weather::default() };
         w.wind.speed_m_s = wind;
         derive(&w).unwrap()
     }
 
+    /// Ground with soaked pores, a film and water in its hollows.
     const WET: GroundWater = GroundWater { film_mm: 0.8, soaked_mm: PORES_MM, hollows_mm: 0.7 };
 
     #[test]

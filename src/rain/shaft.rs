@@ -409,6 +409,7 @@ mod tests {
         field.share(i, p) * (c.extinction * more * begun - field.own.liquid_per_m * own)
     }
 
+    /// Returns three areas: an ellipse, a polygon with the same center, and a second ellipse that overlaps the first.
     fn areas() -> Vec<RainArea> {
         let ellipse = RainArea {
             center_m: [300.0, 5000.0, 0.0],
@@ -432,6 +433,8 @@ mod tests {
         vec![ellipse, polygon, beside]
     }
 
+    /// Creates the field of these areas around an eye 2 m above the ground; the weather's own rain has an extinction of
+    /// `own_per_m`, 1/m.
     fn field(areas: &[RainArea], own_per_m: f64) -> AreaField {
         let shafts = areas.iter().enumerate().map(|(i, a)| {
             a.validate().unwrap();

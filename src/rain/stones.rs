@@ -256,6 +256,7 @@ mod tests {
         weather::{Precipitation, PrecipitationKind, Weather, derive},
     };
 
+    /// Returns precipitation of one kind, with its rate in mm/h.
     fn falling(kind: PrecipitationKind, rate: f64) -> Falling {
         let weather = Weather { precipitation: Precipitation::of(kind, rate), ..Weather::default() };
         derive(&weather).unwrap().precipitation

@@ -301,6 +301,7 @@ mod tests {
     use super::*;
     use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};
 
+    /// Returns the sizes of flakes in precipitation of `rate` mm/h at `t` C, at sea level.
     fn sizes(kind: PrecipitationKind, rate: f64, t: f64) -> FlakeSizes {
         let weather = Weather { precipitation: Precipitation::of(kind, rate), ..Weather::default() };
         FlakeSizes::new(&derive(&weather).unwrap().precipitation, t, 1.0)

@@ -52,6 +52,7 @@ mod tests {
     use super::*;
     use crate::falling::flakes::AREA_RATIO;
 
+    /// Returns the mean of a flake's shape over the unit disc, by 40 x 40 midpoints.
     fn mean(seed: u32) -> f64 {
         let n = 40;
         let at = |i: i32| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;

@@ -132,6 +132,7 @@ mod tests {
     use super::*;
     use crate::weather::{Weather, Wind, derive};
 
+    /// Returns the conditions in this wind; `humidity` is from 0 to 1.
     fn weather(temperature_c: f64, wind_m_s: f64, humidity: f64) -> Conditions {
         let w = Weather {
             temperature_c,

@@ -1,3 +1,5 @@
+//! Tests of lying snow: mass balance and settling, drift at fences and hills, slides, and fields in patches.
+
 use glam::DVec2;
 
 use super::{
@@ -10,18 +12,25 @@ use super::{
 };
 use crate::weather::{Conditions, Falling, Weather, Wind, derive};
 
+/// Length of a step in these tests, s.
 const STEP_S: f64 = 60.0;
 
 /// Heights, obstacles and roofs of a lattice, from which snow fields are created.
 struct Land {
+    /// Numbers of cells to the east and to the north.
     nodes: [usize; 2],
+    /// Side of a cell, m.
     cell_m: f64,
+    /// Height of the ground at each cell, m; row by row from the south-west.
     heights_m: Vec<f64>,
+    /// Height of the object on each cell that stops the wind, m; empty if there are no objects.
     obstacles_m: Vec<f64>,
+    /// Whether each cell is sheltered from precipitation; empty if none is.
     sheltered: Vec<bool>,
 }
 
 impl Land {
+    /// Returns the number of cells.
     fn len(&self) -> usize {
         self.nodes[0] * self.nodes[1]
     }
@@ -63,17 +72,20 @@ fn columns(field: &SnowField) -> Vec<Column> {
     (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
 }
 
+/// Creates level land at height 0 with `nodes` cells to the east and to the north, without objects.
 fn flat(nodes: [usize; 2], cell_m: f64) -> Land {
     let heights_m = vec![0.0; nodes[0] * nodes[1]];
     Land { nodes, cell_m, heights_m, obstacles_m: Vec::new(), sheltered: Vec::new() }
 }
 
+/// Returns the conditions in a west wind; `humidity` is from 0 to 1.
 fn weather(temperature_c: f64, wind_m_s: f64, humidity: f64) -> Conditions {
     let w =
         Weather { temperature_c, relative_humidity: humidity, wind: Wind::of(wind_m_s, 270.0), ..Weather::default() };
     derive(&w).unwrap()
 }
 
+/// Returns snowfall of this rate, as mm/h of water, and no other precipitation.
 fn snow(rate_mm_h: f64) -> Falling {
     Falling { snow_mm_h: rate_mm_h, ..Falling::NONE }
 }
@@ -81,6 +93,7 @@ fn snow(rate_mm_h: f64) -> Falling {
 /// Forcing of the columns and settling of their snow in the same weather.
 struct Acts(ColumnForcing, Settling);
 
+/// Returns forcing and settling in the conditions `c`, for steps of [`STEP_S`].
 fn acts(c: &Conditions, falling: &Falling, sunlight_w_m2: f64) -> Acts {
     let mut settling = Settling::new();
     settling.set(c.air.temperature_c, STEP_S);
@@ -92,6 +105,8 @@ fn advance(field: &mut SnowField, acts: &Acts, wind: DVec2, steps: usize) {
     lead_amid(&Column::default(), field, acts, (wind, None), steps);
 }
 
+/// Steps a field in constant weather, with the column `country` around it. `mean` is the uniform wind, (east, north),
+/// m/s; `local` is the wind at each cell, if there is one. Slides are computed in every tenth step.
 fn lead_amid(
     country: &Column,
     field: &mut SnowField,
@@ -191,6 +206,8 @@ fn along(land: &Land, wind_m_s: f64, temperature_c: f64, hours: usize) -> Vec<f6
     columns_along(land, wind_m_s, temperature_c, hours).iter().map(Column::mass_kg_m2).collect()
 }
 
+/// Returns the columns of the middle row of cells, from west to east, after `hours` of drift in a west wind. At first
+/// 0.3 m of snow of 120 kg/m^3 lie everywhere.
 fn columns_along(land: &Land, wind_m_s: f64, temperature_c: f64, hours: usize) -> Vec<Column> {
     let country = Column::of(0.3, 120.0);
     let mut field = land.field(country);

@@ -175,6 +175,7 @@ mod tests {
     use super::*;
     use crate::gpu::shader;
 
+    /// Returns an occluder's view from 60 m up, steeply down and to the east.
     fn taken() -> Taken {
         Taken::parallel(DVec3::new(100.0, 50.0, 60.0), DVec3::new(0.3, 0.0, -1.0), [40.0, 20.0], 120.0)
     }

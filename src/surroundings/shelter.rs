@@ -232,6 +232,7 @@ pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
 mod tests {
     use super::*;
 
+    /// Creates a roof 5 m up, 20 m long to the east, 6 m wide and 0.4 m thick.
     fn roof() -> Shelter {
         Shelter {
             center_m: DVec3::new(0.0, 0.0, 5.0),

@@ -27,6 +27,7 @@ use crate::{
     world::{Couplings, World, WorldDesc},
 };
 
+/// Side of a tile, cells.
 const SIDE: i32 = 32;
 
 /// A terrain and its water, stepped without a context, with the sums of rain and of losses.
@@ -34,10 +35,13 @@ struct Bench {
     world: World,
     terrain: Terrain,
     water: TiledWater,
+    /// Rain so far, mm times cells.
     fallen: f64,
+    /// Water that evaporated, leaked, drained or was removed with its cells so far, mm times cells.
     gone: f64,
 }
 
+/// Creates a world in the default weather.
 fn world() -> World {
     let made = WorldDesc {
         frame: WorldFrame::default(),
@@ -60,6 +64,7 @@ fn conditions(rain_mm_h: f64) -> Conditions {
     c
 }
 
+/// Returns the forcing of a step from both rates.
 fn forcing(rain_mm_h: f64, evaporation_mm_h: f64) -> Forcing {
     Forcing { liquid_mm_h: rain_mm_h, evaporation_mm_h }
 }
@@ -80,6 +85,7 @@ impl Bench {
         Self { world, terrain, water, fallen: 0.0, gone: 0.0 }
     }
 
+    /// Takes a step of [`STEP_S`] and adds its flows to the sums.
     fn step(&mut self, rain_mm_h: f64, evaporation_mm_h: f64) -> SteppedTiles {
         let (c, f) = (conditions(rain_mm_h), forcing(rain_mm_h, evaporation_mm_h));
         let now = TiledStep {
@@ -118,11 +124,13 @@ impl Bench {
         }
     }
 
+    /// Updates the water after the ground in `rect` has changed or, with `is_removal`, has been removed.
     fn follow(&mut self, rect: CellRect, is_removal: bool) {
         let change = Changed { revision: self.terrain.revision, rect, is_removal };
         self.gone += self.water.follow(&self.terrain, &change);
     }
 
+    /// Returns the water on the cell at this place of the lattice, (east, north) in cells.
     fn at(&self, place: [i32; 2]) -> CellWater {
         self.water.cell(&self.terrain, self.terrain.cell_at(place).unwrap(), &GroundWater::default())
     }

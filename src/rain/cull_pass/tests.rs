@@ -22,11 +22,16 @@ use crate::{
 };
 
 const SEED: u64 = 3;
+/// Position of the camera, (east, north, up), m.
 const EYE: DVec3 = DVec3::new(20.0, -7.0, 30.0);
+/// Velocity of the air, (east, north, up), m/s.
 const WIND: DVec3 = DVec3::new(9.0, 4.0, 0.0);
+/// Time for which the drops have fallen, s.
 const TIME_S: f64 = 77.0;
+/// Exposure time of the camera, s.
 const EXPOSURE_S: f64 = 1.0 / 60.0;
 
+/// Pass that finds drops, with the buffers that it reads.
 struct Bench {
     device: Arc<Device>,
     blocks: Blocks,
@@ -34,12 +39,14 @@ struct Bench {
     pass: CullPass,
     surroundings: surroundings::SurroundingsBlock,
     classes: Classes,
+    /// Matrix from positions relative to the camera, (east, north, up), to clip space, as in the last search.
     clip: DMat4,
     /// Velocity of the camera, m/s.
     velocity_m_s: DVec3,
 }
 
 impl Bench {
+    /// Creates a bench for rain of this rate, on a headless device.
     fn new(rate_mm_h: f64) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let precipitation = Precipitation::of(PrecipitationKind::Rain, rate_mm_h);
@@ -90,6 +97,7 @@ impl Bench {
         ([found[0], found[1], found[2], found[3]], shown)
     }
 
+    /// Copies a buffer from the GPU.
     fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Vec<T> {
         let copy = self.device.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

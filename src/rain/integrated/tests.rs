@@ -25,6 +25,7 @@ use glam::DVec3;
 
 const SEED: u64 = 5;
 
+/// Pass that steps drops, with the buffers that it reads.
 struct Bench {
     device: Arc<Device>,
     blocks: Blocks,
@@ -32,6 +33,7 @@ struct Bench {
     pass: StepPass,
     wind: WindTexture,
     classes: Classes,
+    /// Largest number of drops in all shells together.
     most: u32,
 }
 
@@ -40,13 +42,17 @@ struct Bench {
 struct Read {
     /// Position relative to the camera, m.
     position_m: DVec3,
+    /// Velocity, (east, north, up), m/s.
     velocity_m_s: DVec3,
+    /// Index of the shell, from the innermost.
     shell: usize,
+    /// Index of the drop's class in [`Classes`].
     class: usize,
     /// Number of times that the drop has re-entered its shell's cell.
     times: u32,
 }
 
+/// Creates the classes of rain of this rate at sea level, with at most `most` drops in all shells together.
 fn classes(rate_mm_h: f64, most: u32) -> Classes {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, rate_mm_h);
     let falling = derive(&Weather { precipitation, ..Weather::default() }).unwrap().precipitation;
@@ -54,6 +60,7 @@ fn classes(rate_mm_h: f64, most: u32) -> Classes {
 }
 
 impl Bench {
+    /// Creates a bench for rain of this rate, on a headless device, with at most `most` drops.
     fn new(rate_mm_h: f64, most: u32) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let blocks = Blocks::new();
@@ -91,6 +98,7 @@ impl Bench {
         self.device.submit_and_wait(encoder).unwrap();
     }
 
+    /// Reads all drops back, shell by shell; `position_m` is the camera's position.
     fn read(&self, position_m: DVec3) -> Vec<Read> {
         let mut list = Vec::new();
         for (s, shell) in self.pass.read(&self.device).into_iter().enumerate() {
@@ -110,12 +118,15 @@ impl Bench {
         list
     }
 
+    /// Returns the fall speed of a class in still air, m/s.
     fn terminal(&self, class: usize) -> f64 {
         f64::from(self.classes.table[class][1]) * lattice::SPEED_UNIT
     }
 }
 
+/// Radius of the cylinder in [`round_cylinder`], m.
 const RADIUS_M: f64 = 1.5;
+/// Speed of the wind far from the cylinder, m/s; it blows to the east.
 const SPEED_M_S: f64 = 6.0;
 
 /// Returns the potential flow across a cylinder that lies along north through the origin (Lamb 1932, section 68), m/s;
@@ -129,6 +140,7 @@ fn round_cylinder(p: DVec3) -> DVec3 {
     DVec3::new(1.0 - k * (p.x * p.x - p.z * p.z), 0.0, -2.0 * k * p.x * p.z) * SPEED_M_S
 }
 
+/// Samples [`round_cylinder`] on a wind grid, which is 0.25 m fine to the east and 0.375 m upward.
 fn cylinder() -> WindVolume {
     let (nodes, cell_m) = ([64, 2, 32], DVec3::new(0.25, 60.0, 0.375));
     let origin = DVec3::new(-8.0, -30.0, -5.8125);

@@ -24,6 +24,7 @@ use crate::{
 
 const SEED: u64 = 11;
 
+/// Pass that steps flakes, with the buffers that it reads.
 struct Bench {
     device: Arc<Device>,
     blocks: Blocks,
@@ -38,10 +39,13 @@ struct Bench {
 struct Read {
     position_m: DVec3,
     velocity_m_s: DVec3,
+    /// Index of the shell, from the innermost.
     shell: usize,
+    /// Number of times that the flake has re-entered its shell's cell.
     times: u32,
 }
 
+/// Creates the flakes of snow of this rate, as mm/h of water, at -3 C; at most `most` are drawn.
 fn flakes(rate_mm_h: f64, most: u32) -> Flakes {
     let precipitation = Precipitation::of(PrecipitationKind::Snow, rate_mm_h);
     let weather = Weather { precipitation, temperature_c: -3.0, ..Weather::default() };
@@ -63,6 +67,7 @@ fn even(velocity: [f32; 3], kind: WindGridKind) -> WindVolume {
 }
 
 impl Bench {
+    /// Creates a bench for snow of this rate, on a headless device; at most `most` flakes are drawn.
     fn new(rate_mm_h: f64, most: u32) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let blocks = Blocks::new();
@@ -99,6 +104,7 @@ impl Bench {
         self.device.submit_and_wait(encoder).unwrap();
     }
 
+    /// Reads all flakes back, shell by shell; `eye` is the camera's position, m.
     fn read(&self, eye: DVec3) -> Vec<Read> {
         let of_shell = |(s, words): (usize, Vec<[u32; 8]>)| {
             let eye = eye.to_array().map(|x| fraction(x, side_m(s)));
