@@ -113,6 +113,7 @@ fn packed(at: vec2i) -> u32 {
     return u32(at.x) | (u32(at.y) << 16u);
 }
 
+// Returns the cross product a.x b.y - a.y b.x.
 fn perp_dot(a: vec2i, b: vec2i) -> i32 {
     return a.x * b.y - a.y * b.x;
 }

@@ -32,6 +32,7 @@ fn steer(cell: vec2i, motion: vec2i) -> i32 {
     return (uneven >> 1u) + clamp(wetter >> 9u, -64, 64);
 }
 
+// Returns the move of a cell's bead.
 @fragment
 fn decide(in: FullscreenVarying) -> @location(0) vec4u {
     let cell = vec2i(in.position.xy);

@@ -2,6 +2,7 @@
 // starting at a random time, and never enough to run.
 //!include "glass/cells.wgsl"
 
+// Returns the declared state of a cell.
 @fragment
 fn declare(in: FullscreenVarying) -> @location(0) vec4u {
     let cell = vec2i(in.position.xy);

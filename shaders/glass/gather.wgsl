@@ -21,6 +21,7 @@ fn join(to: Cell, volume: u32, at: u32, motion: u32) -> Cell {
     return c;
 }
 
+// Returns the state of a cell after the step.
 @fragment
 fn gather(in: FullscreenVarying) -> @location(0) vec4u {
     let cell = vec2i(in.position.xy);

@@ -62,8 +62,9 @@ override HAS_MASK: bool = false;
 
 // Refractive index of water relative to air.
 const WATER_INDEX: f32 = 1.333;
-// Sine and cotangent of the contact angle of 50 degrees (src/glass/laws.rs).
+// Sine of the contact angle of 50 degrees (src/glass/laws.rs).
 const CONTACT_SINE: f32 = 0.7660444;
+// Cotangent of the contact angle.
 const CONTACT_COTANGENT: f32 = 0.8390996;
 
 // Returns the 32-bit PCG hash of a number (Jarzynski and Olano 2020).
@@ -336,6 +337,7 @@ fn through_snow(depth: f32) -> vec3f {
     return around / (1.0 + 0.75 * 0.11 * depth);
 }
 
+// Returns a pixel of the picture as seen through the pane.
 @fragment
 fn look_through(in: FullscreenVarying) -> @location(0) vec4f {
     let pixel = vec2i(in.position.xy);

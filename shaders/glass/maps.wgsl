@@ -21,6 +21,7 @@ struct PaneUniform {
 
 @group(0) @binding(0) var<uniform> pane: PaneUniform;
 
+// Returns the share of the rain that the maps let through to a node, in 1/128.
 @fragment
 fn reach_by_maps(in: FullscreenVarying) -> @location(0) vec4u {
     let place = floor(in.position.xy) / vec2f(15.0, 7.0);

@@ -15,6 +15,7 @@ fn settled(cell: vec2i) -> u32 {
     return min(there, step.snow.w);
 }
 
+// Returns the snow on a cell after the step, units of water.
 @fragment
 fn settle(in: FullscreenVarying) -> @location(0) u32 {
     return settled(vec2i(in.position.xy));

@@ -10,6 +10,7 @@ override FACTOR: i32 = 8;
 // Whether the texels of the picture are sRGB-encoded.
 override ENCODED: bool = false;
 
+// Returns a texel of the smaller picture: the mean of FACTOR x FACTOR texels.
 @fragment
 fn shrink(in: FullscreenVarying) -> @location(0) vec4f {
     let corner = vec2i(in.position.xy) * FACTOR;

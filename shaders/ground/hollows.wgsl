@@ -26,19 +26,21 @@ fn sines(turns: vec4f) -> vec4f {
     return quarter * (1.5706268 + square * (0.0727102 * square - 0.6432292));
 }
 
-// Wave vectors of the hollows in turns per metre, and amplitudes.
+// East parts of the wave vectors of the hollows, turns per metre.
 const WAVES_EAST: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.0513, -0.0684, 0.0569, -0.0043),
     vec4f(-0.0706, 0.1295, -0.1672, 0.0531),
     vec4f(0.1352, -0.2875, 0.3489, -0.1736),
     vec4f(-0.2345, 0.6797, -0.9348, 0.6685),
 );
+// North parts of the wave vectors, turns per metre.
 const WAVES_NORTH: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.0432, 0.0028, -0.0567, 0.0940),
     vec4f(-0.0846, 0.0174, 0.1164, -0.2365),
     vec4f(0.2357, -0.0916, -0.1613, 0.4151),
     vec4f(-0.6515, 0.3570, 0.2467, -1.0404),
 );
+// Amplitudes of the waves.
 const WAVES_AMPLITUDE: array<vec4f, 4> = array<vec4f, 4>(
     vec4f(0.3872983, 0.3872983, 0.3872983, 0.3872983),
     vec4f(0.3872983, 0.3872983, 0.3415650, 0.3415650),

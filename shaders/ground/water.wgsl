@@ -50,9 +50,11 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
-// Root mean square slopes, along one axis, of a film that covers none (thin) and all (closed) of the ground. Their
-// twins are in src/ground/uniform.rs.
+// Root mean square slope, along one axis, of a film so thin that it covers none of the ground. Twin in
+// src/ground/uniform.rs.
 const THIN_FILM_SLOPE: f32 = 0.3;
+// Root mean square slope, along one axis, of a closed film, which covers all of the ground. Twin in
+// src/ground/uniform.rs.
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
 // Root mean square slope of the clear ice that freezing rain leaves.

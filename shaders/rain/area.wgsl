@@ -1,8 +1,9 @@
 // Columns of rain under rain areas: the share of each column in the rain at a place. src/rain/shaft.rs has the f64 twin
 // and the derivation.
 
-// Largest number of rain areas, and of corners of a polygon.
+// Largest number of rain areas.
 const MAX_AREAS: u32 = 16u;
+// Largest number of corners of a polygon.
 const MAX_CORNERS: u32 = 8u;
 
 // Whether columns may overlap.

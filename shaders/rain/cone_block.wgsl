@@ -1,7 +1,8 @@
 // Uniform block of rain on cones; src/rain/cones.rs explains the model.
 
-// Number of cones, and of stretches of a ray that are tested for shelter.
+// Number of cones.
 const CONES: u32 = 3u;
+// Number of stretches of a ray that are tested for shelter.
 const STRETCHES: u32 = 4u;
 
 // Block of the cones.

@@ -4,8 +4,10 @@
 
 @group(0) @binding(1) var host_depth: HostDepth;
 
+// Whether the host gives the depth of its picture.
 override HAS_DEPTH: bool = true;
 
+// Returns the premultiplied light of the rain on the cones in a pixel.
 @fragment
 fn cones_fragment(in: FullscreenVarying) -> @location(0) vec4f {
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * rain.y_sign);

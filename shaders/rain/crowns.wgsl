@@ -26,6 +26,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     blocks[id.x / WORDS].seen[id.x % WORDS] = seen;
 }
 
+// Gives each block the index of its first crown in the list, and writes the arguments of the draw.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
     order_blocks(thread, blocks_of(all_slots()), arrayLength(&crowns));

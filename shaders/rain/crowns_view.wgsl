@@ -4,6 +4,7 @@
 
 @group(1) @binding(1) var<storage, read_write> crowns: array<Crown>;
 
+// Writes crown `id.x` of the list.
 @compute @workgroup_size(64)
 fn make_crowns(@builtin(global_invocation_id) id: vec3u) {
     let all = blocks_of(splash.slots * splash.cells * splash.cells);

@@ -25,6 +25,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     blocks[s * shell_blocks() + id.x / WORDS].seen[id.x % WORDS] = seen;
 }
 
+// Gives each block the index of its first streak in the list, and writes the arguments of the draw.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
     order_blocks(thread, rain.shells * shell_blocks(), arrayLength(&streaks));

@@ -2,6 +2,7 @@
 // once a drop here.
 //!include "rain/cull_list.wgsl"
 
+// Writes streak `id.x` of the list.
 @compute @workgroup_size(64)
 fn make_streaks(@builtin(global_invocation_id) id: vec3u) {
     let all = rain.shells * shell_blocks();

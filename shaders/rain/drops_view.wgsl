@@ -4,6 +4,7 @@
 
 @group(0) @binding(1) var host_depth: HostDepth;
 
+// Whether the host gives the depth of its picture.
 override HAS_DEPTH: bool = true;
 
 // Returns the host's depth in the texel at `uv`.
@@ -53,11 +54,13 @@ fn shown_at(position: vec4f) -> f32 {
     return RANGE_SKY;
 }
 
+// Returns the premultiplied light of a pixel of a streak.
 @fragment
 fn rain_fragment(in: RainVarying) -> @location(0) vec4f {
     return streak(in, shown_at(in.position));
 }
 
+// Returns the premultiplied light of a pixel of a crown.
 @fragment
 fn crown_fragment(in: CrownVarying) -> @location(0) vec4f {
     return crown_color(in, shown_at(in.position), fwidth(in.at.y));

@@ -32,6 +32,7 @@ fn open_quarters(j: u32, d: vec3f, between: f32) -> vec4f {
     return open;
 }
 
+// Returns the open shares of all stretches along a ray of the grid.
 @fragment
 fn open_fragment(in: FullscreenVarying) -> OpenParts {
     let ndc = vec2f(in.uv.x * 2.0 - 1.0, (1.0 - in.uv.y * 2.0) * rain.y_sign);

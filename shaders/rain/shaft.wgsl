@@ -8,10 +8,11 @@
 
 // Number of waves of the pattern of curtains.
 const SHAFT_WAVES: u32 = 12u;
-// Amplitude of each wave of the pattern, and distances, m, over which the pattern fades in. Twins of AMOUNT and
-// PATTERN_M in src/falling/curtain.rs.
+// Amplitude of each wave of the pattern. Twin of AMOUNT in src/falling/curtain.rs.
 const PATTERN_AMOUNT: f32 = 0.2;
+// Distance at which the pattern begins to fade in, m. Twin of PATTERN_M in src/falling/curtain.rs, as PATTERN_FULL is.
 const PATTERN_FIRST: f32 = 30.0;
+// Distance from which the pattern shows in full, m.
 const PATTERN_FULL: f32 = 300.0;
 // Depth of the columns below the level of their plan, m. Twin of BELOW_M in src/rain/shaft.rs.
 const BELOW: f32 = 1000.0;
@@ -64,6 +65,7 @@ struct Met {
     front: f32,
 }
 
+// Returns a corner of the rectangle that contains a column in the picture.
 @vertex
 fn shaft_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> ShaftVarying {
     let r = shaft.rects[instance];

@@ -4,8 +4,10 @@
 
 @group(0) @binding(1) var host_depth: HostDepth;
 
+// Whether the host gives the depth of its picture.
 override HAS_DEPTH: bool = true;
 
+// Returns the premultiplied light of a column in a pixel.
 @fragment
 fn shaft_fragment(in: ShaftVarying) -> @location(0) vec4f {
     var range = RANGE_SKY;

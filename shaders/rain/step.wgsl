@@ -2,6 +2,7 @@
 //!include "rain/drops.wgsl"
 //!include "falling/step.wgsl"
 
+// Steps drop `id.x` of shell `id.y`.
 @compute @workgroup_size(64)
 fn step_drops(@builtin(global_invocation_id) id: vec3u) {
     let index = id.x;

@@ -232,6 +232,7 @@ fn stone_corner(stone: Stone, corner: u32) -> StoneVarying {
     return out;
 }
 
+// Returns a corner of a falling stone's quad.
 @vertex
 fn falling_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> StoneVarying {
     let stone = falling_stone(instance);

@@ -5,6 +5,7 @@
 
 @group(1) @binding(1) var<storage, read_write> spots: array<Spot>;
 
+// Writes spot `id.x` of the list.
 @compute @workgroup_size(64)
 fn make_spots(@builtin(global_invocation_id) id: vec3u) {
     let all = blocks_of(flakes.count);

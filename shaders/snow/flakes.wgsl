@@ -65,9 +65,10 @@ struct FlakesUniform {
     weight: array<vec4f, CLASSES>,
 }
 
-// Units of fall speeds, m/s, and of turns, 1/s. Both are integer multiples, so phases are products of integers and
-// exact at any time.
+// Unit of fall speeds, m/s. Speeds and turns are integer multiples of their units, so phases are products of integers
+// and exact at any time.
 const SPEED_UNIT: f32 = 0.0009765625;
+// Unit of turns, 1/s.
 const TURN_UNIT: f32 = 0.00390625;
 // Flakes nearer than this, m, fade out: they would be blobs on which no eye could focus.
 const NEAREST: f32 = 0.3;
@@ -75,6 +76,7 @@ const NEAREST: f32 = 0.3;
 const SALT: u32 = 0x5e00000u;
 // Share of a flake's disc that is covered by ice.
 const AREA_RATIO: f32 = 0.6;
+// Full turn, rad.
 const TAU: f32 = 6.2831853;
 
 @group(0) @binding(0) var<uniform> flakes: FlakesUniform;

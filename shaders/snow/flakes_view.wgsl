@@ -4,6 +4,7 @@
 
 @group(0) @binding(1) var host_depth: HostDepth;
 
+// Whether the host gives the depth of its picture.
 override HAS_DEPTH: bool = true;
 
 // Returns the depth of the host's picture at a pixel, in the measure of view_depth.
@@ -16,6 +17,7 @@ fn shown_at(position: vec4f) -> f32 {
     return RANGE_SKY;
 }
 
+// Returns the premultiplied light of a pixel of a flake.
 @fragment
 fn flake_fragment(in: FlakeVarying) -> @location(0) vec4f {
     return flake_color(in, shown_at(in.position));

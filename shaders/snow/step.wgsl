@@ -2,6 +2,7 @@
 //!include "snow/flakes.wgsl"
 //!include "falling/step.wgsl"
 
+// Steps flake `id.x` of shell `id.y`.
 @compute @workgroup_size(128)
 fn step_flakes(@builtin(global_invocation_id) id: vec3u) {
     let index = id.x;

@@ -5,6 +5,7 @@
 // Ranges of the texels or of the finer cells: the bits of two floats each.
 @group(0) @binding(0) var finer: texture_2d<u32>;
 
+// Returns the range of 8 x 8 texels or finer cells.
 @fragment
 fn occluder_cells(in: FullscreenVarying) -> @location(0) vec2u {
     let first = vec2i(in.position.xy) * 8;

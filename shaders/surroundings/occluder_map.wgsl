@@ -38,6 +38,7 @@ fn texel_side(distance: f32) -> f32 {
     return max(sides.x, sides.y);
 }
 
+// Returns the range of distances, m, that the surface of a texel spans, as the bits of two floats.
 @fragment
 fn occluder_map(in: FullscreenVarying) -> @location(0) vec2u {
     let texel = floor(in.position.xy - map.origin);

@@ -5,8 +5,9 @@
 // Whether there is any shelter. Shaders that run in every pixel read it to leave the tests out.
 override SHELTER: bool = false;
 
-// Largest number of boxes, and of planes that cut them.
+// Largest number of boxes.
 const MAX_SHELTERS: u32 = 32u;
+// Largest number of planes that cut boxes, all boxes together.
 const MAX_CUTS: u32 = 512u;
 
 // One box.
