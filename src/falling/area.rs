@@ -172,8 +172,8 @@ fn validate_corners(corners: &[[f64; 2]; MAX_CORNERS], count: usize) -> Result<(
     if area > 1.0 && convex && turns_once(corners) { Ok(()) } else { Err(flat()) }
 }
 
-/// Whether the sides turn by one full turn in total, in either sense. Corners that go around twice would pass the test
-/// for convexity.
+/// Returns whether the sides turn by one full turn in total, in either sense. Corners that go around twice would pass
+/// the test for convexity.
 fn turns_once(corners: &[[f64; 2]]) -> bool {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next).map(|(a, b)| DVec2::from(*b) - DVec2::from(*a));
@@ -220,6 +220,7 @@ pub(crate) struct Edge {
 }
 
 impl Edge {
+    /// Returns how deep the point `p` of the plan, (right, ahead), lies inside the side, m; negative outside.
     pub(crate) fn depth(&self, p: DVec2) -> f64 {
         self.normal.dot(p) + self.offset
     }

@@ -209,7 +209,7 @@ impl FlakeSizes {
         }
     }
 
-    /// Whether there are any flakes.
+    /// Returns whether there are any flakes.
     pub fn is_any(&self) -> bool {
         self.parts.iter().any(|p| p.extinction_per_m > 0.0)
     }

@@ -67,7 +67,7 @@ impl Stone {
 
 /// Returns the speed of a sphere of ice, m/s, in air of a density, kg/m^3. It follows from the Reynolds number Re as a
 /// function of the Best number X (drag coefficient times Re^2): Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) -
-/// 1)^2 with d = 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
+/// 1)^2 with d = 8.0 (`DELTA`) and C = 0.35 (Heymsfield and Westbrook 2010).
 fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     const DELTA: f64 = 8.0;
     const C: f64 = 0.35;
@@ -160,6 +160,7 @@ impl StoneSizes {
         Self { parts, factor: speed_factor }
     }
 
+    /// Returns the sum of `f` over the parts.
     fn sum(&self, f: impl Fn(&StoneMode) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }

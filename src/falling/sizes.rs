@@ -156,6 +156,7 @@ impl DropSizes {
         self
     }
 
+    /// Returns the sum of `f` over the parts.
     fn sum(&self, f: impl Fn(&SizeMode) -> f64) -> f64 {
         self.parts.iter().map(f).sum()
     }
@@ -174,6 +175,7 @@ impl DropSizes {
         if a < b { self.sum(|p| p.moment(0, a, b)) } else { 0.0 }
     }
 
+    /// Returns the integral of D^power N(D) dD over all sizes, mm^power/m^3.
     fn moment(&self, power: u32) -> f64 {
         self.sum(|p| p.moment(power, SMALLEST_MM, LARGEST_MM))
     }

@@ -13,6 +13,7 @@ pub(super) const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Format of the shares of the rain that occluder maps let through, and of snow.
 pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
+/// Creates a texture to which passes draw.
 pub(super) fn texture(
     device: &Device,
     label: &str,
@@ -28,10 +29,12 @@ pub(super) fn texture(
     )
 }
 
+/// Creates a uniform buffer of `size` bytes.
 pub(super) fn buffer(device: &Device, label: &str, size: u64) -> wgpu::Buffer {
     crate::gpu::bind::block(&device.device, label, size as usize)
 }
 
+/// Creates the view of a whole texture.
 pub(super) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
@@ -48,6 +51,7 @@ pub(super) fn bind(
     device.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("glass"), layout, entries: &entries })
 }
 
+/// Returns a view as a resource of a bind group.
 pub(super) fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }

@@ -79,7 +79,9 @@ pub fn speed_m_s(volume_m3: f64, drive_n: f64) -> f64 {
 /// the diffusivity of vapour in air, m^2/s; c the density of saturated vapour and rho that of water, kg/m^3; H the
 /// relative humidity; theta the contact angle, rad.
 pub fn evaporation_m3_s(radius_m: f64, relative_humidity: f64, temperature_c: f64, airflow_m_s: f64) -> f64 {
+    // Diffusivity of vapour in air, m^2/s.
     const DIFFUSIVITY: f64 = 2.5e-5;
+    // Kinematic viscosity of air, m^2/s.
     const AIR_VISCOSITY: f64 = 1.5e-5;
     // Saturation vapour density, Magnus formula (WMO 2008) over R_v T.
     let kelvin = temperature_c + 273.15;

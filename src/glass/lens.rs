@@ -73,6 +73,7 @@ pub(super) struct LensLattice {
 }
 
 impl LensUniform {
+    /// Creates the block of a pane as a picture's camera sees it.
     pub fn of(screen: &Windscreen, plane: &Plane, frame: &LensFrame<'_>, shown: &LensLattice) -> Result<Self> {
         let rays = PictureRays::of(&frame.camera.projection)?;
         let to_glass = DMat3::from_cols(plane.u, plane.v, plane.out).transpose();

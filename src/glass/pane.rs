@@ -49,8 +49,8 @@ impl PaneAt {
         }
     }
 
-    /// Whether a box is the vehicle's own: it contains the eye and ends within [`VEHICLE_M`] in front of the glass. The
-    /// box of a tunnel extends farther.
+    /// Returns whether a box is the vehicle's own: it contains the eye and ends within [`VEHICLE_M`] in front of the
+    /// glass. The box of a tunnel extends farther.
     fn sits_in(&self, shelter: &Shelter) -> bool {
         let met = |p: DVec3, way: DVec3| sheltered(shelter, p, shelter.velocity_m_s - way);
         // The box is convex: a point is inside if both directions of a line through it meet the box.

@@ -392,13 +392,14 @@ impl LensPass {
         }
     }
 
-    /// Whether it was created for these textures.
+    /// Returns whether it was created for these textures.
     pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> bool {
         self.picture == *frame.picture
             && is_kept(frame.mask, self.mask.as_ref())
             && self.lattice == lattice.map(|l| l.size)
     }
 
+    /// Returns the GPU memory in use, bytes.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }

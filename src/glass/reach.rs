@@ -52,7 +52,7 @@ impl Reach {
         self.0.iter().flatten().flat_map(|w| w.to_le_bytes()).map(|b| f64::from(b) / f64::from(ALL))
     }
 
-    /// Whether any rain reaches the pane.
+    /// Returns whether any rain reaches the pane.
     pub fn any(&self) -> bool {
         self.0.iter().flatten().any(|w| *w != 0)
     }

@@ -37,19 +37,23 @@ pub struct Cells {
     pub cells: Vec<Cell>,
 }
 
+/// Returns a random word for a cell and a key.
 fn cell_hash(cell: [i32; 2], key: u32) -> u32 {
     pcg((cell[0] as u32).wrapping_add(pcg((cell[1] as u32).wrapping_add(key))))
 }
 
+/// Returns the position of the highest set bit; 0 for 0 and 1.
 fn octave(v: u32) -> u32 {
     31 - (v | 1).leading_zeros()
 }
 
+/// Returns the row of `beads` for a volume.
 fn bead(step: &StepUniform, volume: u32) -> [i32; 4] {
     let k = octave(volume);
     step.beads[(4 * k + (((volume << 2) >> k) & 3)).min(95) as usize]
 }
 
+/// Returns the volume of a random drop, units.
 fn drop_volume(step: &StepUniform, random: u32) -> u32 {
     let k = 31 - octave(random | 1);
     let part = 15 - ((random >> (27 - k.min(27))) & 15);
@@ -57,14 +61,17 @@ fn drop_volume(step: &StepUniform, random: u32) -> u32 {
     step.drops[i / 4][i % 4]
 }
 
+/// Unpacks x + 65536 y.
 fn place(packed: u32) -> [i32; 2] {
     [(packed & 0xffff) as i32, (packed >> 16) as i32]
 }
 
+/// Returns the cross product a.x b.y - a.y b.x.
 fn perp_dot(a: [i32; 2], b: [i32; 2]) -> i32 {
     a[0] * b[1] - a[1] * b[0]
 }
 
+/// Returns whether a blade has passed over a point, given in 1/16 cell, during the step, or lies on it.
 fn swept(step: &StepUniform, point: [i32; 2]) -> bool {
     step.arms.chunks(3).any(|arm| {
         let [reach, before, now] = [arm[0], arm[1], arm[2]];
@@ -84,11 +91,13 @@ fn swept(step: &StepUniform, point: [i32; 2]) -> bool {
     })
 }
 
+/// Returns the share of the rain that reaches a node, in 1/128.
 fn node(step: &StepUniform, index: [u32; 2]) -> u32 {
     let i = index[1] * NODES[0] as u32 + index[0];
     (step.reach[i as usize / 16][(i as usize / 4) % 4] >> (8 * (i % 4))) & 255
 }
 
+/// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between its nodes.
 fn reached(step: &StepUniform, cell: [i32; 2]) -> u32 {
     let at: [u32; 2] =
         std::array::from_fn(|k| (cell[k] as u32 * 2 + 1) * (NODES[k] as u32 - 1) * 128 / step.key[2 + k]);
@@ -98,6 +107,7 @@ fn reached(step: &StepUniform, cell: [i32; 2]) -> u32 {
     (below * (256 - part[1]) + above * part[1]) >> 7
 }
 
+/// Returns number x share / 65536.
 fn part_of(number: u32, share: u32) -> u32 {
     if share > 65_535 { number } else { (number >> 16) * share + (((number & 0xffff) * share) >> 16) }
 }
@@ -141,12 +151,14 @@ impl Cells {
         (1.0 - libm::exp(-area / plane.area_m2()), water)
     }
 
+    /// Returns the state of a cell; `None` outside the lattice.
     fn at(&self, cell: [i32; 2]) -> Option<Cell> {
         let [w, h] = self.size.map(|v| v as i32);
         let inside = (0..w).contains(&cell[0]) && (0..h).contains(&cell[1]);
         inside.then(|| self.cells[(cell[1] * w + cell[0]) as usize])
     }
 
+    /// Returns cells computed by `f` for each cell, (column, row).
     fn each(&self, f: impl Fn([i32; 2]) -> Cell) -> Self {
         let columns = self.size[0] as usize;
         let cells = (0..self.cells.len()).map(|i| f([(i % columns) as i32, (i / columns) as i32]));
@@ -166,6 +178,7 @@ impl Cells {
         self.each(|cell| self.gather(step, (&moves, snow), cell))
     }
 
+    /// Returns the move of a cell's bead.
     fn decide(&self, step: &StepUniform, cell: [i32; 2]) -> Cell {
         let here = self.at(cell).unwrap_or_default();
         let sixteenths = cell.map(|v| v * 16);
@@ -195,6 +208,7 @@ impl Cells {
         self.run(step, cell, here, law, flags)
     }
 
+    /// Returns the film of a cell; 0 outside the lattice.
     fn film_at(&self, cell: [i32; 2]) -> i32 {
         self.at(cell).map_or(0, |c| (c[3] >> 16) as i32)
     }
@@ -209,6 +223,7 @@ impl Cells {
         (uneven >> 1) + ((side(1) - side(-1)) >> 9).clamp(-64, 64)
     }
 
+    /// Returns the move of a bead that no other takes in.
     fn run(&self, step: &StepUniform, cell: [i32; 2], here: Cell, law: [i32; 4], flags: u32) -> Cell {
         let pinned = 180 + ((cell_hash(cell, step.key[1]) >> 8) % 154) as i32;
         let glides = here[2] & 0xffff != 0 || here[3] >> 16 > WET_FILM || law[3] > pinned;
@@ -231,6 +246,7 @@ impl Cells {
         [here[0] - left, there, (here[2] & 0xffff_0000) | speed, flags | RAN | where_to | (left << 8)]
     }
 
+    /// Returns the state of a cell after the step, from the moves of all beads.
     fn gather(&self, step: &StepUniform, (moves, snow): (&Self, Option<&Snow>), cell: [i32; 2]) -> Cell {
         let before = self.at(cell).unwrap_or_default();
         let own = moves.at(cell).unwrap_or_default();
@@ -281,12 +297,14 @@ pub struct Snow {
 }
 
 impl Snow {
+    /// Creates the snow of all cells from that of each, units of water.
     fn of(step: &StepUniform, one: impl Fn([i32; 2]) -> u32) -> Self {
         let size = [step.key[2], step.key[3]];
         let cells = (0..size[0] * size[1]).map(|i| one([(i % size[0]) as i32, (i / size[0]) as i32]));
         Self { size, cells: cells.collect() }
     }
 
+    /// Returns the snow on a cell, units of water.
     fn at(&self, cell: [i32; 2]) -> u32 {
         self.cells[(cell[1] * self.size[0] as i32 + cell[0]) as usize]
     }
@@ -324,6 +342,7 @@ impl Snow {
     }
 }
 
+/// Returns the amount of a cell's snow `there` that melts in a step, units.
 fn melted(step: &StepUniform, cell: [i32; 2], there: u32) -> u32 {
     let random = cell_hash(cell, step.key[0].wrapping_add(4)) & 4095;
     there.min((step.snow[2] >> 12) + u32::from(random < step.snow[2] & 4095))
@@ -339,6 +358,7 @@ struct Joined {
 }
 
 impl Joined {
+    /// Adds water. The largest part keeps its place, speed and shape.
     fn join(&mut self, volume: u32, place: u32, motion: u32) {
         self.volume += volume;
         if volume > self.largest {
@@ -346,6 +366,7 @@ impl Joined {
         }
     }
 
+    /// Takes away the water that evaporates in a step.
     fn dry(&mut self, step: &StepUniform, cell: [i32; 2]) {
         if self.volume > 0 {
             let loss = bead(step, self.volume)[0] as u32 >> 10;
@@ -357,6 +378,8 @@ impl Joined {
     }
 }
 
+/// Returns whether the bead `larger`, `offset` away, takes in the bead of `radius` (both in 1/256 cell): the two touch,
+/// and `larger` does not run away.
 fn takes(step: &StepUniform, larger: Cell, offset: [i32; 2], radius: i32) -> bool {
     let other = bead(step, larger[0]);
     let reach = ((radius + (other[0] & 1023)) * 3) >> 2;
@@ -366,6 +389,7 @@ fn takes(step: &StepUniform, larger: Cell, offset: [i32; 2], radius: i32) -> boo
     larger[2] & 0xffff == 0 || offset[0] * (other[1] >> 4) + offset[1] * (other[2] >> 4) <= 0
 }
 
+/// Returns hits, clearings and film, packed, after running and wiping, and after evaporation.
 fn cleared(step: &StepUniform, cell: [i32; 2], state: u32, ran: bool, wiped: bool) -> u32 {
     let (mut hits, mut clearings, mut film) = (state & MOST_HITS, (state >> 12) & 15, state >> 16);
     film -= film.min((film >> 4) + 64);
@@ -379,6 +403,7 @@ fn cleared(step: &StepUniform, cell: [i32; 2], state: u32, ran: bool, wiped: boo
     hits | (clearings << 12) | (film << 16)
 }
 
+/// Returns the declared state of a cell.
 fn declare(step: &StepUniform, cell: [i32; 2]) -> Cell {
     let random = cell_hash(cell, step.key[1].wrapping_add(7));
     let now = step.declared[2].wrapping_add(random & (LIFE_STEPS - 1));

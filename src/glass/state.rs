@@ -138,7 +138,7 @@ impl Glass {
         self.screen = screen;
     }
 
-    /// Whether the lens has anything to draw.
+    /// Returns whether the lens has anything to draw.
     pub fn shows(&self) -> bool {
         self.moisture > 0.0 || self.frost > 0.0 || self.screen.fogging * (1.0 - self.screen.demist) > 0.0
     }

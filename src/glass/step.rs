@@ -137,6 +137,7 @@ pub fn seed_key(seed: u64) -> u32 {
 }
 
 impl Tables {
+    /// Computes the numbers again if the conditions have changed.
     fn update(&mut self, acting: &StepConditions) {
         if self.of != Some(*acting) {
             self.numbers = numbers(acting);
@@ -317,6 +318,7 @@ mod tests {
     use super::*;
     use crate::gpu::shader;
 
+    /// Returns the conditions of a car in rain of this rate.
     pub fn driving(rain_mm_h: f64) -> StepConditions {
         StepConditions {
             cell_m: 0.004,

@@ -83,6 +83,7 @@ impl Default for Windscreen {
 }
 
 impl WiperArm {
+    /// Checks the ranges of all values.
     fn validate(&self) -> Result<()> {
         check_range("pivot_m[0]", self.pivot_m[0], -4.0, 12.0, "m")?;
         check_range("pivot_m[1]", self.pivot_m[1], -4.0, 12.0, "m")?;

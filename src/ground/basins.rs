@@ -53,6 +53,7 @@ pub(super) struct Basins {
 
 /// Returns the up to eight neighbours of a cell, and whether each lies diagonally.
 fn neighbours(cell: usize, columns: usize, rows: usize) -> impl Iterator<Item = (usize, bool)> {
+    // Offsets to the eight neighbours, (east, north).
     const AROUND: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
     let (x, y) = ((cell % columns) as isize, (cell / columns) as isize);
     AROUND.into_iter().filter_map(move |(dx, dy)| {
@@ -88,7 +89,7 @@ struct Rising<'a> {
 }
 
 impl Rising<'_> {
-    /// Whether cell `a` lies lower than `b`; of equal heights, the cell with the lower index.
+    /// Returns whether cell `a` lies lower than `b`; of equal heights, the cell with the lower index.
     fn lower(&self, a: usize, b: usize) -> bool {
         (self.heights_mm[a], a) < (self.heights_mm[b], b)
     }

@@ -17,7 +17,8 @@ pub(crate) use crate::terrain::CLASSES;
 pub use crate::terrain::SurfaceClass;
 
 impl SurfaceClass {
-    /// Whether the class has puddles in the pattern of hollows that is used where the ground's heights are unknown.
+    /// Returns whether the class has puddles in the pattern of hollows that is used where the ground's heights are
+    /// unknown.
     pub fn has_hollows(self) -> bool {
         self.surface_look().hollows > 0.0
     }

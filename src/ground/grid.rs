@@ -85,7 +85,7 @@ impl GroundGrid {
         self.cells().node(index, to_enu)
     }
 
-    /// Whether `other` has the same heights at the same places; classes are ignored.
+    /// Returns whether `other` has the same heights at the same places; classes are ignored.
     pub(crate) fn has_heights_of(&self, other: &Self) -> bool {
         let place = |g: &Self| (g.origin, g.cell_m, g.nodes);
         place(self) == place(other) && self.heights_m == other.heights_m
@@ -146,6 +146,7 @@ pub(super) struct CellGrid<'a> {
 }
 
 impl CellGrid<'_> {
+    /// Returns the number of nodes.
     pub fn len(&self) -> usize {
         self.heights_m.len()
     }

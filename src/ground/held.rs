@@ -194,7 +194,7 @@ impl HeldGround {
         self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
     }
 
-    /// Whether a step of the water ends at or before the present time.
+    /// Returns whether a step of the water ends at or before the present time.
     fn is_behind(&self, world: &World) -> bool {
         self.state.is_some_and(|state| state.next_s() <= world.time_s)
     }

@@ -21,6 +21,7 @@ use crate::{
     world::{UpdateBudget, World},
 };
 
+/// Returns the error for tiles before a terrain.
 fn without_terrain() -> Error {
     Error::new(Status::WrongOrder, "tiles come after wk_context_set_terrain: there is no terrain")
 }

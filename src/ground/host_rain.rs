@@ -33,6 +33,7 @@ pub(super) struct AreasOverGrid {
 }
 
 impl AreasOverGrid {
+    /// Returns all areas over the grid.
     pub fn all(&self) -> impl Iterator<Item = &AreaOverGrid> {
         self.list.iter().flatten()
     }
@@ -41,12 +42,12 @@ impl AreasOverGrid {
         self.list.iter().zip(evens).all(|(over, even)| over.is_none() || even.is_some())
     }
 
-    /// Whether any liquid falls on the grid.
+    /// Returns whether any liquid falls on the grid.
     pub fn rain(&self, forcing: &Forcing) -> bool {
         forcing.liquid_mm_h > 0.0 || self.all().any(|o| o.liquid_mm_h > 0.0)
     }
 
-    /// Whether every cell gets the same rain, apart from shelter.
+    /// Returns whether every cell gets the same rain, apart from shelter.
     pub fn even(&self) -> bool {
         self.are_even(&self.evens)
     }

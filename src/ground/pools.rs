@@ -36,15 +36,17 @@ impl Pools {
         sound.then_some(Self { held, passed })
     }
 
+    /// Returns whether no hollow has water.
     pub fn are_dry(&self) -> bool {
         self.held.iter().all(|h| *h <= 0.0)
     }
 
+    /// Returns whether a hollow is full up to its rim.
     fn is_full(&self, basins: &Basins, basin: usize) -> bool {
         self.held[basin] >= basins.list[basin].capacity
     }
 
-    /// Whether a hollow's water is part of a larger one.
+    /// Returns whether a hollow's water is part of a larger one.
     fn is_part(&self, basins: &Basins, basin: usize) -> bool {
         let parent = basins.list[basin].parent;
         parent != OUT && self.held[parent as usize] >= 0.0

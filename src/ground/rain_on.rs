@@ -231,7 +231,7 @@ impl GridRain {
         DropSizes::new(&heaviest, factor_in(&c.air, self.altitude_m)).thirds_m_s()
     }
 
-    /// Whether any cell is under ice.
+    /// Returns whether any cell is under ice.
     pub fn is_iced(&self) -> bool {
         self.glaze.ice > 0.0
     }
@@ -256,7 +256,7 @@ impl GridRain {
         }
     }
 
-    /// Whether anything falls on a run of cells in the step of [`Self::fall`].
+    /// Returns whether anything falls on a run of cells in the step of [`Self::fall`].
     pub fn rains_on(&self, run: usize) -> bool {
         match self.even_mm {
             Some(mm) => mm != 0.0,

@@ -32,10 +32,12 @@ pub(crate) struct GroundState {
 }
 
 impl GroundState {
+    /// Returns the water of the level ground.
     pub fn water(&self) -> GroundWater {
         GroundWater { film_mm: self.film_mm, soaked_mm: self.soaked_mm, hollows_mm: self.hollows_mm }
     }
 
+    /// Replaces the water of the level ground.
     pub fn set(&mut self, water: GroundWater) {
         (self.film_mm, self.soaked_mm, self.hollows_mm) = (water.film_mm, water.soaked_mm, water.hollows_mm);
     }
@@ -53,7 +55,7 @@ impl GroundState {
         ((self.time_s / STEP_S).floor() + 1.0) * STEP_S
     }
 
-    /// Whether the values of a saved state are in range.
+    /// Returns whether the values of a saved state are in range.
     pub fn is_valid(&self) -> bool {
         let amounts = [self.film_mm, self.soaked_mm, self.hollows_mm, self.sunlight_w_m2];
         self.time_s.is_finite() && amounts.iter().all(|v| (0.0..1e4).contains(v))

@@ -147,7 +147,7 @@ impl TerrainWater {
         &self.pools.held
     }
 
-    /// Whether there is no water at all.
+    /// Returns whether there is no water at all.
     pub fn is_dry(&self) -> bool {
         self.dry
     }

@@ -89,7 +89,7 @@ pub(crate) struct GroundUniform {
 }
 
 impl GroundUniform {
-    /// Whether drops make rings in standing water.
+    /// Returns whether drops make rings in standing water.
     pub fn has_rings(&self) -> bool {
         self.ring_chance > 0.0 || self.ring_slope2 > 0.0
     }

@@ -40,12 +40,14 @@ pub(crate) struct DrawnTerrain {
     pub origin: DVec3,
     /// Rotation from the host's axes to east, north, up at the origin of the terrain.
     pub to_enu: DMat3,
+    /// Side of a cell, m.
     pub cell_m: f64,
     /// Numbers of nodes east and north.
     pub nodes: [u32; 2],
 }
 
 impl DrawnTerrain {
+    /// Creates the window that covers a whole grid.
     pub fn of_grid(grid: &GroundGrid, to_enu: DMat3) -> Self {
         Self { origin: grid.origin, to_enu, cell_m: grid.cell_m, nodes: grid.nodes }
     }
@@ -75,6 +77,7 @@ fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
 pub(super) struct RecentChanges(VecDeque<Changed>);
 
 impl RecentChanges {
+    /// Adds a change, and drops the oldest if there are more than [`REMEMBERED`].
     pub fn add(&mut self, change: Changed) {
         if self.0.len() == REMEMBERED {
             self.0.pop_front();

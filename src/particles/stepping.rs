@@ -88,9 +88,9 @@ pub(crate) struct Stepped<'a> {
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Whether the particles within `reach_m` of the camera are stepped: if the wind varies in space there. Particles that
-/// were stepped in the last frame (`was`) stay so, unless the picture must not depend on earlier frames (`is_pure`):
-/// otherwise they would jump.
+/// Returns whether the particles within `reach_m` of the camera are stepped: if the wind varies in space there.
+/// Particles that were stepped in the last frame (`was`) stay so, unless the picture must not depend on earlier frames
+/// (`is_pure`): otherwise they would jump.
 pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())

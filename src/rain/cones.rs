@@ -90,6 +90,7 @@ struct Mean {
 }
 
 impl Mean {
+    /// Computes the means over all classes, weighted by the area of the drops' discs.
     fn of(classes: &Classes) -> Self {
         let mut m = Self { diameter_m: 0.0, fall_m_s: 0.0, fall_s_per_m: 0.0 };
         let mut discs = 0.0;
@@ -206,6 +207,7 @@ impl ConeUniform {
         self
     }
 
+    /// Creates a block of zeros, with which nothing is drawn.
     fn zero() -> Self {
         bytemuck::Zeroable::zeroed()
     }

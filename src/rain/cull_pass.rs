@@ -61,7 +61,7 @@ pub(super) struct DropLattice<'a> {
 }
 
 impl CullPass {
-    /// Whether `device` can draw drops by lists.
+    /// Returns whether `device` can draw drops by lists.
     pub fn serves(device: &Device) -> bool {
         device.caps().tier > 0
     }

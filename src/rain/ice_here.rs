@@ -27,7 +27,7 @@ impl Ice {
         self.here = (falling.ice_pellets_mm_h + falling.hail_mm_h > 0.0).then_some(falling);
     }
 
-    /// Whether a view with these settings draws any stones.
+    /// Returns whether a view with these settings draws any stones.
     pub fn is_drawn(&self, settings: &RainSettings) -> bool {
         self.here.is_some() && settings.model != RainModel::Veil
     }

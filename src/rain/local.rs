@@ -79,7 +79,7 @@ impl Local {
         local
     }
 
-    /// Whether the rain contains drops.
+    /// Returns whether the rain contains drops.
     pub fn has_drops(&self, field: &AreaField) -> bool {
         let wet = |f: &Falling| f.rain_mm_h + f.drizzle_mm_h > 0.0;
         match self {

@@ -123,7 +123,7 @@ impl RainLayer {
         }
     }
 
-    /// Whether the layer counts how often its pixels are drawn.
+    /// Returns whether the layer counts how often its pixels are drawn.
     pub fn counts(&self) -> bool {
         self.counts
     }

@@ -31,10 +31,12 @@ pub(super) struct RainPresence {
 }
 
 impl RainPresence {
+    /// Returns whether drops or stones are drawn near the camera.
     pub fn is_near(self) -> bool {
         self.drops || self.stones
     }
 
+    /// Returns whether anything is drawn.
     pub fn is_any(self) -> bool {
         self.is_near() || self.columns
     }

@@ -75,6 +75,7 @@ pub struct RainOn {
 }
 
 impl RainSurface {
+    /// Checks the ranges of normal and velocity.
     fn validate(&self) -> Result<()> {
         let length = self.normal.length();
         if !(length.is_finite() && length > 1e-9) {

@@ -136,6 +136,7 @@ fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
 }
 
 impl RainColumn {
+    /// Creates the column of a shaft as seen from an eye; `None` where it cannot be seen.
     fn new(shaft: Shaft, eye: EyeInWorld<'_>, own: &FallingLayer, time_s: f64) -> Option<Self> {
         let away = eye.to_enu * (shaft.center - eye.position);
         let distance = away.length() - shaft.radius_m;
@@ -168,7 +169,7 @@ impl RainColumn {
         &self.shaft
     }
 
-    /// Whether two columns may overlap.
+    /// Returns whether two columns may overlap.
     fn meets(&self, other: &Self) -> bool {
         // Adds the difference of the columns' sideways displacements by their slants, over the height from the cloud
         // down to the valleys.

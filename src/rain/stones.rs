@@ -75,6 +75,7 @@ struct StoneClass {
 }
 
 impl StoneClass {
+    /// Creates class `i`; the classes of the first kind come first.
     fn new(sizes: &StoneSizes, i: usize) -> Self {
         let stone = Stone::ALL[i / CLASSES];
         let (low, high) = stone.range_mm();

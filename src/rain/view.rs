@@ -122,8 +122,8 @@ impl RainView {
         self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
     }
 
-    /// Whether drops are stepped: always with [`RainModel::Integrated`], and with the automatic model near a wind that
-    /// varies in space.
+    /// Returns whether drops are stepped: always with [`RainModel::Integrated`], and with the automatic model near a
+    /// wind that varies in space.
     fn steps(&self, now: &SceneMoment<'_>, device: &Device, is_pure: bool) -> bool {
         match self.settings.model {
             RainModel::Integrated => true,
@@ -141,7 +141,7 @@ impl RainView {
         }
     }
 
-    /// Whether the plan decides how much of the rain is drawn: with the automatic model only.
+    /// Returns whether the plan decides how much of the rain is drawn: with the automatic model only.
     pub fn is_planned(&self) -> bool {
         self.settings.model == RainModel::Automatic && self.presence().drops
     }
@@ -168,8 +168,8 @@ impl RainView {
         ([hidden, reach].map(|v| v as f32), share as f32)
     }
 
-    /// Whether there are cones: with the models that always have them, and beyond single drops where there are lamps,
-    /// because the veil is not lit by lamps.
+    /// Returns whether there are cones: with the models that always have them, and beyond single drops where there are
+    /// lamps, because the veil is not lit by lamps.
     fn has_cones(&self, now: &SceneMoment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,

@@ -28,6 +28,7 @@ const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
 /// Work of each pixel whenever snow falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
+/// Returns the work of drawing snow with these settings.
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
         // Counts a little for the veil, which the fog draws anyway; there is no layer.

@@ -82,7 +82,7 @@ impl SnowPass {
         }
     }
 
-    /// Whether the pass counts how often pixels are drawn.
+    /// Returns whether the pass counts how often pixels are drawn.
     pub fn counts(&self) -> bool {
         self.counts
     }

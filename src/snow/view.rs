@@ -81,16 +81,17 @@ impl SnowView {
         }
     }
 
+    /// Returns the flakes of the last picture; `None` before the first.
     fn flakes(&self) -> Option<&Flakes> {
         self.counted.as_ref().map(|kept| &kept.1)
     }
 
-    /// Whether the plan decides about the flakes.
+    /// Returns whether the plan decides about the flakes.
     pub fn is_planned(&self) -> bool {
         self.settings.model == SnowModel::Automatic && self.is_there
     }
 
-    /// Whether the plan keeps any flakes in this frame.
+    /// Returns whether the plan keeps any flakes in this frame.
     fn is_kept(&self) -> bool {
         self.is_there && self.share > 0.0
     }

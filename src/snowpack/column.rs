@@ -78,6 +78,7 @@ pub(super) struct ColumnForcing {
 pub(super) struct Settling(Box<[[f64; 2]; DENSITIES]>);
 
 impl Settling {
+    /// Creates an empty table.
     pub fn new() -> Self {
         Self(Box::new([[0.0; 2]; DENSITIES]))
     }
@@ -127,7 +128,7 @@ impl ColumnForcing {
         }
     }
 
-    /// Whether any ice falls.
+    /// Returns whether any ice falls.
     pub fn snows(&self) -> bool {
         self.ice > 0
     }
@@ -151,6 +152,7 @@ impl Column {
         self.mass() as f64 / UNITS
     }
 
+    /// Returns the depth, m.
     pub fn depth_m(&self) -> f64 {
         self.depth as f64 / UNITS
     }
@@ -165,7 +167,7 @@ impl Column {
         if self.ice > 0 { (self.water as f64 / (laws::HELD_SHARE * self.ice as f64)).min(1.0) } else { 0.0 }
     }
 
-    /// Whether the liquid water exceeds [`laws::WET_SHARE`] of the ice.
+    /// Returns whether the liquid water exceeds [`laws::WET_SHARE`] of the ice.
     pub fn is_wet(&self) -> bool {
         self.water as f64 > laws::WET_SHARE * self.ice as f64
     }
@@ -289,7 +291,7 @@ impl Column {
         }
     }
 
-    /// Whether the values of a saved column are in range.
+    /// Returns whether the values of a saved column are in range.
     pub fn is_sound(&self) -> bool {
         let most = (1e5 * UNITS) as i64;
         let within = [self.ice, self.water, self.depth].iter().all(|v| (0..=most).contains(v));

@@ -70,6 +70,7 @@ struct Way {
 }
 
 impl Way {
+    /// Creates the way of a wind, (east, north), m/s, over cells of `cell_m`.
     fn new(wind: DVec2, cell_m: f64) -> Self {
         let speed = wind.length();
         let unit = wind / speed;

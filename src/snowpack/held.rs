@@ -80,11 +80,12 @@ struct SnowGround {
 }
 
 impl SnowGround {
+    /// Returns the ground of the world as it is now.
     fn of(world: &World) -> Self {
         Self { grid: world.set.terrain.clone(), tiles: world.set.tiles.clone() }
     }
 
-    /// Whether snow on `other` stays if this ground replaces it.
+    /// Returns whether snow on `other` stays if this ground replaces it.
     fn keeps_snow_of(&self, other: &Self) -> bool {
         match (self, other) {
             (Self { grid: Some(a), .. }, Self { grid: Some(b), .. }) => a.has_nodes_of(b),
@@ -128,6 +129,7 @@ impl HeldSnow {
         Some((self.site.as_ref()?, self.state.as_ref()?.field.as_ref()?))
     }
 
+    /// Returns the field and its site, if there are both.
     pub(super) fn field_mut(&mut self) -> Option<(&Site, &mut SnowField)> {
         Some((self.site.as_ref()?, self.state.as_mut()?.field.as_mut()?))
     }

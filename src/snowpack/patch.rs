@@ -62,11 +62,12 @@ impl Patch {
         (self.heights_m, self.holes) = (heights_m, holes);
     }
 
-    /// Whether no snow lies on the patch.
+    /// Returns whether no snow lies on the patch.
     pub fn is_bare(&self) -> bool {
         self.columns.is_empty()
     }
 
+    /// Returns the column of a cell; an empty one on a bare patch.
     pub fn column(&self, cell: usize) -> Column {
         self.columns.get(cell).copied().unwrap_or_default()
     }
@@ -84,19 +85,22 @@ impl Patch {
         }
     }
 
+    /// Returns whether a cell has no ground.
     pub fn is_hole(&self, cell: usize) -> bool {
         self.holes.get(cell).copied().unwrap_or(false)
     }
 
+    /// Returns the height of the object on a cell that stops the wind, m; 0 without one.
     pub fn obstacle_m(&self, cell: usize) -> f64 {
         self.obstacles_m.get(cell).copied().unwrap_or(0.0)
     }
 
+    /// Returns whether an object stops the wind on any cell.
     pub fn has_obstacles(&self) -> bool {
         self.obstacles_m.iter().any(|height| *height > 0.0)
     }
 
-    /// Whether no snow can lie on a cell, because an object stands on it or there is no ground.
+    /// Returns whether no snow can lie on a cell, because an object stands on it or there is no ground.
     pub fn is_blocked(&self, cell: usize) -> bool {
         self.obstacle_m(cell) > 0.0 || self.is_hole(cell)
     }

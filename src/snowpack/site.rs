@@ -127,7 +127,7 @@ impl Site {
         Self::new(ground, (terrain.desc.origin, terrain.to_enu), terrain.desc.cell_m)
     }
 
-    /// Whether this is the site of this grid.
+    /// Returns whether this is the site of this grid.
     pub fn is_of(&self, terrain: &Arc<TerrainHeights>) -> bool {
         matches!(&self.ground, Ground::Grid(own) if Arc::ptr_eq(own, terrain) || own.hash == terrain.hash)
     }
@@ -328,8 +328,8 @@ impl Site {
         }
     }
 
-    /// Whether flakes on their way to `landed`, a position in the host's world, meet a box. The path is traced back
-    /// until it is above the box. `fall` is the flakes' fall speed, m/s.
+    /// Returns whether flakes on their way to `landed`, a position in the host's world, meet a box. The path is traced
+    /// back until it is above the box. `fall` is the flakes' fall speed, m/s.
     fn meets(&self, shelter: &Shelter, landed: DVec3, air: &SiteWind<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
         let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);

@@ -54,7 +54,7 @@ impl SnowState {
         if coarse <= coarse_until_s { coarse } else { after(STEP_S) }
     }
 
-    /// Whether snow lies on level, open ground or on the host's terrain.
+    /// Returns whether snow lies on level, open ground or on the host's terrain.
     pub fn lies_anywhere(&self) -> bool {
         self.country.mass() > 0 || self.field.as_ref().is_some_and(|f| f.books.balance() > 0)
     }

@@ -47,8 +47,8 @@ impl SnowStrip {
     }
 }
 
-/// Whether a point lies on a path of this half width, all in m east and north. The path ends at right angles to its
-/// direction; its bends are round.
+/// Returns whether a point lies on a path of this half width, all in m east and north. The path ends at right angles to
+/// its direction; its bends are round.
 fn lies_on(path: &[DVec2], half_m: f64, p: DVec2) -> bool {
     let along = path.windows(2).any(|ends| {
         let (way, from) = (ends[1] - ends[0], p - ends[0]);

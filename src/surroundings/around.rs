@@ -194,7 +194,7 @@ impl SurroundingsBlock {
         STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 
-    /// Whether any box or map keeps rain off near the camera.
+    /// Returns whether any box or map keeps rain off near the camera.
     pub fn shelters(&self) -> bool {
         self.sheltered
     }

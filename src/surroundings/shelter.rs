@@ -135,14 +135,14 @@ impl Shelter {
         if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
-    /// Whether the box stands still, at up to 0.1 m/s: one that moves does not keep the ground dry.
+    /// Returns whether the box stands still, at up to 0.1 m/s: one that moves does not keep the ground dry.
     pub(crate) fn stands(&self) -> bool {
         self.velocity_m_s.length() <= 0.1
     }
 
-    /// Whether the box can keep rain off a drop within `reach_m` of a camera. Other boxes need not be tested. `wind` is
-    /// the air's velocity, (east, north, up), m/s; drops fall at `slowest_m_s` or faster. The answer may be true for a
-    /// box that keeps no rain off, but not the reverse.
+    /// Returns whether the box can keep rain off a drop within `reach_m` of a camera. Other boxes need not be tested.
+    /// `wind` is the air's velocity, (east, north, up), m/s; drops fall at `slowest_m_s` or faster. The answer may be
+    /// true for a box that keeps no rain off, but not the reverse.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
         let center = to_enu * (self.center_m - eye);
         let radius = self.half_size_m.length();
@@ -204,7 +204,7 @@ pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     (near <= far).then_some(near)
 }
 
-/// Whether a drop that came to `p` with `velocity` (host's world) met the shelter's shape on its way.
+/// Returns whether a drop that came to `p` with `velocity` (host's world) met the shelter's shape on its way.
 pub fn sheltered(shelter: &Shelter, p: DVec3, velocity: DVec3) -> bool {
     let own = |v: DVec3| shelter.axes.transpose() * v / shelter.half_size_m;
     let (o, d) = (own(p - shelter.center_m), own(shelter.velocity_m_s - velocity));

@@ -30,7 +30,7 @@ impl TerrainHeights {
         Self { origin, to_enu, cell_m, nodes, heights_m, hash }
     }
 
-    /// Whether its nodes lie at the same places as those of `other`.
+    /// Returns whether its nodes lie at the same places as those of `other`.
     pub fn has_nodes_of(&self, other: &Self) -> bool {
         (self.origin, self.cell_m, self.nodes) == (other.origin, other.cell_m, other.nodes)
     }

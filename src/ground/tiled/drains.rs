@@ -43,8 +43,8 @@ pub(super) struct Drains {
     pub blocks: Vec<DrainBlock>,
 }
 
-/// Whether cell `a` is lower than `b`. Cells of equal height are ordered by place from the south-west, so no two cells
-/// are equally high.
+/// Returns whether cell `a` is lower than `b`. Cells of equal height are ordered by place from the south-west, so no
+/// two cells are equally high.
 pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     let (low, high) = (terrain.height(a), terrain.height(b));
     if low != high {
@@ -103,6 +103,7 @@ impl Drains {
         }
     }
 
+    /// Finds the sinks of all cells in block (x, y) of a tile.
     fn find_block(&mut self, terrain: &Terrain, slot: u32, [x, y]: [usize; 2]) {
         let side = 1 << self.bits;
         let first = y * BLOCK * side + x * BLOCK;

@@ -173,12 +173,12 @@ impl Lakes {
         self.lake(lake).map_or(f64::NEG_INFINITY, |l| l.level_mm)
     }
 
-    /// Whether any cell of a tile is known to lie in a lake.
+    /// Returns whether any cell of a tile is known to lie in a lake.
     pub fn has_any(&self, slot: usize) -> bool {
         self.owners.get(slot).is_some_and(|o| !o.is_empty())
     }
 
-    /// Whether standing water covers a cell of this height, m.
+    /// Returns whether standing water covers a cell of this height, m.
     pub fn is_under(&self, slot: usize, cell: usize, height_m: f32) -> bool {
         self.lake_of(slot, cell).is_some_and(|lake| self.level_mm(lake) > f64::from(height_m) * 1e3)
     }
@@ -196,6 +196,7 @@ impl Lakes {
         }
     }
 
+    /// Returns a lake by its number; `None` if it no longer exists.
     fn lake(&self, lake: u32) -> Option<&Lake> {
         self.lakes.get(lake as usize)?.as_ref()
     }

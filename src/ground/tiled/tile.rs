@@ -77,11 +77,12 @@ impl TileWater {
         self.top.iter().flatten().map(|v| f64::from(*v)).sum()
     }
 
-    /// Whether there is any water on its cells.
+    /// Returns whether there is any water on its cells.
     pub fn is_wet(&self) -> bool {
         self.begun && !self.top.is_empty()
     }
 
+    /// Returns whether something flows or dries on any run.
     pub fn is_awake(&self) -> bool {
         self.any_awake
     }

@@ -124,7 +124,7 @@ impl TiledWater {
         new
     }
 
-    /// Whether this is the water of `terrain`.
+    /// Returns whether this is the water of `terrain`.
     pub fn is_of(&self, terrain: &Terrain) -> bool {
         self.id == terrain.id
     }
@@ -252,7 +252,7 @@ impl TiledWater {
         }))
     }
 
-    /// Whether there is any water on tiles that have a state of their own.
+    /// Returns whether there is any water on tiles that have a state of their own.
     pub fn is_wet(&self) -> bool {
         self.lakes.count > 0 || self.tiles.iter().flatten().any(|tile| tile.is_wet())
     }
@@ -267,7 +267,7 @@ impl TiledWater {
         self.version.1 += 1;
     }
 
-    /// Whether any water may stand on the neighbours of a cell.
+    /// Returns whether any water may stand on the neighbours of a cell.
     pub fn has_lakes_near(&self, terrain: &Terrain, cell: CellId) -> bool {
         self.lakes.count > 0 && (self.lakes.has_any(terrain.split(cell).0) || terrain.is_at_border(cell))
     }
