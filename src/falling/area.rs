@@ -269,9 +269,11 @@ pub(crate) struct Shaft {
     pub center: DVec3,
     /// Altitude of `center`, m.
     pub center_altitude_m: f64,
+    /// Outline of the area in its plan.
     pub(crate) outline: Outline,
     /// Unit vector of the plan's axis to the right, (east, north).
     pub right: DVec2,
+    /// Width of the rim over which the rain fades out, m.
     pub rim_m: f64,
     /// Horizontal shift of the column per metre of height, (east, north).
     pub lean: DVec2,

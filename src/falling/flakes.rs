@@ -176,7 +176,9 @@ impl FlakeMode {
 pub struct FlakeSizes {
     /// Aggregates, grains, crystals.
     parts: [FlakeMode; 3],
+    /// Rate of the snow, mm/h of water.
     rate_mm_h: f64,
+    /// Temperature of the air, C.
     temperature_c: f64,
     /// Ratio of fall speeds to those at sea level.
     factor: f64,

@@ -82,6 +82,7 @@ fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
 /// Size distribution N0 exp(-lambda D) of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StoneMode {
+    /// Kind of stone.
     stone: Stone,
     /// N0, 1/(m^3 mm).
     n0: f64,

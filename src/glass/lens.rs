@@ -18,11 +18,13 @@ const SNOW_DEPTH_PER_M: f64 = 1.5 / (1e-4 * 0.917);
 /// Target and source images of the frame.
 #[derive(Clone, Copy)]
 pub(crate) struct LensFrame<'a> {
+    /// Camera of the picture.
     pub camera: &'a Camera,
     /// Finished picture to read; it has the size of the target.
     pub picture: &'a wgpu::Texture,
     /// Mask of the host; where it is 1, the glass is not drawn.
     pub mask: Option<Layer<'a>>,
+    /// Image to which the lens draws.
     pub target: &'a wgpu::TextureView,
     /// Whether the picture's values are sRGB-encoded.
     pub encoded: bool,
@@ -61,7 +63,9 @@ pub(super) struct LensUniform {
 /// Lattice of water and snow that the lens draws.
 #[derive(Clone, Copy)]
 pub(super) struct LensLattice {
+    /// Side of a cell, m.
     pub cell_m: f64,
+    /// Numbers of columns and rows.
     pub size: [u32; 2],
     /// Whether there is water on it.
     pub wet: bool,

@@ -22,6 +22,7 @@ const VEHICLE_M: f64 = 3.0;
 
 /// Pane of glass and the eye behind it, in the host's world, m.
 pub(super) struct PaneAt {
+    /// Position of the eye.
     eye: DVec3,
     /// Lower left corner of its bounds, m.
     origin: DVec3,

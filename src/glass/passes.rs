@@ -34,6 +34,7 @@ pub(super) struct LensVariant {
     pub format: wgpu::TextureFormat,
     /// Whether the picture's values are sRGB-encoded.
     pub encoded: bool,
+    /// Whether the host gives a mask.
     pub has_mask: bool,
 }
 
@@ -125,6 +126,7 @@ impl GlassKit {
         })
     }
 
+    /// Returns the lens pipeline of a variant, created at first use.
     fn lens(&mut self, device: &Arc<Device>, variant: LensVariant) -> Result<&wgpu::RenderPipeline> {
         let layout = &self.lens_layout;
         self.lenses.get_or_make(
@@ -185,6 +187,7 @@ pub(super) struct PaneLattice {
 }
 
 impl PaneLattice {
+    /// Creates the textures of a lattice of `size`, (columns, rows), for updates of at most `most_steps` steps.
     pub fn new(device: &Device, kit: &GlassKit, size: [u32; 2], most_steps: usize) -> Self {
         let cells = ["glass 0", "glass 1"].map(|label| texture(device, label, CELLS, size));
         let views = [view(&cells[0]), view(&cells[1])];
@@ -350,10 +353,12 @@ pub(super) struct LensPass {
     groups: [[wgpu::BindGroup; 2]; 2],
     /// Size of the lattice whose textures the bind groups have.
     lattice: Option<[u32; 2]>,
+    /// GPU memory in use, bytes.
     bytes: u64,
 }
 
 impl LensPass {
+    /// Creates the textures and bind groups for the host's picture, and for a pane's lattice if there is one.
     pub fn new(device: &Device, kit: &GlassKit, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> Self {
         let (picture, mask) = (frame.picture, frame.mask);
         let size = [picture.width().div_ceil(SMALLER), picture.height().div_ceil(SMALLER)];

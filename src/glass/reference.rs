@@ -213,6 +213,8 @@ impl Cells {
         self.at(cell).map_or(0, |c| (c[3] >> 16) as i32)
     }
 
+    /// Returns the sideways share of a running bead's motion, in 1/256. The glass is uneven, and wet glass attracts the
+    /// bead.
     fn steer(&self, step: &StepUniform, cell: [i32; 2], motion: [i32; 2]) -> i32 {
         let size = motion.map(i32::abs);
         let along = |i: usize| if 2 * size[i] > size[1 - i] { motion[i].signum() } else { 0 };

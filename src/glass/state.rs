@@ -28,8 +28,11 @@ pub(super) type Reached<'a> = (Reach, Option<Mapped<'a>>);
 
 /// Weather, camera and time of a frame, for its glass.
 pub(super) struct AtGlass<'a> {
+    /// Time of the frame, s.
     pub time_s: f64,
+    /// Seed of the world.
     pub seed: u64,
+    /// Camera of the picture.
     pub camera: &'a Camera,
     /// Unit vector up, in the world's axes.
     pub up: DVec3,
@@ -62,6 +65,7 @@ pub struct GlassReport {
 
 /// A view's windscreen, and its state between frames.
 pub(crate) struct Glass {
+    /// Windscreen that the host has set.
     screen: Windscreen,
     /// Simulation time of the last frame, s, and the windscreen then.
     last: Option<(f64, Windscreen)>,
@@ -115,6 +119,7 @@ fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Co
 }
 
 impl Glass {
+    /// Creates a windscreen that no update has reached yet.
     pub fn new(screen: Windscreen) -> Self {
         Self {
             screen,

@@ -80,6 +80,7 @@ impl GlassView {
     }
 }
 
+/// Locks the pipelines; an error if an earlier call panicked.
 fn locked(kit: &Mutex<GlassKit>) -> Result<MutexGuard<'_, GlassKit>> {
     kit.lock().map_err(|_| Error::new(Status::Poisoned, "an earlier call panicked over a windscreen"))
 }

@@ -77,6 +77,7 @@ fn whole_of(wholes: &mut [u32], mut basin: u32) -> u32 {
 
 /// State of the visit of all cells from the lowest up.
 struct Rising<'a> {
+    /// Height of each cell, mm, row by row.
     heights_mm: &'a [f64],
     /// Hollows found so far.
     list: Vec<Basin>,

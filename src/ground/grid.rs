@@ -139,9 +139,11 @@ impl GroundGrid {
 pub(super) struct CellGrid<'a> {
     /// First node in the host's world; heights count from its height.
     pub origin: DVec3,
+    /// Distance between neighbouring cells, m.
     pub cell_m: f64,
     /// Numbers of nodes east and north.
     pub nodes: [u32; 2],
+    /// Height of each cell over the origin, m, row by row from the south-west.
     pub heights_m: &'a [f32],
 }
 

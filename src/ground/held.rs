@@ -81,7 +81,7 @@ pub(crate) struct HeldGround {
     pub(super) host_window: Option<Box<TerrainWindow>>,
 }
 
-/// Ground of a saved state, not yet active.
+/// Ground of a saved state, not yet active: fields of [`HeldGround`].
 pub(crate) struct LoadedGround {
     state: Option<GroundState>,
     host: Option<Box<HostGround>>,
@@ -91,10 +91,13 @@ pub(crate) struct LoadedGround {
     waiting: Vec<(Changed, Arc<Terrain>)>,
 }
 
-/// Keys of the ground's parts in a saved state.
+/// Key of the level ground in a saved state.
 const STATE_KEY: &str = "ground";
+/// Key of the grid and its water.
 const TERRAIN_KEY: &str = "terrain";
+/// Key of the water on tiles.
 pub(super) const TILES_KEY: &str = "terrain_tiles";
+/// Key of the class of the level ground.
 const CLASS_KEY: &str = "surface_class";
 
 impl HeldGround {

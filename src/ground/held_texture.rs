@@ -117,6 +117,7 @@ impl HeldGround {
         textures.upload_snow(device, snow.filter(|s| s.cells.len() == held.terrain.grid.len()))
     }
 
+    /// Locks the textures.
     fn locked(&self) -> MutexGuard<'_, TerrainTextures> {
         // A panic may have left textures half-written; they are then written again.
         self.textures.lock().unwrap_or_else(PoisonError::into_inner)

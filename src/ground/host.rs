@@ -64,6 +64,7 @@ struct CellInputs {
 }
 
 impl HostGround {
+    /// Creates a dry terrain from the host's grid.
     pub fn new(grid: GroundGrid, world: &WorldFrame) -> Self {
         let frame = world.frame_at(grid.origin);
         let terrain = GridTerrain::new(grid);

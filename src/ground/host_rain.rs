@@ -38,6 +38,7 @@ impl AreasOverGrid {
         self.list.iter().flatten()
     }
 
+    /// Returns whether each area over the grid has a uniform value in `evens`.
     pub fn are_even(&self, evens: &Evens) -> bool {
         self.list.iter().zip(evens).all(|(over, even)| over.is_none() || even.is_some())
     }
@@ -58,15 +59,19 @@ pub(super) fn liquid(f: &Falling) -> f64 {
     f.rain_mm_h + f.drizzle_mm_h
 }
 
-/// Bounds of some cells of a grid: their middle in the host's world, the radius around it within which they lie, m, and
-/// their lowest and highest altitude, m.
+/// Bounds of some cells of a grid.
 pub(super) struct CellBounds {
+    /// Middle of the cells in the host's world, m.
     middle: DVec3,
+    /// Radius around the middle within which they lie, m.
     reach_m: f64,
+    /// Their lowest and highest altitude, m.
     altitudes_m: [f64; 2],
 }
 
 impl CellBounds {
+    /// Computes the bounds of a range of cells. `to_enu` is the rotation from the host's axes to east, north, up at the
+    /// grid's origin, and `altitude_m` the altitude there.
     pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (&DMat3, f64), cells: Range<usize>) -> Self {
         let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let columns = grid.nodes[0] as usize;

@@ -50,6 +50,7 @@ struct Glaze {
 pub(super) struct RainStep<'a> {
     /// Weather in the middle of the step, and its effect on the ground.
     pub conditions: &'a Conditions,
+    /// Rain and evaporation of the step.
     pub forcing: &'a Forcing,
     /// Length of the step, s.
     pub seconds: f64,
@@ -63,6 +64,7 @@ pub(super) struct GridRain {
     pub altitude_m: f64,
     /// Bounds of the whole grid, and of each run of its cells.
     pub whole: CellBounds,
+    /// Bounds of each run of cells.
     pub runs: Vec<CellBounds>,
     /// Heights of the lowest and the highest node, m.
     range_m: (f64, f64),
@@ -77,6 +79,8 @@ pub(super) struct GridRain {
 }
 
 impl GridRain {
+    /// Creates the rain on a grid before its first step. `to_enu` is the rotation from the host's axes to east, north,
+    /// up at the grid's origin, and `altitude_m` the altitude there.
     pub fn new(grid: &CellGrid<'_>, (to_enu, altitude_m): (DMat3, f64)) -> Self {
         let (whole, runs) = CellBounds::whole_and_runs(grid, (&to_enu, altitude_m));
         Self {

@@ -19,18 +19,24 @@ use crate::{
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedGround {
+    /// Position of the first node in the host's world, m.
     origin_m: [f64; 3],
+    /// Distance between neighbouring nodes, m.
     cell_m: f64,
+    /// Numbers of nodes east and north.
     nodes: [u32; 2],
+    /// Heights of the nodes, m, as bits of f32.
     heights_m: String,
     /// Numbers of the cells' classes; left out if no cell has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     classes: String,
+    /// Film and soaked water of each cell, mm, and water in each hollow, mm times cells; as bits of f64.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<[String; 3]>,
 }
 
 impl SavedGround {
+    /// Writes a terrain and its water.
     pub fn of(held: &HostGround) -> Self {
         let grid = &held.terrain.grid;
         let column = |i: usize| words(held.water.top.iter().map(move |t| t[i].to_bits()));

@@ -22,10 +22,13 @@ pub enum GroundModel {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GroundState {
+    /// Time up to which the water is simulated, s.
     pub time_s: f64,
-    /// Values of [`GroundWater`] at `time_s`.
+    /// Film on the ground, mm.
     film_mm: f64,
+    /// Water in the pores, mm.
     soaked_mm: f64,
+    /// Water in the hollows, mm over the whole ground.
     hollows_mm: f64,
     /// Sunlight on level ground at its last update, W/m^2.
     pub sunlight_w_m2: f64,
@@ -65,6 +68,7 @@ impl GroundState {
 /// Inputs of a step of level, open ground, in which the grid and the tiles are advanced too.
 #[derive(Clone, Copy)]
 pub(super) struct GroundStep<'a> {
+    /// Begin of the step, s.
     pub from_s: f64,
     /// Length of the step, s.
     pub seconds: f64,

@@ -29,6 +29,7 @@ pub(crate) struct GridTerrain {
 }
 
 impl GridTerrain {
+    /// Finds the hollows of a grid.
     pub fn new(grid: GroundGrid) -> Self {
         let basins = Basins::new(&grid.heights_m, grid.nodes[0] as usize);
         Self { grid, basins }
@@ -40,6 +41,7 @@ impl GridTerrain {
 pub(crate) struct Flows {
     /// Rain that fell on the cells.
     pub rain: f64,
+    /// Water that evaporated.
     pub evaporated: f64,
     /// Water that leaked into the ground below.
     pub leaked: f64,
@@ -50,6 +52,7 @@ pub(crate) struct Flows {
 /// Water of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct CellWater {
+    /// Film on the cell, mm.
     pub film_mm: f64,
     /// Water in the pores, as a share of their capacity.
     pub soaked: f64,
@@ -123,6 +126,7 @@ impl TerrainWater {
         (top.len() == terrain.grid.len() && top.iter().all(sound)).then(|| Self::with(terrain, top, pools))
     }
 
+    /// Creates water from the film and the soaked water of each cell, mm, and the water in the hollows.
     fn with(terrain: &GridTerrain, top: Vec<[f64; 2]>, pools: Pools) -> Self {
         let hollows = terrain.basins.list.len();
         let mut new = Self {

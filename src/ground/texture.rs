@@ -161,6 +161,7 @@ impl UploadedTerrain {
     }
 }
 
+/// Creates a texture that is written from the CPU.
 fn terrain_texture(
     device: &Device,
     label: &str,
@@ -190,6 +191,7 @@ fn surface_texels(grid: &GroundGrid, texels: &mut Vec<[f32; 4]>) {
     }));
 }
 
+/// Writes `bytes` to a rectangle of a texture; `texel` is the size of a texel, bytes.
 fn write_at(
     device: &Device,
     texture: &wgpu::Texture,

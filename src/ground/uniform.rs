@@ -111,6 +111,7 @@ pub(crate) struct WetScene<'a> {
     pub hollows: &'a Hollows,
     /// Position of the camera in the host's world, m.
     pub position: DVec3,
+    /// Time of the frame, s.
     pub time_s: f64,
     /// Curvature of the planet, 1/m; 0 for a flat world.
     pub curvature: f64,
@@ -193,6 +194,7 @@ impl DropsKept {
 }
 
 impl WetScene<'_> {
+    /// Computes the block of the ground.
     pub fn uniform(&self, drops: &mut DropsKept) -> GroundUniform {
         let (scene, cover) = (self.scene, self.cover);
         let rain = self.falling.rain_mm_h;

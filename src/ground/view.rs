@@ -44,6 +44,7 @@ pub(crate) struct GroundView {
 }
 
 impl GroundView {
+    /// Creates the part of a view that draws the ground.
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let uniform = blocks.block(device, size_of::<GroundUniform>());
         let (window, drops) = (TerrainWindow::default(), DropsKept::default());

@@ -183,13 +183,18 @@ pub(crate) struct Step {
 /// Film and pores after a step, and the water that left them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfaceWater {
+    /// Film after the step, mm.
     pub film_mm: f64,
+    /// Water in the pores after the step, mm.
     pub soaked_mm: f64,
+    /// Water that ran off in the step, mm.
     pub ran_off_mm: f64,
+    /// Water that evaporated in the step, mm.
     pub evaporated_mm: f64,
 }
 
 impl Step {
+    /// Computes what is the same for all cells in a step of `seconds`.
     pub fn new(forcing: &Forcing, seconds: f64) -> Self {
         let evaporated_mm = forcing.evaporation_mm_h * seconds / 3600.0;
         Self {

@@ -60,6 +60,7 @@ pub(crate) fn room(device: &wgpu::Device, blocks: u64, thing_bytes: u64) -> u64 
 }
 
 impl Listing {
+    /// Creates an empty list of things of `thing_bytes` each.
     pub fn new(device: &wgpu::Device, thing_bytes: u64) -> Self {
         let slots = [(0, Slot::Storage(BLOCK_BYTES)), (1, Slot::Storage(thing_bytes)), (2, Slot::Storage(FOUND_BYTES))];
         let layout = |label, slots: &[(u32, Slot)]| bind::layout(device, label, wgpu::ShaderStages::COMPUTE, slots);
@@ -137,6 +138,7 @@ impl Listing {
     }
 }
 
+/// Creates a storage buffer of `size` bytes, which also has the uses in `usage`.
 fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | usage;
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })

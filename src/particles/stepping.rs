@@ -77,6 +77,7 @@ pub(crate) struct Stepped<'a> {
     pub least_room: u32,
     /// Position of the camera, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
+    /// Time at the end of the step, s.
     pub time_s: f64,
     /// Present velocity of the air, (east, north, up), m/s.
     pub air_m_s: DVec3,
@@ -99,7 +100,9 @@ pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: 
 /// State at the end of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LastStep {
+    /// Time, s.
     time_s: f64,
+    /// Position of the camera, (east, north, up), m.
     position_m: DVec3,
     /// Number of particles with a state in each shell.
     counts: [u32; SHELLS],

@@ -67,6 +67,7 @@ pub(crate) struct DepthRead {
 }
 
 impl DepthRead {
+    /// Returns how shaders read the host's depth; `depth` is `None` if the host gives none.
     pub fn of(depth: Option<Layer<'_>>, rays: &ViewRays) -> Self {
         Self { multi: depth.is_some_and(Layer::is_multisampled), any: depth.is_some(), kinds: rays.depth_kinds() }
     }
@@ -88,6 +89,7 @@ impl DepthRead {
 pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
 
 impl FallingTexture {
+    /// Locks the layer.
     fn locked(&self) -> MutexGuard<'_, Option<(wgpu::Texture, wgpu::TextureView)>> {
         // After a panic elsewhere there is a complete layer or none; both are valid.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
@@ -160,6 +162,7 @@ const ANGLES: usize = 9;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StreakContrast {
     rays: ViewRays,
+    /// 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f64,
     /// Unit vector of the drops' or flakes' motion relative to the camera, (east, north, up).
     axis: DVec3,

@@ -67,6 +67,7 @@ const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 pub(super) struct ShaftKind {
     /// Whether the host's depth has several samples a pixel.
     pub multi: bool,
+    /// Whether the host gives the depth of its picture.
     pub has_depth: bool,
     /// Whether any columns may overlap.
     pub overlaps: bool,

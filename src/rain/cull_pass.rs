@@ -160,6 +160,7 @@ impl CullPass {
         }
     }
 
+    /// Creates the pipelines that this lattice needs and that do not exist yet.
     fn prepare(
         &mut self,
         device: &Device,
@@ -193,8 +194,9 @@ impl CullPass {
 pub(super) struct ListedQuads<'a> {
     /// Entry points of the vertex and the fragment shader.
     pub entries: [&'static str; 2],
-    /// Vertex attributes of an instance, and its size in bytes.
+    /// Vertex attributes of an instance.
     pub attributes: &'a [wgpu::VertexAttribute],
+    /// Size of an instance, bytes.
     pub bytes: u64,
 }
 

@@ -82,6 +82,7 @@ pub(crate) struct EyeInWorld<'a> {
     pub position: DVec3,
     /// Rotation from the host's axes at the eye to east, north, up.
     pub to_enu: &'a DMat3,
+    /// Altitude of the eye, m.
     pub altitude_m: f64,
 }
 

@@ -67,8 +67,11 @@ fn side_m(shell: usize) -> f64 {
 
 /// Properties shared by the stones of one class.
 struct StoneClass {
+    /// Kind of stone.
     stone: Stone,
+    /// Diameter, mm: the geometric mean of the class's bounds.
     diameter_mm: f64,
+    /// Fall speed, m/s.
     speed_m_s: f64,
     /// Number of stones in a cubic metre of air.
     number_per_m3: f64,

@@ -41,6 +41,7 @@ pub(crate) struct RainUniform {
 }
 
 impl RainUniform {
+    /// Computes the block of the drops for a camera.
     pub fn new(seed: u64, classes: &Classes, light: &DropLight, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let moment = |s: usize| Moment::new(s, air.displacement_m, air.time_s);

@@ -318,6 +318,7 @@ impl RainView {
         mixture.map_or(base, |m| m.with(left.max(LEAST_OF_CONES), &base))
     }
 
+    /// Returns the camera of the picture, with the exposure and the contrast gain of the settings.
     fn camera<'a>(&self, context: &DrawContext<'a>) -> StreakCamera<'a> {
         StreakCamera::new(context, self.settings.shutter_s, self.settings.contrast_gain)
     }

@@ -178,6 +178,7 @@ fn pipeline(
     counts: bool,
 ) -> Result<wgpu::RenderPipeline> {
     let module = device.shader(&depth.shader("snow/flakes_view.wgsl"))?;
+    // Vertex attributes of a flake's state, and of a listed spot.
     const STATE: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Uint32x3, 1 => Uint32, 2 => Float32x3];
     const SPOT: [wgpu::VertexAttribute; 4] =
         wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Uint32];

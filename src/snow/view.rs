@@ -31,6 +31,7 @@ use crate::{
 #[derive(Clone, Copy, PartialEq)]
 struct Counted {
     falling: Falling,
+    /// Temperature of the air, C.
     temperature_c: f64,
     /// Factor on fall speeds by the air's density ([`drops::factor_in`]).
     factor: f64,

@@ -25,11 +25,14 @@ pub(super) struct Column {
     pub albedo: i64,
 }
 
-/// Snow that moves from one column to another: ice and water in units of mass, depth in units of depth.
+/// Snow that moves from one column to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SnowParcel {
+    /// Ice, in units of mass.
     pub ice: i64,
+    /// Liquid water, in units of mass.
     pub water: i64,
+    /// Depth, in units of depth.
     pub depth: i64,
 }
 
@@ -39,12 +42,14 @@ impl SnowParcel {
     }
 }
 
-/// Mass that a column exchanged in a step, in units of mass: gained by snow and rain that fell, lost by water that ran
-/// off and by sublimation.
+/// Mass that a column exchanged in a step, in units of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct MassExchange {
+    /// Gain by snow and rain that fell.
     pub fallen: i64,
+    /// Loss by water that ran off to the ground.
     pub ran_off: i64,
+    /// Loss by sublimation.
     pub sublimated: i64,
 }
 

@@ -98,6 +98,7 @@ struct Sweep<'a> {
     mean: Through,
     /// Mass that a flux of 1 kg/(m s) carries across a cell's side in the step, in units, spread over the cell's area.
     per_flux: f64,
+    /// Side of a cell, m.
     cell_m: f64,
     /// Density of the snow that the wind lays down, kg/m^3.
     landing_kg_m3: f64,

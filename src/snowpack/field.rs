@@ -55,12 +55,14 @@ impl Books {
 pub(super) struct SnowField {
     /// Number of cells of a patch, east and north.
     pub size: [usize; 2],
+    /// Side of a cell, m.
     pub cell_m: f64,
     /// Lattice of tiles: x, y and z of its origin in the host's world, and its cell size, m. `None` for a grid.
     pub lattice: Option<[f64; 4]>,
     /// Patches, sorted by key: rows from the south, each from the west.
     #[expect(clippy::vec_box, reason = "a new one is put among the others, which are many and large")]
     pub patches: Vec<Box<Patch>>,
+    /// Sums of all mass that came and went.
     pub books: Books,
     /// Mean run-off in the last step, mm/h.
     pub runoff_mm_h: f64,

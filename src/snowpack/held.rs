@@ -99,6 +99,7 @@ impl SnowGround {
 pub(crate) struct LoadedSnow(Option<SnowState>);
 
 impl HeldSnow {
+    /// Creates a context's snow before anything has fallen.
     pub fn new(model: LyingSnowModel) -> Self {
         Self {
             model,

@@ -31,6 +31,7 @@ pub(super) struct SnowStep<'a> {
     pub falls: Option<FallsAt<'a>>,
     /// Settling in the step, by density.
     pub settling: &'a Settling,
+    /// Wind over the field.
     pub wind: FieldWind<'a>,
     /// Snow of the level, open country around the field, from which snow drifts in.
     pub country: &'a Column,

@@ -73,6 +73,7 @@ pub struct SnowBalance {
 }
 
 impl SnowAt {
+    /// Creates the answer for a place: chooses the friction by cover, wetness and density.
     fn of(here: SnowHere, mass_kg_m2: f64, surface: DVec3) -> Self {
         let cover = snow_cover(here.depth_m);
         let friction = match here {

@@ -21,8 +21,10 @@ const MOST_CELLS: usize = 1 << 26;
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSnow {
+    /// Time up to which the snow is simulated, s.
     time_s: f64,
     sunlight_w_m2: f64,
+    /// Column of level, open ground.
     country: [i64; 4],
     melted: [f64; 2],
     /// Left out if no time was simulated in fast-forward.
@@ -36,11 +38,14 @@ pub(super) struct SavedSnow {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedCells {
+    /// Number of cells of a grid or of a tile.
     cells: usize,
     /// Columns of a grid: lists of ice, water, depth and albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     columns: Option<[String; 4]>,
+    /// Books, in the order of [`Books::to_array`].
     books: [i64; 7],
+    /// Share of the ground that snow covers, and run-off, mm/h, in the last step.
     melted: [f64; 2],
     /// Lattice of tiles: x, y and z of its origin in the host's world, and its cell size, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -53,6 +58,7 @@ struct SavedCells {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedTile {
+    /// Index of the tile, (east, north).
     tile: [i32; 2],
     /// Columns, as for a grid; left out without snow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -62,6 +68,7 @@ struct SavedTile {
     hash: Option<String>,
 }
 
+/// Returns whether a value is left out of the saved state because it is 0.
 fn is_zero(v: &f64) -> bool {
     *v == 0.0
 }
@@ -90,6 +97,7 @@ fn of_lists(columns: &[String; 4], cells: usize) -> Option<Vec<Column>> {
 }
 
 impl SavedTile {
+    /// Writes a tile: its columns, or only their hash with `for_hash`.
     fn of(patch: &Patch, cells: usize, for_hash: bool) -> Self {
         let lies = !patch.is_bare();
         Self {
@@ -101,6 +109,7 @@ impl SavedTile {
 }
 
 impl SavedCells {
+    /// Writes a field: the columns of a grid or tiles, and the books; with `for_hash`, tiles have only their hash.
     fn of(field: &SnowField, for_hash: bool) -> Self {
         let cells = field.size[0] * field.size[1];
         let is_grid = field.lattice.is_none();

@@ -53,6 +53,7 @@ pub(super) struct Site {
     origin: DVec3,
     /// Rotation from the host's axes to east, north, up.
     to_enu: DMat3,
+    /// Side of a cell, m.
     cell_m: f64,
     /// Standing boxes for which shelter was found last.
     boxes: Vec<Shelter>,
@@ -80,6 +81,8 @@ struct ShadedIn {
 pub(super) type CornerShares = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
+    /// Creates a site without boxes and wind. `to_enu` is the rotation from the host's axes to east, north, up at the
+    /// `origin`.
     fn new(ground: Ground, (origin, to_enu): (DVec3, DMat3), cell_m: f64) -> Self {
         Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: None, stale: true }
     }
@@ -389,6 +392,7 @@ pub(super) struct SiteWind<'w> {
     origin: DVec3,
     /// Rotation from east, north, up to the host's axes.
     from_enu: DMat3,
+    /// Side of a cell of the site, m.
     cell_m: f64,
 }
 

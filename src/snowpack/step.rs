@@ -17,8 +17,11 @@ const SHARE_UNITS: f64 = 4_294_967_296.0;
 /// Sums over the columns of a field, in units of mass.
 #[derive(Default)]
 struct Sums {
+    /// Snow and rain that fell.
     fallen: i64,
+    /// Water that ran off to the ground.
     ran_off: i64,
+    /// Snow that sublimated.
     sublimated: i64,
     /// Sum of the shares of each cell that snow covers, in units of [`SHARE_UNITS`].
     covered: i64,

@@ -79,16 +79,18 @@ impl ShelterReach {
     }
 }
 
-/// Shelters, occluder maps and lamps of the host, and the camera for which they are prepared: at `eye` in the host's
-/// world, m, with the rotation `to_enu` from the host's axes to its east, north, up.
+/// Shelters, occluder maps and lamps of the host, and the camera for which they are prepared.
 pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
     /// Lightning flashes, which take the places in the block of lamps that the host leaves free.
     pub flash: &'a [FlashLamp],
+    /// Position of the camera in the host's world, m.
     pub eye: DVec3,
+    /// Rotation from the host's axes to east, north, up at the camera.
     pub to_enu: DMat3,
+    /// Time of the frame, s.
     pub time_s: f64,
     /// Velocity of the air, (east, north, up), m/s.
     pub wind_m_s: DVec3,

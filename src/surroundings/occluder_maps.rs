@@ -54,6 +54,7 @@ struct OccluderTable {
 /// Map in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Placed {
+    /// Map as the host set it.
     occluder: Occluder,
     /// Origin and size in the table, texels.
     part: [[u32; 2]; 2],
@@ -73,6 +74,7 @@ pub(crate) struct OccluderMaps {
     list: Vec<Placed>,
 }
 
+/// Creates the layouts of the bind groups of both passes.
 fn layouts(device: &wgpu::Device) -> [wgpu::BindGroupLayout; 2] {
     let make = |label, slots: &[(u32, Slot)]| bind::layout(device, label, wgpu::ShaderStages::FRAGMENT, slots);
     let map = [(0, Slot::Uniform(size_of::<MapUniform>())), (1, Slot::Texels)];

@@ -22,6 +22,7 @@ const THINNEST_M: f64 = 1e-5;
 pub struct Planes {
     /// Normal and distance of each plane; only the first `count` are in use.
     all: [[f64; 4]; MAX_PLANES],
+    /// Number of planes.
     count: usize,
 }
 

@@ -47,6 +47,7 @@ pub(crate) struct WindView {
 /// Texture with one texel per node.
 struct NodeTexture {
     texture: wgpu::Texture,
+    /// Numbers of nodes east, north and up.
     nodes: [u32; 3],
     /// Revision of the values that were last uploaded.
     revision: u64,
@@ -59,9 +60,12 @@ pub(crate) struct WindTexture {
     held: Mutex<WindState>,
 }
 
+/// Texture of the wind and what its upload needs.
 #[derive(Default)]
 struct WindState {
+    /// Texture, once a view has needed one.
     texture: Option<NodeTexture>,
+    /// Number of textures created so far.
     generation: u64,
     /// Staging memory for an upload.
     texels: Vec<u16>,
@@ -102,10 +106,12 @@ impl WindTexture {
     }
 }
 
+/// Returns the size of a texture with these numbers of nodes.
 fn extent(nodes: [u32; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: nodes[0], height: nodes[1], depth_or_array_layers: nodes[2] }
 }
 
+/// Creates a texture with one texel per node, without values.
 fn new_texture(device: &Device, nodes: [u32; 3], generation: u64) -> NodeTexture {
     let texture = device.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("wind"),

@@ -25,6 +25,7 @@ const NONE: u32 = u32::MAX;
 /// Cell at the rim of a lake. The lowest cell compares greatest, so that the heap returns it first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rim {
+    /// Height of the cell, mm.
     height_mm: f64,
     /// Place of the cell on the lattice, cells east and north.
     place: [i32; 2],
@@ -83,6 +84,7 @@ struct Lake {
     hollow: u32,
     /// Volume, mm times cells.
     held: f64,
+    /// Height of the water's surface, mm.
     level_mm: f64,
     /// Cells around those of its hollow, lowest first; `None` if they must be found again.
     rim: Option<BinaryHeap<Rim>>,

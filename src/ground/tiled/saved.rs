@@ -21,6 +21,7 @@ const JOINED: u64 = u64::MAX;
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedWaterTile {
+    /// Index of the tile, (east, north).
     tile: [i32; 2],
     /// Hash of the heights and classes.
     cells: String,
@@ -33,8 +34,11 @@ struct SavedWaterTile {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SavedTiles {
+    /// Origin of the lattice of tiles in the host's world, m.
     origin_m: [f64; 3],
+    /// Side of a cell, m.
     cell_m: f64,
+    /// Side of a tile, cells.
     tile_cells: u32,
     tiles: Vec<SavedWaterTile>,
     /// Lakes as words: for each, the number of its words, then its pits and joints ([`LakeBranch`]).
@@ -164,6 +168,7 @@ impl SavedTiles {
         Ok(water)
     }
 
+    /// Restores the lakes; `None` if these tiles cannot hold them.
     fn restore_lakes(&self, water: &mut TiledWater, terrain: &Terrain) -> Option<()> {
         let count = |text: &str| {
             let times = |w: &str| w.split_once('*').map_or(Some(1), |(_, n)| n.parse::<usize>().ok());

@@ -15,8 +15,11 @@ use crate::{
 
 /// Water on the cells of a tile.
 pub(super) struct TileWater {
+    /// Index of the tile, (east, north).
     pub key: TileKey,
+    /// Sinks of the tile's cells.
     pub drains: Drains,
+    /// Rain on the tile's cells.
     pub rain: GridRain,
     /// Whether the tile has a state of its own; otherwise the water of level ground lies on it.
     pub begun: bool,
@@ -47,6 +50,7 @@ fn rounded_down(v: f64) -> f32 {
 }
 
 impl TileWater {
+    /// Creates a dry tile.
     pub fn new(terrain: &Terrain, slot: u32) -> Self {
         let tile = terrain.tile(slot);
         let runs = tile.heights_m.len().div_ceil(RUN);

@@ -40,6 +40,7 @@ pub(super) struct StepInParts {
     pub last: Option<TileKey>,
     /// Sums over the tiles that are done.
     pub flows: Flows,
+    /// Whether water may have changed in the step, because rain fell or something flows or dries.
     pub changes: bool,
 }
 

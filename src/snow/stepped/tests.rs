@@ -34,10 +34,11 @@ struct Bench {
     flakes: Flakes,
 }
 
-/// State of a flake, read back from the GPU: position without its helix relative to the camera, m; velocity, m/s; and
-/// number of times that it has re-entered its shell's cell.
+/// State of a flake, read back from the GPU.
 struct Read {
+    /// Position relative to the camera, without the helix, (east, north, up), m.
     position_m: DVec3,
+    /// Velocity, (east, north, up), m/s.
     velocity_m_s: DVec3,
     /// Index of the shell, from the innermost.
     shell: usize,
