@@ -10,9 +10,9 @@
 const SHAFT_WAVES: u32 = 12u;
 // Amplitude of each wave of the pattern. Twin of AMOUNT in src/falling/curtain.rs.
 const PATTERN_AMOUNT: f32 = 0.2;
-// Distance at which the pattern begins to fade in, m. Twin of PATTERN_M in src/falling/curtain.rs, as PATTERN_FULL is.
+// Distance at which the pattern begins to fade in, m. Twin of PATTERN_M[0] in src/falling/curtain.rs.
 const PATTERN_FIRST: f32 = 30.0;
-// Distance from which the pattern shows in full, m.
+// Distance from which the pattern shows in full, m. Twin of PATTERN_M[1].
 const PATTERN_FULL: f32 = 300.0;
 // Depth of the columns below the level of their plan, m. Twin of BELOW_M in src/rain/shaft.rs.
 const BELOW: f32 = 1000.0;

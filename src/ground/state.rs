@@ -68,7 +68,7 @@ impl GroundState {
 /// Inputs of a step of level, open ground, in which the grid and the tiles are advanced too.
 #[derive(Clone, Copy)]
 pub(super) struct GroundStep<'a> {
-    /// Begin of the step, s.
+    /// Beginning of the step, s.
     pub from_s: f64,
     /// Length of the step, s.
     pub seconds: f64,

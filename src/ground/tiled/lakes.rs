@@ -59,17 +59,17 @@ struct Close {
 /// Hollow, as far as its cells have been found.
 #[derive(Clone, Debug)]
 struct Hollow {
-    /// The two hollows from which it was joined.
+    /// Indices of the two hollows from which it was joined; `None` for the hollow of one pit.
     parts: Option<[u32; 2]>,
     /// Cells of the hollow that belong to none of its parts, in the order in which water covers them.
     cells: Vec<CellId>,
     /// Heights of these cells, mm.
     levels_mm: Vec<f64>,
-    /// Water that the hollow holds when its level is at the cell, for each of these cells.
+    /// Water that the hollow holds when its level is at the cell, mm times cells; for each of these cells.
     held_at: Vec<f64>,
     /// Number of cells of its parts.
     below: f64,
-    /// Water that its parts hold.
+    /// Water that its parts hold, mm times cells.
     base: f64,
     /// Height at which it begins, mm: that of its pit, or of the saddle where its parts meet.
     birth_mm: f64,
@@ -127,12 +127,14 @@ fn put<T>(list: &mut Vec<Option<T>>, free: &mut Vec<u32>, value: T) -> u32 {
 }
 
 impl Hollow {
+    /// Creates a hollow of which no cells of its own are known yet. Its `parts` have `part_cells` known cells, and hold
+    /// `base`, mm times cells, at the level `birth_mm`. Without parts `birth_mm` is the height of the pit.
     fn new(parts: Option<[u32; 2]>, part_cells: f64, base: f64, birth_mm: f64) -> Self {
         let (cells, levels_mm, held_at) = (Vec::new(), Vec::new(), Vec::new());
         Self { parts, cells, levels_mm, held_at, below: part_cells, base, birth_mm, close: None }
     }
 
-    /// Returns the water level, mm, and the number of cells under water, when the hollow holds `held`.
+    /// Returns the water level, mm, and the number of cells under water, when the hollow holds `held`, mm times cells.
     fn level(&self, held: f64) -> (f64, f64) {
         if self.cells.is_empty() {
             return (self.birth_mm, self.below);
@@ -142,7 +144,7 @@ impl Hollow {
         (self.levels_mm[own - 1] + (held - self.held_at[own - 1]) / under, under)
     }
 
-    /// Returns the water in the hollow at a level that is not below any of its known cells.
+    /// Returns the water in the hollow, mm times cells, at a level that is not below any of its known cells.
     fn held_to(&self, level_mm: f64) -> f64 {
         let (held, from) = match (self.held_at.last(), self.levels_mm.last()) {
             (Some(held), Some(from)) => (*held, *from),
@@ -165,7 +167,7 @@ impl Lakes {
         }
     }
 
-    /// Returns the lake among whose known cells a cell is. The cell may lie above its level.
+    /// Returns the lake among whose known cells a cell is. The cell may lie above the lake's level.
     pub fn lake_of(&self, slot: usize, cell: usize) -> Option<u32> {
         self.owners.get(slot)?.get(cell)?.checked_sub(1)
     }
@@ -198,7 +200,7 @@ impl Lakes {
         }
     }
 
-    /// Returns a lake by its number; `None` if it no longer exists.
+    /// Returns the lake with an index; `None` if it no longer exists.
     fn lake(&self, lake: u32) -> Option<&Lake> {
         self.lakes.get(lake as usize)?.as_ref()
     }
