@@ -292,7 +292,8 @@ pub unsafe extern "C" fn wk_view_record(
     })
 }
 
-/// Draws weathers that may come, into small images of Welkin's own, so that no frame waits for a shader once they come.
+/// Draws weathers that may come, into small images of Welkin's own, so that hardly a frame waits for a shader once they
+/// come.
 /// Each weather is drawn while the one before it (the context's own before the first) changes to it, once it lasts, and
 /// under several heights of the sun. Call it behind a loading screen, before the view's first frame: the next frame
 /// begins as a view's first one does. The context is as before afterwards.

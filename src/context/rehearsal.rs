@@ -10,13 +10,15 @@ use crate::{
 
 /// Duration of the change to each weather, s, and shares of it at which it is drawn.
 const CHANGE_S: f64 = 60.0;
-const SHARES: [f64; 5] = [0.02, 0.15, 0.4, 0.7, 0.9];
-/// Time after the change at which the ground is as wet or white as it gets in a shower, s.
-const SETTLED_S: f64 = 180.0;
+const SHARES: [f64; 12] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98];
+/// Times after the change, s: at once, and when the ground is as wet or white as it gets in a shower.
+const SETTLED_S: [f64; 2] = [1.0, 180.0];
+/// Time for which each weather lasts before the next one comes, s.
+const LASTS_S: f64 = 120.0;
 /// Elevations of the sun under which each weather is drawn, degrees: day, a low sun, twilight, night.
 const SUNS_DEG: [f64; 5] = [40.0, 4.0, -4.0, -9.0, -30.0];
 /// Moments of each weather.
-const MOMENTS: usize = SHARES.len() + 1 + SUNS_DEG.len();
+const MOMENTS: usize = SHARES.len() + SETTLED_S.len() + SUNS_DEG.len();
 
 /// Weathers to rehearse, and the state to which the context returns.
 pub(crate) struct Rehearsal {
@@ -49,21 +51,22 @@ impl Rehearsal {
     /// Those of [`Context::update`]; call [`Self::leave`] then too.
     pub fn enter(&self, context: &mut Context, moment: usize) -> Result<()> {
         let (i, moment) = (moment / MOMENTS, moment % MOMENTS);
-        let now_s = context.world.time_s;
-        let weather = |i: usize| self.weathers.get(i).ok_or_else(|| Error::range("moment", "in the rehearsal", i));
-        if i > 0 {
-            context.world.change_weather(*weather(i - 1)?, now_s, 0.0)?;
+        // The weathers before it leave their water and snow.
+        for weather in self.weathers.iter().take(i) {
+            let now_s = context.world.time_s;
+            context.world.change_weather(*weather, now_s, 0.0)?;
+            context.update(now_s + LASTS_S)?;
         }
-        context.world.change_weather(*weather(i)?, now_s, CHANGE_S)?;
-        let after_s = match moment.checked_sub(SHARES.len()) {
-            None => CHANGE_S * SHARES[moment],
-            Some(0) => CHANGE_S + SETTLED_S,
-            Some(sun) => {
-                let given = context.world.set.given_sun.map_or(180.0, |sun| sun.azimuth_deg);
-                context.set_sun(Some(GivenDirection { azimuth_deg: given, elevation_deg: SUNS_DEG[sun - 1] }))?;
-                CHANGE_S
-            }
-        };
+        let now_s = context.world.time_s;
+        let weather = self.weathers.get(i).ok_or_else(|| Error::range("moment", "in the rehearsal", i))?;
+        context.world.change_weather(*weather, now_s, CHANGE_S)?;
+        let changing = SHARES.iter().map(|share| CHANGE_S * share);
+        let settled = SETTLED_S.iter().map(|after_s| CHANGE_S + after_s);
+        let after_s = changing.chain(settled).nth(moment).unwrap_or(CHANGE_S);
+        if let Some(sun) = moment.checked_sub(SHARES.len() + SETTLED_S.len()) {
+            let azimuth_deg = context.world.set.given_sun.map_or(180.0, |sun| sun.azimuth_deg);
+            context.set_sun(Some(GivenDirection { azimuth_deg, elevation_deg: SUNS_DEG[sun] }))?;
+        }
         context.update(now_s + after_s)
     }
 

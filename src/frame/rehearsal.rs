@@ -102,7 +102,7 @@ impl View {
         record(self, &own)
     }
 
-    /// Draws weathers that may come, into small images of its own, so that no frame waits for a shader once they come:
+    /// Draws weathers that may come, into small images of its own, so that hardly a frame waits for a shader once they come:
     /// their pipelines are compiled, and the first of their tables are made. Each weather is drawn while the one before
     /// it changes to it, once it lasts, and under several heights of the sun. `frame` is one like those to come: with
     /// the formats, samples and usages of their images, which are not drawn into, and their settings. `calls` are the

@@ -26,10 +26,10 @@ use crate::{
 
 /// Most cached pipelines of a device: those of some stages and weathers. Views with the same formats share them. On a
 /// software driver one pipeline may take more than 10 MB.
-const MOST_PIPELINES: usize = 32;
+const MOST_PIPELINES: usize = 96;
 
 /// Most cached pipelines of the coarse grid and of the pixels interpolated from it: two or three for each weather.
-const MOST_EVEN: usize = 32;
+const MOST_EVEN: usize = 96;
 
 /// Most cached pipelines that write the kinds of pixels.
 const MOST_KINDS: usize = 8;
