@@ -69,7 +69,7 @@ impl Day {
             "  median, 95th and 99th percentile and slowest frame of every segment, with the wait for the driver:"
         );
         println!(
-            "  {:11} {:6} {:9} {:>7} {:>29} {:>29} {:>25} {:>8}",
+            "  {:11} {:6} {:9} {:>7} {:>27} {:>27} {:>23} {:>8}",
             "segment", "frames", "time", "at rest", "ms", "copies", "over the dearer rest", "settled"
         );
         for segment in 0..SEGMENTS.len() {
