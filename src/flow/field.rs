@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::{
-    advect::{Carrier, Scheme},
+    advect::Scheme,
     eddies::GroundMixing,
+    lanes::Carrier,
     lattice::{Faces, Lattice},
     obstacles::{FlowObstacles, Shares},
     openings::Openings,

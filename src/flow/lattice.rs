@@ -86,6 +86,18 @@ impl Lattice {
         self.n[axis] + usize::from(component == axis && !self.is_flat(axis))
     }
 
+    /// Calls `f` for every row of a component, with its indices north and up, the position of its first value in the
+    /// list, and the number of its values.
+    #[inline]
+    pub(super) fn each_row(&self, component: usize, mut f: impl FnMut(usize, usize, usize, usize)) {
+        let [nx, ny, nz] = [0, 1, 2].map(|a| self.count(component, a));
+        for k in 0..nz {
+            for j in 0..ny {
+                f(j, k, self.at([0, j, k]), nx);
+            }
+        }
+    }
+
     /// Calls `f` for every value of a component, with its indices and its position in the list.
     pub(super) fn each(&self, component: usize, mut f: impl FnMut([usize; 3], usize)) {
         let [nx, ny, nz] = [0, 1, 2].map(|a| self.count(component, a));

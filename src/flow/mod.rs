@@ -71,6 +71,7 @@ mod desc;
 mod eddies;
 mod field;
 mod held;
+mod lanes;
 mod lattice;
 mod live;
 mod motion;

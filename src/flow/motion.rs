@@ -1,9 +1,10 @@
 //! Step of the field, and its steady state.
 
 use super::{
-    advect::{Carrier, Scheme},
+    advect::Scheme,
     eddies,
     field::FlowField,
+    lanes::Carrier,
     lattice::Faces,
     sides::Role,
 };
