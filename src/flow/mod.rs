@@ -70,6 +70,7 @@ mod advect;
 mod desc;
 mod eddies;
 mod field;
+mod halves;
 mod held;
 mod lanes;
 mod lattice;

@@ -5,7 +5,11 @@
 //! faces. An odd number of cells leaves a coarse cell that is half closed. Residuals are restricted as means;
 //! corrections are interpolated linearly between coarse cells.
 
-use std::mem::take;
+use std::mem::{swap, take};
+
+use glam::Vec4;
+
+use super::halves::{Halves, LANES, Lanes, RowNeighbours, lanes, vector};
 
 /// Number of sweeps before and after the coarser grid.
 const SWEEPS: usize = 2;
@@ -17,156 +21,243 @@ const FEW_CELLS: usize = 32;
 const LONGER: f32 = 1.5;
 
 /// Equation on one grid: for each cell, the sum over its faces of coefficient times (neighbour - own) equals the
-/// right-hand side.
+/// right-hand side. Lists have the order of [`Halves`] unless they say otherwise.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GridLevel {
-    /// Number of cells along each axis.
-    pub n: [usize; 3],
-    /// Size of a cell along each axis, m.
+    pub halves: Halves,
     h: [f32; 3],
     /// Coefficient of the lower face of each cell along each axis: open share / h^2. The first one of a row connects
     /// the two ends of the row.
-    pub lower: [Vec<f32>; 3],
+    lower: [Vec<f32>; 3],
     /// Sum of the coefficients of a cell's faces; 0 for a cell without air.
     pub sum: Vec<f32>,
-    /// Unknown: the potential.
-    x: Vec<f32>,
-    /// Right-hand side.
+    /// Solution of a cycle.
+    pub x: Vec<f32>,
     b: Vec<f32>,
-    /// Residual.
-    r: Vec<f32>,
+    /// Whether cells of one colour touch across the ends of each axis: a periodic one with an odd number of cells.
+    has_odd_ends: [bool; 3],
     /// Number of cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
-    /// Scratch space of [`GridLevel::add_correction`].
-    taps: Vec<CoarseTaps>,
+    /// Scratch space for a row, and for a row in the order of cells.
+    line: Vec<f32>,
+    cells: Vec<f32>,
+    /// Solution and `sum` in the order of cells, for the correction of the finer level. Each row repeats its first and
+    /// last value before and after it.
+    plain: [Vec<f32>; 2],
 }
 
-/// Two coarse cells along an axis from which a correction comes, as index and weight.
-type CoarseTaps = [(usize, f32); 2];
+/// Coefficients of the faces of a row's cells, and the values behind these faces: west, east, south, north, below,
+/// above.
+struct RowFaces<'a> {
+    coefficients: [&'a [Lanes]; 6],
+    values: [&'a [Lanes]; 6],
+}
 
-/// Neighbours of a row of cells: start of the row itself, and of the rows before, after, below and above it.
-struct RowNeighbours {
-    /// Start of the row in the lists.
-    own: usize,
-    /// Starts of the rows before, after, below and above it.
-    beside: [usize; 4],
+impl RowFaces<'_> {
+    /// Returns the sum over a cell's faces of coefficient times neighbour.
+    #[inline]
+    fn sum(&self, i: usize) -> Vec4 {
+        let term = |face: usize| vector(self.coefficients[face][i]) * vector(self.values[face][i]);
+        term(0) + term(1) + term(2) + term(3) + term(4) + term(5)
+    }
+}
+
+/// Coarse values that are added to a row of fine ones.
+#[derive(Clone, Copy, Default)]
+struct CoarseTap<'a> {
+    weight: f32,
+    values: &'a [Lanes],
+    sums: &'a [Lanes],
+}
+
+/// Coarse cells from which a correction comes along an axis, with their weights.
+type AxisTaps = [(usize, f32); 2];
+
+/// One colour of a row of cells, to be relaxed.
+struct RowSweep<'a> {
+    faces: RowFaces<'a>,
+    x: &'a [Lanes],
+    b: &'a [Lanes],
+    sums: &'a [Lanes],
+    relaxation: f32,
+}
+
+impl RowSweep<'_> {
+    /// Returns the new values of some cells: those without air keep theirs.
+    #[inline]
+    fn relaxed(&self, i: usize) -> Vec4 {
+        let (x, sum) = (vector(self.x[i]), vector(self.sums[i]));
+        let wanted = (self.faces.sum(i) - vector(self.b[i])) / sum;
+        where_air(sum, x + self.relaxation * (wanted - x), x)
+    }
+}
+
+/// Returns the first of two vectors in lanes whose sum of coefficients is that of a cell with air, else the second.
+#[inline]
+fn where_air(sum: Vec4, there: Vec4, elsewhere: Vec4) -> Vec4 {
+    Vec4::select(sum.cmpgt(Vec4::ZERO), there, elsewhere)
 }
 
 impl GridLevel {
+    /// Creates the level from coefficients in the order of cells.
     pub(super) fn new(n: [usize; 3], h: [f32; 3], lower: [Vec<f32>; 3]) -> Self {
-        let count = n.iter().product();
-        let mut level = Self { n, h, lower, join: [1; 3], ..Self::default() };
-        for values in [&mut level.sum, &mut level.x, &mut level.b, &mut level.r] {
-            values.resize(count, 0.0);
+        let halves = Halves::new(n);
+        let mut level = Self { halves, h, join: [1; 3], ..Self::default() };
+        let [nx, ny, nz] = n;
+        level.line.resize(halves.row, 0.0);
+        level.cells.resize(nx, 0.0);
+        for (a, (values, cells)) in level.lower.iter_mut().zip(&lower).enumerate() {
+            values.resize(halves.len(), 0.0);
+            halves.put(cells, values);
+            halves.each_row(|row, _| halves.close(values, row.own));
+            let is_first = |cell: usize| [cell % nx, cell / nx % ny, cell / (nx * ny)][a] == 0;
+            let is_odd = n[a] > 1 && !n[a].is_multiple_of(2);
+            level.has_odd_ends[a] = is_odd && (0..nx * ny * nz).any(|cell| is_first(cell) && cells[cell] > 0.0);
+        }
+        for values in [&mut level.sum, &mut level.x, &mut level.b] {
+            values.resize(halves.len(), 0.0);
         }
         let mut sum = take(&mut level.sum);
-        level.each_row(|row, _| {
-            for i in 0..n[0] {
-                let [_, right] = level.across(row, i);
-                let at = row.own + i;
-                let x = level.lower[0][at] + level.lower[0][right];
-                let y = level.lower[1][at] + level.lower[1][row.beside[1] + i];
-                sum[at] = x + y + level.lower[2][at] + level.lower[2][row.beside[3] + i];
+        halves.each_row(|row, _| {
+            let [lx, ly, lz] = &level.lower;
+            for half in [0, 1] {
+                let at = |values, start| halves.own(values, start, half);
+                let [_, east] = halves.across(lx, row.own, half);
+                let x = at(lx, row.own).iter().zip(east);
+                let y = at(ly, row.own).iter().zip(at(ly, row.beside[1]));
+                let z = at(lz, row.own).iter().zip(at(lz, row.beside[3]));
+                for (sum, ((x, y), z)) in halves.own_mut(&mut sum, row.own, half).iter_mut().zip(x.zip(y).zip(z)) {
+                    let [x, y] = [x, y].map(|(low, high)| vector(*low) + vector(*high));
+                    *sum = (x + y + vector(*z.0) + vector(*z.1)).to_array();
+                }
             }
+            halves.clear_room(&mut sum, row.own);
         });
         level.sum = sum;
         level
     }
 
-    /// Calls `f` for every row along x with its neighbours and a number whose parity is the colour of the row's first
-    /// cell.
-    fn each_row(&self, mut f: impl FnMut(&RowNeighbours, usize)) {
-        let [nx, ny, nz] = self.n;
-        for k in 0..nz {
-            for j in 0..ny {
-                let start = |j: usize, k: usize| (k * ny + j) * nx;
-                let (before, after) = (start((j + ny - 1) % ny, k), start((j + 1) % ny, k));
-                let (below, above) = (start(j, (k + nz - 1) % nz), start(j, (k + 1) % nz));
-                f(&RowNeighbours { own: start(j, k), beside: [before, after, below, above] }, j + k);
-            }
+    /// Returns whether each cell has air, in the order of cells.
+    pub(super) fn air(&self) -> Vec<bool> {
+        let mut sums = vec![0.0; self.halves.n.iter().product()];
+        self.halves.get(&self.sum, &mut sums);
+        sums.into_iter().map(|sum| sum > 0.0).collect()
+    }
+
+    #[inline]
+    fn faces<'a>(&'a self, x: &'a [f32], row: &RowNeighbours, half: usize) -> RowFaces<'a> {
+        let (halves, own) = (&self.halves, row.own);
+        let [lx, ly, lz] = &self.lower;
+        let at = |values: &'a [f32], start: usize| halves.own(values, start, half);
+        let [[_, east], [x_west, x_east]] = [halves.across(lx, own, half), halves.across(x, own, half)];
+        let [south, north, below, above] = row.beside;
+        RowFaces {
+            coefficients: [at(lx, own), east, at(ly, own), at(ly, north), at(lz, own), at(lz, above)],
+            values: [x_west, x_east, at(x, south), at(x, north), at(x, below), at(x, above)],
         }
     }
 
-    /// Returns the neighbours of the cell `i` of a row, before and after it.
-    fn across(&self, row: &RowNeighbours, i: usize) -> [usize; 2] {
-        let last = self.n[0] - 1;
-        [row.own + if i == 0 { last } else { i - 1 }, row.own + if i == last { 0 } else { i + 1 }]
-    }
-
-    /// Returns the sum over a cell's faces of coefficient times neighbour.
-    #[inline]
-    fn neighbours(&self, x: &[f32], row: &RowNeighbours, i: usize) -> f32 {
-        let [left, right] = self.across(row, i);
-        let at = row.own + i;
-        let [a, b, c, d] = row.beside.map(|start| start + i);
-        let [lx, ly, lz] = &self.lower;
-        lx[at] * x[left] + lx[right] * x[right] + ly[at] * x[a] + ly[b] * x[b] + lz[at] * x[c] + lz[d] * x[d]
+    fn sweep<'a>(&'a self, x: &'a [f32], b: &'a [f32], relaxation: f32, row: &RowNeighbours, half: usize) -> RowSweep<'a> {
+        let at = |values: &'a [f32]| self.halves.own(values, row.own, half);
+        RowSweep { faces: self.faces(x, row, half), x: at(x), b: at(b), sums: at(&self.sum), relaxation }
     }
 
     /// Relaxes the cells of one colour of a chessboard by successive over-relaxation; a factor of 1 is Gauss-Seidel.
-    pub(super) fn relax(&self, x: &mut [f32], b: &[f32], relaxation: f32, colour: usize) {
-        self.each_row(|row, parity| {
-            let mut i = (parity + colour) % 2;
-            while i < self.n[0] {
-                let at = row.own + i;
-                if self.sum[at] > 0.0 {
-                    let wanted = (self.neighbours(x, row, i) - b[at]) / self.sum[at];
-                    x[at] += relaxation * (wanted - x[at]);
-                }
-                i += 2;
+    pub(super) fn relax(&mut self, x: &mut [f32], b: &[f32], relaxation: f32, colour: usize) {
+        let mut line = take(&mut self.line);
+        let halves = self.halves;
+        halves.each_row(|row, parity| {
+            let half = (parity + colour) % 2;
+            let sweep = self.sweep(x, b, relaxation, row, half);
+            let new = line.as_chunks_mut().0;
+            let new = &mut new[..sweep.x.len()];
+            for (i, new) in new.iter_mut().enumerate() {
+                *new = sweep.relaxed(i).to_array();
+            }
+            let last = row.own + halves.place(halves.n[0] - 1);
+            let before = x[last];
+            halves.own_mut(x, row.own, half).copy_from_slice(new);
+            halves.close(x, row.own);
+            if half == 0 && self.has_odd_ends[0] {
+                // Across the row's ends the last cell touches the first, which is new.
+                let i = (halves.n[0] - 1) / 2;
+                x[last] = before;
+                x[last] = self.sweep(x, b, relaxation, row, half).relaxed(i / LANES)[i % LANES];
+                halves.close(x, row.own);
             }
         });
+        self.line = line;
+    }
+
+    /// Relaxes the cells of the first colour, beginning with zeros.
+    fn relax_zeros(&mut self, x: &mut [f32], b: &[f32]) {
+        if self.has_odd_ends.contains(&true) {
+            x.fill(0.0);
+            self.relax(x, b, 1.0, 0);
+            return;
+        }
+        let halves = self.halves;
+        halves.each_row(|row, half| {
+            let (b, sums) = (halves.own(b, row.own, half), halves.own(&self.sum, row.own, half));
+            for (x, (b, sum)) in halves.own_mut(x, row.own, half).iter_mut().zip(b.iter().zip(sums)) {
+                let sum = vector(*sum);
+                *x = where_air(sum, Vec4::ZERO + (Vec4::ZERO - vector(*b)) / sum, Vec4::ZERO).to_array();
+            }
+            halves.own_mut(x, row.own, 1 - half).fill([0.0; LANES]);
+            halves.close(x, row.own);
+        });
+    }
+
+    /// Computes the left-hand side of the equation for a row.
+    #[inline]
+    pub(super) fn apply(&self, x: &[f32], row: &RowNeighbours, product: &mut [f32]) {
+        let halves = &self.halves;
+        for half in [0, 1] {
+            let faces = self.faces(x, row, half);
+            let own = halves.own(x, row.own, half).iter().zip(halves.own(&self.sum, row.own, half));
+            for (i, (out, (x, sum))) in halves.own_mut(product, 0, half).iter_mut().zip(own).enumerate() {
+                *out = (faces.sum(i) - vector(*sum) * vector(*x)).to_array();
+            }
+        }
+        halves.clear_room(product, 0);
     }
 
     /// Computes the residual of the equation: right-hand side less left-hand side.
     pub(super) fn residual(&self, x: &[f32], b: &[f32], residual: &mut [f32]) {
-        self.each_row(|row, _| {
-            for i in 0..self.n[0] {
-                let at = row.own + i;
-                residual[at] = b[at] - (self.neighbours(x, row, i) - self.sum[at] * x[at]);
-            }
-        });
-    }
-
-    /// Computes the left-hand side of the equation.
-    pub(super) fn apply(&self, x: &[f32], product: &mut [f32]) {
-        self.each_row(|row, _| {
-            for i in 0..self.n[0] {
-                let at = row.own + i;
-                product[at] = self.neighbours(x, row, i) - self.sum[at] * x[at];
-            }
+        self.halves.each_row(|row, _| {
+            let (out, b) = (&mut residual[row.own..][..self.halves.row], &b[row.own..]);
+            self.apply(x, row, out);
+            out.iter_mut().zip(b).for_each(|(out, b)| *out = b - *out);
         });
     }
 
     /// Returns the number of cells that the next level joins along each axis, 1 or 2; 1 on all axes if this is the last
     /// level.
     fn joined(&self) -> [usize; 3] {
-        let can = |a: &usize| self.n[*a] > 2;
+        let can = |a: &usize| self.halves.n[*a] > 2;
         let shortest = (0..3).filter(can).map(|a| self.h[a]).fold(f32::INFINITY, f32::min);
         [0, 1, 2].map(|a| if can(&a) && self.h[a] <= LONGER * shortest { 2 } else { 1 })
     }
 
     /// Returns the next coarser level and the numbers of cells that it joins.
     fn coarser(&self) -> Option<([usize; 3], Self)> {
-        let join = self.joined();
-        if join == [1; 3] || self.n.iter().product::<usize>() <= FEW_CELLS {
+        let (join, fine) = (self.joined(), self.halves.n);
+        if join == [1; 3] || fine.iter().product::<usize>() <= FEW_CELLS {
             return None;
         }
-        let n = [0, 1, 2].map(|a| self.n[a].div_ceil(join[a]));
+        let n = [0, 1, 2].map(|a| fine[a].div_ceil(join[a]));
         let h = [0, 1, 2].map(|a| self.h[a] * join[a] as f32);
         let mut lower = [0, 1, 2].map(|_| vec![0.0; n.iter().product()]);
-        let mut at = 0;
-        for k in 0..self.n[2] {
-            for j in 0..self.n[1] {
-                for i in 0..self.n[0] {
-                    let place = [i, j, k];
-                    let [x, y, z] = [0, 1, 2].map(|a| place[a] / join[a]);
-                    for a in (0..3).filter(|a| place[*a] % join[*a] == 0) {
-                        let others: usize = (0..3).filter(|o| *o != a).map(|o| join[o]).product();
-                        let share = 1.0 / (others * join[a] * join[a]) as f32;
-                        lower[a][(z * n[1] + y) * n[0] + x] += share * self.lower[a][at];
-                    }
-                    at += 1;
+        for (k, j) in (0..fine[2]).flat_map(|k| (0..fine[1]).map(move |j| (k, j))) {
+            let (row, coarse) = (self.halves.start(j, k), ((k / join[2]) * n[1] + j / join[1]) * n[0]);
+            for a in 0..3 {
+                if (a == 1 && j % join[1] != 0) || (a == 2 && k % join[2] != 0) {
+                    continue;
+                }
+                let others: usize = (0..3).filter(|o| *o != a).map(|o| join[o]).product();
+                let share = 1.0 / (others * join[a] * join[a]) as f32;
+                for i in (0..fine[0]).step_by(if a == 0 { join[0] } else { 1 }) {
+                    lower[a][coarse + i / join[0]] += share * self.lower[a][row + self.halves.place(i)];
                 }
             }
         }
@@ -174,65 +265,103 @@ impl GridLevel {
     }
 
     /// Restricts the residual to the coarse grid: its mean over the cells that each coarse cell joins.
-    fn restrict(&self, coarse: &mut Self) {
-        coarse.b.fill(0.0);
-        let share = 1.0 / self.join.iter().product::<usize>() as f32;
-        let mut at = 0;
-        for k in 0..self.n[2] {
-            for j in 0..self.n[1] {
-                let start = ((k / self.join[2]) * coarse.n[1] + j / self.join[1]) * coarse.n[0];
-                for i in 0..self.n[0] {
-                    coarse.b[start + i / self.join[0]] += share * self.r[at];
-                    at += 1;
-                }
+    fn restrict(&mut self, x: &[f32], b: &[f32], coarse: &mut Self) {
+        let (mut line, mut cells) = (take(&mut self.line), take(&mut coarse.cells));
+        let (halves, join) = (self.halves, self.join);
+        let share = 1.0 / join.iter().product::<usize>() as f32;
+        let [_, ny, nz] = coarse.halves.n;
+        for (k, j) in (0..nz).flat_map(|k| (0..ny).map(move |j| (k, j))) {
+            cells.fill(0.0);
+            let fine = |a: usize, i: usize| i * join[a]..((i + 1) * join[a]).min(halves.n[a]);
+            for (k, j) in fine(2, k).flat_map(|k| fine(1, j).map(move |j| (k, j))) {
+                let row = halves.neighbours(j, k);
+                self.apply(x, &row, &mut line);
+                line.iter_mut().zip(&b[row.own..]).for_each(|(product, b)| *product = b - *product);
+                halves.add_row(&line, share, join[0] == 2, &mut cells);
+            }
+            let row = coarse.halves.start(j, k);
+            coarse.halves.put_row(&cells, &mut coarse.b[row..row + coarse.halves.row]);
+        }
+        (self.line, coarse.cells) = (line, cells);
+    }
+
+    /// Prepares the solution for the correction of the finer level `fine`.
+    fn lay_out(&mut self, fine: &Self) {
+        let room = fine.halves.room() + 2;
+        let [nx, ny, nz] = self.halves.n;
+        let [values, sums] = &mut self.plain;
+        let is_new = sums.is_empty();
+        for (plain, list) in [(values, &self.x), (sums, &self.sum)].into_iter().take(if is_new { 2 } else { 1 }) {
+            plain.resize(room * ny * nz, 0.0);
+            for (row, plain) in list.chunks_exact(self.halves.row).zip(plain.chunks_exact_mut(room)) {
+                self.halves.get_row(row, &mut plain[1..=nx]);
+                (plain[0], plain[nx + 1]) = (plain[1], plain[nx]);
             }
         }
     }
 
     /// Adds the coarse correction, interpolated linearly: on each axis 3/4 of the own coarse cell and 1/4 of its
     /// nearest neighbour. Where there is no neighbour, the own cell replaces it.
-    fn add_correction(&mut self, coarse: &Self) {
-        let join = self.join;
-        let taps = |a: usize, i: usize| -> CoarseTaps {
+    fn add_correction(&self, x: &mut [f32], coarse: &mut Self) {
+        let (halves, join) = (&self.halves, self.join);
+        if join[0] == 2 {
+            coarse.lay_out(self);
+        }
+        let taps = |a: usize, i: usize| -> AxisTaps {
             if join[a] == 1 {
                 return [(i, 1.0), (i, 0.0)];
             }
             let own = i / 2;
-            let last = coarse.n[a] - 1;
+            let last = coarse.halves.n[a] - 1;
             let (other, beyond) =
                 if i.is_multiple_of(2) { (own.wrapping_sub(1), own == 0) } else { (own + 1, own == last) };
             [(own, 0.75), (if beyond { own } else { other }, 0.25)]
         };
-        let mut rows = take(&mut self.taps);
-        rows.clear();
-        rows.extend((0..self.n[0]).map(|i| taps(0, i)));
-        let mut x = take(&mut self.x);
-        let mut at = 0;
-        for k in 0..self.n[2] {
-            for j in 0..self.n[1] {
-                let (tk, tj) = (taps(2, k), taps(1, j));
-                for row in &rows {
-                    if self.sum[at] > 0.0 {
-                        let own = (tk[0].0 * coarse.n[1] + tj[0].0) * coarse.n[0] + row[0].0;
-                        let mut value = 0.0;
-                        for (z, wz) in tk.into_iter().filter(|t| t.1 > 0.0) {
-                            for (y, wy) in tj.into_iter().filter(|t| t.1 > 0.0) {
-                                let start = (z * coarse.n[1] + y) * coarse.n[0];
-                                for (i, wx) in row.iter().filter(|t| t.1 > 0.0) {
-                                    let from = start + i;
-                                    let from = if coarse.sum[from] > 0.0 { from } else { own };
-                                    value += wz * wy * wx * coarse.x[from];
-                                }
+        for (k, j) in (0..halves.n[2]).flat_map(|k| (0..halves.n[1]).map(move |j| (k, j))) {
+            let (tk, tj, row) = (taps(2, k), taps(1, j), halves.start(j, k));
+            for half in [0, 1] {
+                let mut all = [CoarseTap::default(); 8];
+                let mut count = 0;
+                for (z, wz) in tk.into_iter().filter(|t| t.1 > 0.0) {
+                    for (y, wy) in tj.into_iter().filter(|t| t.1 > 0.0) {
+                        for tap in coarse.taps_of_row(halves, y, z, half, wz * wy) {
+                            if tap.weight > 0.0 {
+                                all[count] = tap;
+                                count += 1;
                             }
                         }
-                        x[at] += value;
                     }
-                    at += 1;
+                }
+                let (all, own) = (&all[..count], all[0].values);
+                let sums = halves.own(&self.sum, row, half);
+                for (i, (x, sum)) in halves.own_mut(x, row, half).iter_mut().zip(sums).enumerate() {
+                    let (mut value, own) = (Vec4::ZERO, vector(own[i]));
+                    for tap in all {
+                        value += tap.weight * where_air(vector(tap.sums[i]), vector(tap.values[i]), own);
+                    }
+                    let before = vector(*x);
+                    *x = where_air(vector(*sum), before + value, before).to_array();
                 }
             }
+            halves.close(x, row);
         }
-        self.x = x;
-        self.taps = rows;
+    }
+
+    /// Returns the values of a coarse row that a half of a fine row takes, of the own cell first, with a weight.
+    #[inline]
+    fn taps_of_row(&self, fine: &Halves, y: usize, z: usize, half: usize, weight: f32) -> [CoarseTap<'_>; 2] {
+        if self.plain[0].is_empty() {
+            let row = self.halves.start(y, z);
+            let [values, sums] = [&self.x, &self.sum].map(|list| self.halves.own(list, row, half));
+            return [CoarseTap { weight, values, sums }, CoarseTap::default()];
+        }
+        let room = fine.room();
+        let start = (z * self.halves.n[1] + y) * (room + 2);
+        let tap = |shift: usize, share: f32| {
+            let [values, sums] = self.plain.each_ref().map(|list| lanes(&list[start + shift..start + shift + room]));
+            CoarseTap { weight: weight * share, values, sums }
+        };
+        [tap(1, 0.75), tap(2 * half, 0.25)]
     }
 }
 
@@ -254,21 +383,18 @@ impl Levels {
 
     /// Returns the cost of one cycle in sweeps of the finest grid.
     pub(super) fn cycle_work(&self) -> f64 {
-        let cells = |l: &GridLevel| l.sum.len() as f64;
+        let cells = |l: &GridLevel| l.halves.n.iter().product::<usize>() as f64;
         let all: f64 = self.0.iter().map(cells).sum();
         // Sweeps on the way down and up, the residual, and the correction.
         all / self.0.first().map_or(1.0, cells) * (2 * SWEEPS + 2) as f64
     }
 
-    /// Runs one V-cycle from zero, which approximates the solution for the right-hand side `b`.
-    pub(super) fn cycle(&mut self, b: &[f32], solution: &mut [f32]) {
-        if let Some(finest) = self.0.first_mut() {
-            finest.b.copy_from_slice(b);
-        }
+    /// Runs one V-cycle from zero. `x` of the finest level then approximates the solution for the right-hand side `b`.
+    pub(super) fn cycle(&mut self, b: &mut Vec<f32>) {
+        let exchange = |levels: &mut Self, b: &mut Vec<f32>| levels.0.iter_mut().take(1).for_each(|l| swap(&mut l.b, b));
+        exchange(self, b);
         v_cycle(&mut self.0);
-        if let Some(finest) = self.0.first() {
-            solution.copy_from_slice(&finest.x);
-        }
+        exchange(self, b);
     }
 }
 
@@ -276,26 +402,20 @@ impl Levels {
 fn v_cycle(levels: &mut [GridLevel]) {
     let Some((fine, coarser)) = levels.split_first_mut() else { return };
     let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));
-    x.fill(0.0);
     let sweeps = if coarser.is_empty() { COARSEST_SWEEPS } else { SWEEPS };
-    for colour in [0, 1].into_iter().cycle().take(2 * sweeps) {
+    fine.relax_zeros(&mut x, &b);
+    for colour in [1, 0].into_iter().cycle().take(2 * sweeps - 1) {
         fine.relax(&mut x, &b, 1.0, colour);
     }
-    let Some(next) = coarser.first_mut() else {
-        (fine.x, fine.b) = (x, b);
-        return;
-    };
-    let mut r = take(&mut fine.r);
-    fine.residual(&x, &b, &mut r);
-    (fine.x, fine.b, fine.r) = (x, b, r);
-    fine.restrict(next);
-    v_cycle(coarser);
-    if let Some(next) = coarser.first() {
-        fine.add_correction(next);
+    if let Some(next) = coarser.first_mut() {
+        fine.restrict(&x, &b, next);
+        v_cycle(coarser);
     }
-    let (mut x, b) = (take(&mut fine.x), take(&mut fine.b));
-    for colour in [1, 0].into_iter().cycle().take(2 * SWEEPS) {
-        fine.relax(&mut x, &b, 1.0, colour);
+    if let Some(next) = coarser.first_mut() {
+        fine.add_correction(&mut x, next);
+        for colour in [1, 0].into_iter().cycle().take(2 * SWEEPS) {
+            fine.relax(&mut x, &b, 1.0, colour);
+        }
     }
     (fine.x, fine.b) = (x, b);
 }

@@ -8,7 +8,12 @@
 //!
 //! The residual of the equation is the remaining divergence, and both methods stop by it.
 
-use super::multigrid::{GridLevel, Levels};
+use glam::Vec4;
+
+use super::{
+    halves::{Halves, vector},
+    multigrid::{GridLevel, Levels},
+};
 use crate::error::{Error, Result, check_range};
 
 /// Method that solves for the pressure.
@@ -75,18 +80,17 @@ impl Solved {
     }
 }
 
-/// Pressure equation on all grids, and vectors of its solvers.
+/// Equation of a grid, and scratch space to solve it. Lists have the order of [`super::halves::Halves`].
 #[derive(Clone, Debug)]
 pub(super) struct Pressure {
     /// Equation on all grids, finest first.
     levels: Levels,
-    /// Residual.
+    /// Whether each cell has air, in the order of cells.
+    air: Vec<bool>,
+    x: Vec<f32>,
     r: Vec<f32>,
     /// Residual of the iteration before.
     before: Vec<f32>,
-    /// Residual preconditioned by a V-cycle.
-    z: Vec<f32>,
-    /// Direction of search.
     p: Vec<f32>,
     /// Left-hand side of the equation for the direction of search.
     q: Vec<f32>,
@@ -94,51 +98,40 @@ pub(super) struct Pressure {
 
 /// Returns the largest absolute value.
 fn largest(v: &[f32]) -> f32 {
-    v.iter().fold(0.0, |most, r| most.max(r.abs()))
-}
-
-/// Returns the scalar product of two lists.
-fn dot(a: &[f32], b: &[f32]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
-}
-
-/// Adds `a` times `y` to `x`.
-fn add(x: &mut [f32], a: f64, y: &[f32]) {
-    let a = a as f32;
-    x.iter_mut().zip(y).for_each(|(x, y)| *x += a * y);
+    let (groups, rest) = v.as_chunks();
+    let most = groups.iter().fold(Vec4::ZERO, |most, v| vector(*v).abs().max(most)).max_element();
+    rest.iter().fold(most, |most, v| v.abs().max(most))
 }
 
 impl Pressure {
     /// Creates the equation on all grids from that on the finest one.
     pub(super) fn new(finest: GridLevel) -> Self {
-        let count = finest.sum.len();
-        let [r, before, z, p, q] = [0; 5].map(|_| vec![0.0; count]);
-        Self { levels: Levels::new(finest), r, before, z, p, q }
-    }
-
-    /// Returns the equation on the finest grid.
-    fn finest(&self) -> Option<&GridLevel> {
-        self.levels.0.first()
+        let [x, r, before, p, q] = [0; 5].map(|_| vec![0.0; finest.sum.len()]);
+        Self { air: finest.air(), levels: Levels::new(finest), x, r, before, p, q }
     }
 
     /// Whether a cell has air.
     pub(super) fn has_air(&self, cell: usize) -> bool {
-        self.finest().is_some_and(|l| l.sum[cell] > 0.0)
+        self.air[cell]
     }
 
-    /// Solves the equation for `b`, beginning with `x`, until no residual exceeds `tolerance` or the method's limit is
-    /// reached.
+    /// Solves the equation for `b`, beginning with zeros, until no residual exceeds `tolerance` or the method's limit
+    /// is reached. `b` and `x` are in the order of cells.
     pub(super) fn solve(&mut self, method: PressureMethod, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
-        match method {
-            PressureMethod::Multigrid { max_cycles } => self.multigrid(max_cycles, x, b, tolerance),
-            PressureMethod::Sor { relaxation, max_iterations } => self.sor(relaxation, max_iterations, x, b, tolerance),
-        }
+        let Some(halves) = self.levels.0.first().map(|l| l.halves) else { return Solved::default() };
+        self.x.fill(0.0);
+        halves.put(b, &mut self.r);
+        let solved = match method {
+            PressureMethod::Multigrid { max_cycles } => self.multigrid(max_cycles, tolerance),
+            PressureMethod::Sor { relaxation, max_iterations } => self.sor(relaxation, max_iterations, tolerance),
+        };
+        halves.get(&self.x, x);
+        solved
     }
 
-    /// Solves by red-black over-relaxation. `first` and `last` are the relaxation factors, `most` the largest number of
-    /// iterations.
-    fn sor(&mut self, [first, last]: [f32; 2], most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
-        let Some(level) = self.levels.0.first() else { return Solved::default() };
+    fn sor(&mut self, [first, last]: [f32; 2], most: u32, tolerance: f32) -> Solved {
+        let Self { levels, x, r: b, before: residual, .. } = self;
+        let Some(level) = levels.0.first_mut() else { return Solved::default() };
         // The residual costs as much as an iteration, so it is computed only after an eighth more iterations each time.
         let (mut iterations, mut looks, mut next) = (0, 0, most.min(8));
         loop {
@@ -149,9 +142,9 @@ impl Pressure {
                 level.relax(x, b, relaxation, 1);
                 iterations += 1;
             }
-            level.residual(x, b, &mut self.r);
+            level.residual(x, b, residual);
             looks += 1;
-            let residual = largest(&self.r);
+            let residual = largest(residual);
             if residual <= tolerance || iterations >= most {
                 return Solved { iterations, work: f64::from(iterations + looks), residual };
             }
@@ -159,38 +152,58 @@ impl Pressure {
         }
     }
 
-    /// Solves by conjugate gradients preconditioned by V-cycles, in at most `most` cycles.
-    fn multigrid(&mut self, most: u32, x: &mut [f32], b: &[f32], tolerance: f32) -> Solved {
-        let Self { levels, r, before, z, p, q } = self;
-        let Some(level) = levels.0.first() else { return Solved::default() };
-        level.residual(x, b, r);
+    fn multigrid(&mut self, most: u32, tolerance: f32) -> Solved {
+        let Self { levels, x, r, before, p, q, .. } = self;
         let mut solved = Solved { iterations: 0, work: 1.0, residual: largest(r) };
         let work = levels.cycle_work() + 1.0;
         let mut along = 0.0;
         while solved.residual > tolerance && solved.iterations < most {
-            levels.cycle(r, z);
+            levels.cycle(r);
+            let Some(level) = levels.0.first() else { break };
+            let (z, halves) = (&level.x, &level.halves);
             if solved.iterations == 0 {
                 p.copy_from_slice(z);
-                along = dot(r, z);
+                along = products(halves, [(r, z)])[0];
             } else {
-                let now = dot(r, z);
-                let turn = (now - dot(before, z)) / along;
-                p.iter_mut().zip(z.iter()).for_each(|(p, z)| *p = z + turn as f32 * *p);
+                let [now, turned] = products(halves, [(r, z), (before, z)]);
+                let turn = ((now - turned) / along) as f32;
+                p.iter_mut().zip(z).for_each(|(p, z)| *p = z + turn * *p);
                 along = now;
             }
-            let Some(level) = levels.0.first() else { break };
-            level.apply(p, q);
-            let step = dot(r, p) / dot(p, q);
+            // Sums begin with -0, to which any number can be added unchanged.
+            let [mut rp, mut pq] = [-0.0; 2];
+            halves.each_row(|row, _| {
+                let own = row.own..row.own + halves.row;
+                level.apply(p, row, &mut q[own.clone()]);
+                rp = halves.add_products(&r[own.clone()], &p[own.clone()], rp);
+                pq = halves.add_products(&p[own.clone()], &q[own], pq);
+            });
+            let step = rp / pq;
             if !step.is_finite() {
                 break;
             }
-            add(x, step, p);
-            before.copy_from_slice(r);
-            add(r, -step, q);
+            let (ahead, back) = (step as f32, -step as f32);
+            for ((x, p), ((r, q), before)) in x.iter_mut().zip(&*p).zip(r.iter_mut().zip(&*q).zip(&mut *before)) {
+                *x += ahead * p;
+                *before = *r;
+                *r += back * q;
+            }
             solved.iterations += 1;
             solved.work += work;
             solved.residual = largest(r);
         }
         solved
     }
+}
+
+/// Returns the sums of the products of pairs of lists, each in the order of cells.
+fn products<const N: usize>(halves: &Halves, lists: [(&Vec<f32>, &Vec<f32>); N]) -> [f64; N] {
+    let mut sums = [-0.0; N];
+    for row in (0..halves.len()).step_by(halves.row) {
+        let own = row..row + halves.row;
+        for (sum, (a, b)) in sums.iter_mut().zip(lists) {
+            *sum = halves.add_products(&a[own.clone()], &b[own.clone()], *sum);
+        }
+    }
+    sums
 }

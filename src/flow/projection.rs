@@ -26,7 +26,6 @@ impl FlowField {
         self.solved = Solved::default();
         for _ in 0..2 {
             self.find_divergence(v);
-            correction.fill(0.0);
             let solved = self.pressure.solve(self.settings.pressure, &mut correction, &self.divergence, tolerance);
             self.subtract_gradient(v, &correction);
             potential.iter_mut().zip(&correction).for_each(|(p, c)| *p += c);
