@@ -11,7 +11,12 @@
 //! The viscosity is zero in parallel shear and at walls, and needs neither averages nor the distance from a wall.
 //! [`GroundMixing`] maintains the shear over the ground.
 
-use super::lattice::{Faces, Lattice};
+use glam::Vec4;
+
+use super::{
+    lanes::{LANES, four, larger, lesser},
+    lattice::{Faces, Lattice},
+};
 
 /// Mixing of the mean wind by eddies over the ground: the viscosity kappa u* z up to a longest mixing length (Prandtl
 /// 1925). With the stress of rough walls ([`super::walls`]), the logarithmic profile of the inflow is then in balance.
@@ -47,41 +52,110 @@ impl GroundMixing {
 /// Constant c = 2.5 C_S^2 (Vreman 2004, section II).
 const C: f32 = 0.07;
 
-/// Finds the eddy viscosity of each cell, m2/s. The ghosts of `v` must be filled.
-pub(super) fn viscosity(lattice: &Lattice, v: &Faces, cells: &mut [f32]) {
-    let h = lattice.h;
-    lattice.each_cell(|_, cell, at| {
-        let mut a = [[0.0_f32; 3]; 3];
-        for j in lattice.axes() {
-            let (u, own) = (&v[j], lattice.stride[j]);
-            for i in lattice.axes() {
-                let s = lattice.stride[i];
-                a[i][j] = if i == j {
-                    (u[at + own] - u[at]) / h[i]
-                } else {
-                    0.25 * (u[at + s] + u[at + s + own] - u[at - s] - u[at - s + own]) / h[i]
-                };
-            }
+/// Finds the eddy viscosity of each cell, m2/s, limited to `most`. The ghosts of `v` must be filled.
+pub(super) fn viscosity(lattice: &Lattice, v: &Faces, most: f32, cells: &mut [f32]) {
+    let nx = lattice.n[0];
+    lattice.each_cell_row(|_, _, cell, at| {
+        for (i, cells) in (0..nx).step_by(LANES).zip(cells[cell..cell + nx].chunks_mut(LANES)) {
+            let found = lesser(viscosity_of(lattice, v, at + i), Vec4::splat(most)).to_array();
+            cells.copy_from_slice(&found[..cells.len()]);
         }
-        let all: f32 = a.iter().flatten().map(|v| v * v).sum();
-        if all < 1e-12 {
-            cells[cell] = 0.0;
-            return;
-        }
-        let b = |i: usize, j: usize| (0..3).map(|m| h[m] * h[m] * a[m][i] * a[m][j]).sum::<f32>();
-        let [b11, b22, b33] = [b(0, 0), b(1, 1), b(2, 2)];
-        let [b12, b13, b23] = [b(0, 1), b(0, 2), b(1, 2)];
-        let sum = b11 * b22 - b12 * b12 + b11 * b33 - b13 * b13 + b22 * b33 - b23 * b23;
-        cells[cell] = C * (sum.max(0.0) / all).sqrt();
     });
 }
 
-/// Mixes a component over `dt` seconds in one explicit step, by the viscosity of the cells plus the uniform viscosity
-/// `even`. `old` has the values before the step.
-pub(super) fn mix(lattice: &Lattice, cells: &[f32], even: f32, dt: f32, c: usize, (old, v): (&[f32], &mut [f32])) {
-    let n = lattice.n;
-    let steps = [1, n[0], n[0] * n[1]];
-    lattice.each(c, |i, at| {
+/// Returns the eddy viscosity of four cells, m2/s; their lower faces lie from `at` on in the lists.
+#[inline]
+fn viscosity_of(lattice: &Lattice, v: &Faces, at: usize) -> Vec4 {
+    let h = lattice.h;
+    let mut a = [[Vec4::ZERO; 3]; 3];
+    for j in lattice.axes() {
+        let own = lattice.stride[j];
+        let u = |at: usize| four(&v[j][at..at + LANES]);
+        for i in lattice.axes() {
+            let s = lattice.stride[i];
+            a[i][j] = if i == j {
+                (u(at + own) - u(at)) / h[i]
+            } else {
+                0.25 * (u(at + s) + u(at + s + own) - u(at - s) - u(at - s + own)) / h[i]
+            };
+        }
+    }
+    let all = a.iter().flatten().fold(Vec4::ZERO, |sum, v| sum + *v * *v);
+    let b = |i: usize, j: usize| {
+        let part = |m: usize| h[m] * h[m] * a[m][i] * a[m][j];
+        part(0) + part(1) + part(2)
+    };
+    let [b11, b22, b33] = [b(0, 0), b(1, 1), b(2, 2)];
+    let [b12, b13, b23] = [b(0, 1), b(0, 2), b(1, 2)];
+    let sum = b11 * b22 - b12 * b12 + b11 * b33 - b13 * b13 + b22 * b33 - b23 * b23;
+    let found = C * (larger(sum, Vec4::ZERO) / all).sqrt();
+    Vec4::select(all.cmplt(Vec4::splat(1e-12)), Vec4::ZERO, found)
+}
+
+/// One component of the air, and what mixes it.
+pub(super) struct Mixing<'a> {
+    pub lattice: &'a Lattice,
+    /// Viscosity of each cell, and a uniform one that is added, m2/s.
+    pub cells: &'a [f32],
+    pub even: f32,
+    /// Length of the step, s.
+    pub dt: f32,
+    pub component: usize,
+    /// Values before the step.
+    pub old: &'a [f32],
+}
+
+impl Mixing<'_> {
+    /// Mixes the component in one explicit step.
+    pub fn mix(&self, v: &mut [f32]) {
+        let (lattice, c) = (self.lattice, self.component);
+        let n = lattice.n;
+        lattice.each_row(c, |j, k, at, count| {
+            let is_inside = |a: usize, i: usize| i > 0 && i + 1 < n[a];
+            // Cells beside those at the sides are missing.
+            let inner = if is_inside(1, j) && is_inside(2, k) { 1..n[0].saturating_sub(1) } else { 0..0 };
+            let whole = inner.len() / LANES * LANES;
+            for i in inner.clone().step_by(LANES).take(whole / LANES) {
+                let mixed = four(&v[at + i..at + i + LANES]) + self.dt * self.inner_change([i, j, k], at + i);
+                v[at + i..at + i + LANES].copy_from_slice(&mixed.to_array());
+            }
+            for i in (0..inner.start.min(count)).chain(inner.start + whole..count) {
+                v[at + i] += self.dt * self.change([i, j, k], at + i);
+            }
+        });
+    }
+
+    /// Returns the change of four values with cells all round them, m/s2.
+    #[inline]
+    fn inner_change(&self, i: [usize; 3], at: usize) -> Vec4 {
+        let (lattice, c) = (self.lattice, self.component);
+        let [nx, ny, _] = lattice.n;
+        let steps = [1, nx, nx * ny];
+        let above = i[0] + i[1] * steps[1] + i[2] * steps[2];
+        let below = above - steps[c];
+        let cells = |at: usize| four(&self.cells[at..at + LANES]);
+        let old = |at: usize| four(&self.old[at..at + LANES]);
+        let own = 0.5 * (cells(above) + cells(below));
+        let mut sum = Vec4::ZERO;
+        for a in 0..3 {
+            let (s, step, hh) = (lattice.stride[a], steps[a], lattice.h[a] * lattice.h[a]);
+            let [up, down] = if a == c {
+                [cells(above), cells(below)]
+            } else {
+                let up = cells(above + step) + cells(below + step);
+                let down = cells(above - step) + cells(below - step);
+                [0.25 * up + 0.5 * own, 0.25 * down + 0.5 * own]
+            };
+            sum += ((up + self.even) * (old(at + s) - old(at)) - (down + self.even) * (old(at) - old(at - s))) / hh;
+        }
+        sum
+    }
+
+    /// Returns the change of a value, m/s2.
+    fn change(&self, i: [usize; 3], at: usize) -> f32 {
+        let Self { lattice, cells, even, component: c, old, .. } = *self;
+        let n = lattice.n;
+        let steps = [1, n[0], n[0] * n[1]];
         // The two cells on either side of the face.
         let above = (0..3).map(|a| i[a].min(n[a] - 1) * steps[a]).sum::<usize>();
         let below = if i[c] > 0 && i[c] < n[c] { above - steps[c] } else { above };
@@ -100,6 +174,6 @@ pub(super) fn mix(lattice: &Lattice, cells: &[f32], even: f32, dt: f32, c: usize
             sum += ((beside(true) + even) * (old[at + s] - old[at]) - (beside(false) + even) * (old[at] - old[at - s]))
                 / hh;
         }
-        v[at] += dt * sum;
-    });
+        sum
+    }
 }

@@ -66,7 +66,7 @@ impl Along {
 
 /// Returns four values that follow each other.
 #[inline]
-fn four(values: &[f32]) -> Vec4 {
+pub(super) fn four(values: &[f32]) -> Vec4 {
     vec4(values[0], values[1], values[2], values[3])
 }
 
@@ -305,13 +305,13 @@ fn wrapped(places: Vec4, n: f32) -> Vec4 {
 
 /// Returns the lesser number of each lane; of two zeros the first, whatever their signs.
 #[inline]
-fn lesser(a: Vec4, b: Vec4) -> Vec4 {
+pub(super) fn lesser(a: Vec4, b: Vec4) -> Vec4 {
     b.min(a)
 }
 
 /// Returns the larger number of each lane; of two zeros the first, whatever their signs.
 #[inline]
-fn larger(a: Vec4, b: Vec4) -> Vec4 {
+pub(super) fn larger(a: Vec4, b: Vec4) -> Vec4 {
     b.max(a)
 }
 

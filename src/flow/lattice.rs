@@ -146,6 +146,32 @@ impl Lattice {
         }
     }
 
+    /// Calls `f` for every row of cells, with its indices north and up, the number of its first cell, and the position of
+    /// that cell's lower faces in the lists.
+    #[inline]
+    pub(super) fn each_cell_row(&self, mut f: impl FnMut(usize, usize, usize, usize)) {
+        let [nx, ny, nz] = self.n;
+        for k in 0..nz {
+            for j in 0..ny {
+                f(j, k, (k * ny + j) * nx, self.at([0, j, k]));
+            }
+        }
+    }
+
+    /// Calls `f` for every cell at the two sides across `axis`, which is not flat, as [`Lattice::each_cell`] would.
+    pub(super) fn each_side_cell(&self, axis: usize, mut f: impl FnMut([usize; 3], usize, usize)) {
+        let [nx, ny, _] = self.n;
+        let along = |a: usize| (0..self.n[a]).step_by(if a == axis { self.n[a] - 1 } else { 1 });
+        for k in along(2) {
+            for j in along(1) {
+                let (first, row) = ((k * ny + j) * nx, self.at([0, j, k]));
+                for i in along(0) {
+                    f([i, j, k], first + i, row + i);
+                }
+            }
+        }
+    }
+
     /// Calls `f` for the first value (index 0) of every line along `axis`, including lines through ghosts of the other
     /// axes.
     pub(super) fn each_line(&self, axis: usize, mut f: impl FnMut(usize)) {

@@ -2,7 +2,7 @@
 
 use super::{
     advect::Scheme,
-    eddies,
+    eddies::{self, Mixing},
     field::FlowField,
     lanes::Carrier,
     lattice::Faces,
@@ -156,16 +156,16 @@ impl FlowField {
             let mut cells = std::mem::take(&mut self.divergence);
             cells.fill(0.0);
             if self.settings.has_eddies {
-                eddies::viscosity(lattice, v, &mut cells);
                 // Limit of the eddy viscosity for a stable explicit step.
                 let most = ((0.45 * parts / (dt * inverse) - even - ground).max(0.0)) as f32;
-                cells.iter_mut().for_each(|nu| *nu = nu.min(most));
+                eddies::viscosity(lattice, v, most, &mut cells);
             }
             self.mixing.add(lattice, &mut cells);
             for _ in 0..parts as u32 {
                 for c in lattice.axes() {
                     spare[c].copy_from_slice(&v[c]);
-                    eddies::mix(lattice, &cells, even as f32, (dt / parts) as f32, c, (&spare[c], &mut v[c]));
+                    let (even, dt) = (even as f32, (dt / parts) as f32);
+                    Mixing { lattice, cells: &cells, even, dt, component: c, old: &spare[c] }.mix(&mut v[c]);
                 }
                 self.fill_all(v);
             }

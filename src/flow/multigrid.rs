@@ -55,7 +55,7 @@ struct RowFaces<'a> {
 
 impl RowFaces<'_> {
     /// Returns the sum over a cell's faces of coefficient times neighbour.
-    #[inline]
+    #[inline(always)]
     fn sum(&self, i: usize) -> Vec4 {
         let term = |face: usize| vector(self.coefficients[face][i]) * vector(self.values[face][i]);
         term(0) + term(1) + term(2) + term(3) + term(4) + term(5)
@@ -84,7 +84,7 @@ struct RowSweep<'a> {
 
 impl RowSweep<'_> {
     /// Returns the new values of some cells: those without air keep theirs.
-    #[inline]
+    #[inline(always)]
     fn relaxed(&self, i: usize) -> Vec4 {
         let (x, sum) = (vector(self.x[i]), vector(self.sums[i]));
         let wanted = (self.faces.sum(i) - vector(self.b[i])) / sum;
@@ -144,7 +144,7 @@ impl GridLevel {
         sums.into_iter().map(|sum| sum > 0.0).collect()
     }
 
-    #[inline]
+    #[inline(always)]
     fn faces<'a>(&'a self, x: &'a [f32], row: &RowNeighbours, half: usize) -> RowFaces<'a> {
         let (halves, own) = (&self.halves, row.own);
         let [lx, ly, lz] = &self.lower;
@@ -157,6 +157,7 @@ impl GridLevel {
         }
     }
 
+    #[inline(always)]
     fn sweep<'a>(&'a self, x: &'a [f32], b: &'a [f32], relaxation: f32, row: &RowNeighbours, half: usize) -> RowSweep<'a> {
         let at = |values: &'a [f32]| self.halves.own(values, row.own, half);
         RowSweep { faces: self.faces(x, row, half), x: at(x), b: at(b), sums: at(&self.sum), relaxation }

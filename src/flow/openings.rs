@@ -154,18 +154,13 @@ impl Openings {
         let size = lattice.h.map(f64::from);
         for a in lattice.axes() {
             let area: f64 = lattice.axes().filter(|o| *o != a).map(|o| size[o]).product();
-            lattice.each_cell(|i, cell, at| {
-                for (end, (is_last, at, outward)) in
-                    [(i[a] == 0, at, -1.0), (i[a] == lattice.n[a] - 1, at + lattice.stride[a], 1.0)]
-                        .into_iter()
-                        .enumerate()
-                {
-                    let role = roles[a][end];
-                    if is_last && (role == Role::In || role == Role::Out) {
-                        let open_m2 = f64::from(self.open[a][at]) * area;
-                        let body = self.bodies[cell] as usize;
-                        f(SideFace { axis: a, at, body, outward, open_m2, is_out: role == Role::Out });
-                    }
+            lattice.each_side_cell(a, |i, cell, at| {
+                let (end, at, outward) = if i[a] == 0 { (0, at, -1.0) } else { (1, at + lattice.stride[a], 1.0) };
+                let role = roles[a][end];
+                if role == Role::In || role == Role::Out {
+                    let open_m2 = f64::from(self.open[a][at]) * area;
+                    let body = self.bodies[cell] as usize;
+                    f(SideFace { axis: a, at, body, outward, open_m2, is_out: role == Role::Out });
                 }
             });
         }

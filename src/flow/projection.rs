@@ -46,16 +46,25 @@ impl FlowField {
         let steps = [1, nx, nx * ny];
         for a in lattice.axes() {
             let wraps = self.roles[a][0] == Role::Periodic;
-            let (values, open) = (&mut v[a], &self.openings.open[a]);
+            let (values, open, h) = (&mut v[a], &self.openings.open[a], lattice.h[a]);
             let (round, beyond) = ((lattice.n[a] - 1) * steps[a], lattice.n[a] * lattice.stride[a]);
-            lattice.each_cell(|i, cell, at| {
-                if open[at] == 0.0 || (i[a] == 0 && !wraps) {
+            lattice.each_cell_row(|j, k, cell, at| {
+                // Along a row, only its first cell can be the first along this axis, or all of them.
+                let firsts = [usize::from(a == 0), if j == 0 { nx } else { 0 }, if k == 0 { nx } else { 0 }][a];
+                for i in 0..if wraps { firsts } else { 0 } {
+                    if open[at + i] != 0.0 {
+                        values[at + i] -= (potential[cell + i] - potential[cell + i + round]) / h;
+                        values[at + i + beyond] = values[at + i];
+                    }
+                }
+                if firsts == nx {
                     return;
                 }
-                let before = if i[a] == 0 { cell + round } else { cell - steps[a] };
-                values[at] -= (potential[cell] - potential[before]) / lattice.h[a];
-                if i[a] == 0 {
-                    values[at + beyond] = values[at];
+                let own = &potential[cell + firsts..cell + nx];
+                let before = &potential[cell + firsts - steps[a]..cell + nx - steps[a]];
+                let faces = values[at + firsts..at + nx].iter_mut().zip(&open[at + firsts..at + nx]);
+                for ((value, open), (own, before)) in faces.zip(own.iter().zip(before)) {
+                    *value -= if *open == 0.0 { 0.0 } else { (own - before) / h };
                 }
             });
         }
@@ -63,19 +72,27 @@ impl FlowField {
 
     /// Finds the divergence of each cell: the air that leaves through its open faces, divided by the cell's volume.
     pub(super) fn find_divergence(&mut self, v: &Faces) {
-        let (lattice, open) = (&self.lattice, &self.openings.open);
+        let (lattice, openings) = (&self.lattice, &self.openings);
         let out = &mut self.divergence;
-        out.fill(0.0);
-        for a in lattice.axes() {
-            let s = lattice.stride[a];
-            lattice.each_cell(|_, cell, at| {
-                out[cell] += (open[a][at + s] * v[a][at + s] - open[a][at] * v[a][at]) / lattice.h[a];
-            });
-            let pushed = &self.openings.pushed[a];
-            if !pushed.is_empty() {
-                lattice.each_cell(|_, cell, at| out[cell] += (pushed[at + s] - pushed[at]) / lattice.h[a]);
+        let nx = lattice.n[0];
+        lattice.each_cell_row(|_, _, cell, at| {
+            let out = &mut out[cell..cell + nx];
+            out.fill(0.0);
+            for a in lattice.axes() {
+                let (s, h) = (lattice.stride[a], lattice.h[a]);
+                let (open, v) = (&openings.open[a], &v[a]);
+                let low = open[at..at + nx].iter().zip(&v[at..at + nx]);
+                let high = open[at + s..at + s + nx].iter().zip(&v[at + s..at + s + nx]);
+                for (out, (low, high)) in out.iter_mut().zip(low.zip(high)) {
+                    *out += (high.0 * high.1 - low.0 * low.1) / h;
+                }
+                let pushed = &openings.pushed[a];
+                if !pushed.is_empty() {
+                    let pairs = pushed[at..at + nx].iter().zip(&pushed[at + s..at + s + nx]);
+                    out.iter_mut().zip(pairs).for_each(|(out, (low, high))| *out += (high - low) / h);
+                }
             }
-        }
+        });
         if self.openings.pushed.iter().any(|p| !p.is_empty()) {
             // Cells inside obstacles have no flow.
             out.iter_mut().enumerate().filter(|(cell, _)| !self.pressure.has_air(*cell)).for_each(|(_, d)| *d = 0.0);
