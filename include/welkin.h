@@ -5157,6 +5157,33 @@ typedef uint32_t wk_wind_walls;
 /** Air slides along them without friction. */
 #define WK_WIND_WALLS_SMOOTH 1
 
+/** Scheme by which the air of a wind field carries its own velocity. src/flow/mod.rs has the errors of each. */
+typedef uint32_t wk_wind_scheme;
+
+/**
+ * Half a step, a projection, a reflection at it, another half step and a projection (Zehnder et al. 2018), by limited
+ * cubic interpolation: eddies keep their energy.
+ */
+#define WK_WIND_SCHEME_REFLECTION 0
+/**
+ * Linear interpolation along curved paths, corrected by the error that carrying the result back shows (Selle et al.
+ * 2008).
+ */
+#define WK_WIND_SCHEME_MACCORMACK 1
+/** Linear interpolation along straight paths (Stam 1999): the cheapest; it smears eddies within seconds. */
+#define WK_WIND_SCHEME_SEMI_LAGRANGIAN 2
+
+/** Method that solves for the pressure of a wind field. */
+typedef uint32_t wk_wind_pressure;
+
+/** Conjugate gradients preconditioned by multigrid V-cycles, until the remaining divergence is small. */
+#define WK_WIND_PRESSURE_MULTIGRID 0
+/**
+ * Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With few
+ * iterations air is made and lost behind obstacles.
+ */
+#define WK_WIND_PRESSURE_RELAXATION 1
+
 /**
  * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
  * top it blends into the weather's wind.
@@ -5191,6 +5218,22 @@ typedef struct wk_wind_field {
      * Range [1048576, 17179869184], default 1073741824.
      */
     uint64_t most_bytes;
+    /** A WK_WIND_SCHEME_ constant, default WK_WIND_SCHEME_REFLECTION. Part of the saved state. */
+    wk_wind_scheme scheme;
+    /** A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state. */
+    wk_wind_pressure pressure;
+    /**
+     * Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], of a projection. 0, the
+     * default, means 50 V-cycles or 5 iterations.
+     */
+    uint32_t most_iterations;
+    /** Must be 0. */
+    uint32_t reserved1;
+    /**
+     * Relaxation factors of the first and of the last possible iteration, both in (0, 2); between them the factor
+     * changes linearly. V-cycles ignore them. Default 0, 0, which means 1.7, 1.1.
+     */
+    float relaxation[2];
 } wk_wind_field;
 
 /** Every field of `wk_wind_field` at its default. */
@@ -5204,7 +5247,12 @@ typedef struct wk_wind_field {
     /* mode */ WK_WIND_FIELD_STEADY, \
     /* walls */ WK_WIND_WALLS_ROUGH, \
     /* reserved0 */ 0, \
-    /* most_bytes */ UINT64_C(1073741824) \
+    /* most_bytes */ UINT64_C(1073741824), \
+    /* scheme */ WK_WIND_SCHEME_REFLECTION, \
+    /* pressure */ WK_WIND_PRESSURE_MULTIGRID, \
+    /* most_iterations */ 0, \
+    /* reserved1 */ 0, \
+    /* relaxation */ { 0.0f, 0.0f } \
 }
 
 /** State of a wind field. */
@@ -5256,9 +5304,10 @@ typedef struct wk_wind_field_report {
 
 /**
  * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
- * field with the same size, mode and walls at another place moves there by whole cells; any other field begins anew.
- * wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so it is the same on every
- * channel. It begins with the steady field of its first moment. Part of the saved state. Unchanged after an error.
+ * field with the same size, mode, walls, scheme and pressure method at another place moves there by whole cells; any
+ * other field begins anew. wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so
+ * it is the same on every channel. It begins with the steady field of its first moment. Part of the saved state.
+ * Unchanged after an error.
  * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
  * that has passed.
  */

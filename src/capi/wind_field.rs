@@ -17,8 +17,8 @@ use super::boundary::{
     objects::{ContextObject, wk_context},
 };
 use crate::{
-    error::Status,
-    flow::{WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls},
+    error::{Error, Result, Status, check_range},
+    flow::{PressureMethod, Scheme, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls},
 };
 
 include!(concat!(env!("OUT_DIR"), "/init_wind_field.rs"));
@@ -38,6 +38,25 @@ pub type wk_wind_walls = u32;
 pub const WK_WIND_WALLS_ROUGH: wk_wind_walls = 0;
 /// Air slides along them without friction.
 pub const WK_WIND_WALLS_SMOOTH: wk_wind_walls = 1;
+
+/// Scheme by which the air of a wind field carries its own velocity. src/flow/mod.rs has the errors of each.
+pub type wk_wind_scheme = u32;
+/// Half a step, a projection, a reflection at it, another half step and a projection (Zehnder et al. 2018), by limited
+/// cubic interpolation: eddies keep their energy.
+pub const WK_WIND_SCHEME_REFLECTION: wk_wind_scheme = 0;
+/// Linear interpolation along curved paths, corrected by the error that carrying the result back shows (Selle et al.
+/// 2008).
+pub const WK_WIND_SCHEME_MACCORMACK: wk_wind_scheme = 1;
+/// Linear interpolation along straight paths (Stam 1999): the cheapest; it smears eddies within seconds.
+pub const WK_WIND_SCHEME_SEMI_LAGRANGIAN: wk_wind_scheme = 2;
+
+/// Method that solves for the pressure of a wind field.
+pub type wk_wind_pressure = u32;
+/// Conjugate gradients preconditioned by multigrid V-cycles, until the remaining divergence is small.
+pub const WK_WIND_PRESSURE_MULTIGRID: wk_wind_pressure = 0;
+/// Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With few
+/// iterations air is made and lost behind obstacles.
+pub const WK_WIND_PRESSURE_RELAXATION: wk_wind_pressure = 1;
 
 /// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
 /// top it blends into the weather's wind.
@@ -67,6 +86,18 @@ pub struct wk_wind_field {
     /// Largest memory for the field, bytes. A field that needs more is refused, and the message says how much it needs.
     /// Range [1048576, 17179869184], default 1073741824.
     pub most_bytes: u64,
+    /// A WK_WIND_SCHEME_ constant, default WK_WIND_SCHEME_REFLECTION. Part of the saved state.
+    pub scheme: wk_wind_scheme,
+    /// A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state.
+    pub pressure: wk_wind_pressure,
+    /// Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], of a projection. 0, the
+    /// default, means 50 V-cycles or 5 iterations.
+    pub most_iterations: u32,
+    /// Must be 0.
+    pub reserved1: u32,
+    /// Relaxation factors of the first and of the last possible iteration, both in (0, 2); between them the factor
+    /// changes linearly. V-cycles ignore them. Default 0, 0, which means 1.7, 1.1.
+    pub relaxation: [f32; 2],
 }
 
 impl wk_wind_field {
@@ -81,17 +112,47 @@ impl wk_wind_field {
         walls: WK_WIND_WALLS_ROUGH,
         reserved0: 0,
         most_bytes: 1073741824,
+        scheme: WK_WIND_SCHEME_REFLECTION,
+        pressure: WK_WIND_PRESSURE_MULTIGRID,
+        most_iterations: 0,
+        reserved1: 0,
+        relaxation: [0.0, 0.0],
     };
 
-    fn desc(&self) -> WindFieldDesc {
-        WindFieldDesc {
+    fn pressure_method(&self) -> Result<PressureMethod> {
+        let is_relaxed = self.pressure == WK_WIND_PRESSURE_RELAXATION;
+        let most = if is_relaxed { 1_000_000 } else { 1000 };
+        check_range("wind_field.most_iterations", self.most_iterations.into(), 0.0, f64::from(most), "")?;
+        let chosen = |default: u32| if self.most_iterations == 0 { default } else { self.most_iterations };
+        if !is_relaxed {
+            return Ok(PressureMethod::Multigrid { max_cycles: chosen(50) });
+        }
+        if self.relaxation == [0.0; 2] {
+            return Ok(PressureMethod::Sor { relaxation: [1.7, 1.1], max_iterations: chosen(5) });
+        }
+        for (i, factor) in self.relaxation.into_iter().enumerate() {
+            if !(factor > 0.0 && factor < 2.0) {
+                return Err(Error::range(&format!("wind_field.relaxation[{i}]"), "in (0, 2), or both 0", factor));
+            }
+        }
+        Ok(PressureMethod::Sor { relaxation: self.relaxation, max_iterations: chosen(5) })
+    }
+
+    fn desc(&self) -> Result<WindFieldDesc> {
+        Ok(WindFieldDesc {
             floor_center: DVec3::from_array(self.floor_center_m),
             cell_m: DVec3::from_array(self.cell_m),
             cells: self.cells,
             mode: if self.mode == WK_WIND_FIELD_RUNNING { WindFieldMode::Running } else { WindFieldMode::Steady },
             walls: if self.walls == WK_WIND_WALLS_SMOOTH { WindWalls::Smooth } else { WindWalls::Rough },
+            scheme: match self.scheme {
+                WK_WIND_SCHEME_SEMI_LAGRANGIAN => Scheme::SemiLagrangian,
+                WK_WIND_SCHEME_MACCORMACK => Scheme::MacCormack,
+                _ => Scheme::Reflection,
+            },
+            pressure: self.pressure_method()?,
             most_bytes: self.most_bytes,
-        }
+        })
     }
 }
 
@@ -156,9 +217,10 @@ impl wk_wind_field_report {
 }
 
 /// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
-/// field with the same size, mode and walls at another place moves there by whole cells; any other field begins anew.
-/// wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so it is the same on every
-/// channel. It begins with the steady field of its first moment. Part of the saved state. Unchanged after an error.
+/// field with the same size, mode, walls, scheme and pressure method at another place moves there by whole cells; any
+/// other field begins anew. wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so
+/// it is the same on every channel. It begins with the steady field of its first moment. Part of the saved state.
+/// Unchanged after an error.
 /// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
 /// that has passed.
 #[unsafe(no_mangle)]
@@ -177,7 +239,7 @@ pub unsafe extern "C" fn wk_context_set_wind_field(
         let c = unsafe { layout::read(&"wind_field", wind_field)? };
         // SAFETY: the caller's promise about its pointers.
         unsafe { layout::check_chain(&"wind_field", c.next, &[])? };
-        object.write().set_wind_field(Some(&c.desc()), start_time_s)?;
+        object.write().set_wind_field(Some(&c.desc()?), start_time_s)?;
         Ok(Status::Ok)
     })
 }

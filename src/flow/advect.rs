@@ -28,6 +28,11 @@ impl Scheme {
     pub const NAMES: [(&'static str, Self); 3] =
         [("semi-lagrangian", Self::SemiLagrangian), ("maccormack", Self::MacCormack), ("reflection", Self::Reflection)];
 
+    /// Returns the name of the scheme.
+    pub(super) fn name(self) -> &'static str {
+        Self::NAMES.into_iter().find(|(_, s)| *s == self).map_or("", |(name, _)| name)
+    }
+
     /// Returns the scheme of a name.
     ///
     /// # Errors
@@ -99,9 +104,9 @@ impl Carrier<'_> {
 
 /// Stores the first `count` of four results.
 #[inline]
-fn store<T: Copy>(target: &mut [T], at: usize, count: usize, results: [T; LANES]) {
-    match target[at..].first_chunk_mut() {
+fn store<T: Copy>(target: &mut [T], start: usize, count: usize, results: [T; LANES]) {
+    match target[start..].first_chunk_mut() {
         Some(whole) if count == LANES => *whole = results,
-        _ => target[at..at + count].copy_from_slice(&results[..count]),
+        _ => target[start..start + count].copy_from_slice(&results[..count]),
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::{advect::Scheme, multigrid, pressure::PressureMethod};
 use crate::error::{Error, Result, check_range};
 
 /// Mode in which a field advances through time.
@@ -42,6 +43,10 @@ pub struct WindFieldDesc {
     pub mode: WindFieldMode,
     /// Friction of walls. Default [`WindWalls::Rough`].
     pub walls: WindWalls,
+    /// Scheme that carries velocity. Default [`Scheme::Reflection`].
+    pub scheme: Scheme,
+    /// Method that solves for the pressure. Default at most 50 V-cycles.
+    pub pressure: PressureMethod,
     /// Limit of the memory of the field, bytes, \[1 MiB, 16 GiB\]. Default 1 GiB.
     pub most_bytes: u64,
 }
@@ -55,6 +60,8 @@ impl Default for WindFieldDesc {
             cells: [128, 128, 32],
             mode: WindFieldMode::default(),
             walls: WindWalls::default(),
+            scheme: Scheme::default(),
+            pressure: PressureMethod::default(),
             most_bytes: 1 << 30,
         }
     }
@@ -70,9 +77,12 @@ impl WindFieldDesc {
     pub fn bytes(&self) -> u64 {
         let product = |more: u64| self.cells.iter().map(|n| u64::from(*n) + more).product::<u64>();
         // For each face with ghosts: five velocities; open shares and pushing velocities, twice; its layer, and its
-        // place in lists. For each cell: pressures, and their equation on all grids. For each corner: the values that
-        // queries and shaders read.
-        product(5) * 3 * (9 * 4 + 1 + 12) + product(0) * (22 * 4) + product(1) * 24
+        // place in lists; MacCormack's bounds. For each cell: potentials, divergence, correction, and whether it has
+        // air. For each corner: the values that queries and shaders read.
+        let bounds = if self.scheme == Scheme::MacCormack { 8 } else { 0 };
+        let faces = product(5) * 3 * (9 * 4 + 1 + 12 + bounds);
+        let equation = 4 * multigrid::values(self.cells, self.cell_m.as_vec3());
+        faces + product(0) * (4 * 4 + 1) + equation + product(1) * 24
     }
 
     /// Checks the description; the error names the field at fault.
@@ -92,6 +102,7 @@ impl WindFieldDesc {
             let wanted = format!("no more than {LONGEST} times as long along one axis as along another");
             return Err(Error::range("wind_field.cell_m", &wanted, self.cell_m));
         }
+        self.pressure.check("wind_field.pressure")?;
         let [least, most] = MEMORY_BYTES.map(|b| b as f64);
         check_range("wind_field.most_bytes", self.most_bytes as f64, least, most, "bytes")?;
         let needed = self.bytes();
@@ -157,6 +168,14 @@ mod tests {
             (WindFieldDesc { cell_m: DVec3::new(1.0, 0.0, 1.0), ..good }, "wind_field.cell_m[1] must be in [0.05"),
             (WindFieldDesc { cell_m: DVec3::new(1.0, 9.0, 1.0), ..good }, "wind_field.cell_m must be no more than 8"),
             (WindFieldDesc { cells: [128, 7, 32], ..good }, "wind_field.cells[1] must be in [8, 4096]"),
+            (
+                WindFieldDesc { pressure: PressureMethod::Multigrid { max_cycles: 0 }, ..good },
+                "wind_field.pressure.max_cycles must be in [1, 1000]",
+            ),
+            (
+                WindFieldDesc { pressure: PressureMethod::Sor { relaxation: [1.7, 2.0], max_iterations: 5 }, ..good },
+                "wind_field.pressure.relaxation[1] must be in (0, 2)",
+            ),
             (WindFieldDesc { most_bytes: 0, ..good }, "wind_field.most_bytes must be in"),
             (WindFieldDesc { cells: [512, 512, 128], ..good }, "few enough for wind_field.most_bytes, 1073741824"),
         ] {

@@ -63,9 +63,9 @@ pub(super) fn viscosity(lattice: &Lattice, v: &Faces, most: f32, cells: &mut [f3
     });
 }
 
-/// Returns the eddy viscosity of four cells, m2/s; their lower faces lie from `at` on in the lists.
+/// Returns the eddy viscosity of four cells, m2/s; their lower faces lie from `start` on in the lists.
 #[inline]
-fn viscosity_of(lattice: &Lattice, v: &Faces, at: usize) -> Vec4 {
+fn viscosity_of(lattice: &Lattice, v: &Faces, start: usize) -> Vec4 {
     let h = lattice.h;
     let mut a = [[Vec4::ZERO; 3]; 3];
     for j in lattice.axes() {
@@ -74,9 +74,9 @@ fn viscosity_of(lattice: &Lattice, v: &Faces, at: usize) -> Vec4 {
         for i in lattice.axes() {
             let s = lattice.stride[i];
             a[i][j] = if i == j {
-                (u(at + own) - u(at)) / h[i]
+                (u(start + own) - u(start)) / h[i]
             } else {
-                0.25 * (u(at + s) + u(at + s + own) - u(at - s) - u(at - s + own)) / h[i]
+                0.25 * (u(start + s) + u(start + s + own) - u(start - s) - u(start - s + own)) / h[i]
             };
         }
     }
@@ -127,7 +127,7 @@ impl Mixing<'_> {
 
     /// Returns the change of four values with cells all round them, m/s2.
     #[inline]
-    fn inner_change(&self, i: [usize; 3], at: usize) -> Vec4 {
+    fn inner_change(&self, i: [usize; 3], first: usize) -> Vec4 {
         let (lattice, c) = (self.lattice, self.component);
         let [nx, ny, _] = lattice.n;
         let steps = [1, nx, nx * ny];
@@ -146,13 +146,15 @@ impl Mixing<'_> {
                 let down = cells(above - step) + cells(below - step);
                 [0.25 * up + 0.5 * own, 0.25 * down + 0.5 * own]
             };
-            sum += ((up + self.even) * (old(at + s) - old(at)) - (down + self.even) * (old(at) - old(at - s))) / hh;
+            sum += ((up + self.even) * (old(first + s) - old(first))
+                - (down + self.even) * (old(first) - old(first - s)))
+                / hh;
         }
         sum
     }
 
     /// Returns the change of a value, m/s2.
-    fn change(&self, i: [usize; 3], at: usize) -> f32 {
+    fn change(&self, i: [usize; 3], place: usize) -> f32 {
         let Self { lattice, cells, even, component: c, old, .. } = *self;
         let n = lattice.n;
         let steps = [1, n[0], n[0] * n[1]];
@@ -171,7 +173,8 @@ impl Mixing<'_> {
                 let to = |cell: usize| cells[if up { cell + steps[a] } else { cell - steps[a] }];
                 if a == c { cells[if up { above } else { below }] } else { 0.25 * (to(above) + to(below)) + 0.5 * own }
             };
-            sum += ((beside(true) + even) * (old[at + s] - old[at]) - (beside(false) + even) * (old[at] - old[at - s]))
+            sum += ((beside(true) + even) * (old[place + s] - old[place])
+                - (beside(false) + even) * (old[place] - old[place - s]))
                 / hh;
         }
         sum

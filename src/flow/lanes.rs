@@ -10,8 +10,8 @@ use super::lattice::{Faces, GHOSTS, Lattice};
 /// Number of faces that are carried at once.
 pub(super) const LANES: usize = 4;
 
-/// Places of four faces along each axis, in cells.
-pub(super) type Places = [Vec4; 3];
+/// FacePlaces of four faces along each axis, in cells.
+pub(super) type FacePlaces = [Vec4; 3];
 
 /// Wind that carries, and the range in which it may be looked up.
 pub(super) struct Carrier<'a> {
@@ -25,9 +25,9 @@ pub(super) struct Carrier<'a> {
     per_cell: [f32; 3],
 }
 
-/// Places among the values along one axis.
+/// FacePlaces among the values along one axis.
 #[derive(Clone, Copy)]
-struct Along {
+struct AxisPlaces {
     /// Index of the value before each place.
     low: Vec4,
     /// Fraction of a cell from there to the place.
@@ -49,7 +49,7 @@ pub(super) struct Taps {
     part: [Vec4; 3],
 }
 
-impl Along {
+impl AxisPlaces {
     #[inline]
     fn new(axis: usize, places: Vec4) -> Self {
         let low = places.trunc();
@@ -80,7 +80,7 @@ impl<'a> Carrier<'a> {
     /// Calls `f` for the faces of a component, four of a row at a time, with their places, the position of the first in
     /// the list, and their number, which is less than four at the end of a row.
     #[inline]
-    pub(super) fn each_four(&self, component: usize, mut f: impl FnMut(Places, usize, usize)) {
+    pub(super) fn each_four(&self, component: usize, mut f: impl FnMut(FacePlaces, usize, usize)) {
         self.lattice.each_row(component, |j, k, row, count| {
             for i in (0..count).step_by(LANES) {
                 let [x, y, z] = self.lattice.place(component, [i, j, k]);
@@ -92,7 +92,7 @@ impl<'a> Carrier<'a> {
 
     /// Returns the places at `far` times `way`, m, from others, clamped to the range of places.
     #[inline]
-    pub(super) fn moved(&self, mut places: Places, way: [Vec4; 3], far: f32) -> Places {
+    pub(super) fn moved(&self, mut places: FacePlaces, way: [Vec4; 3], far: f32) -> FacePlaces {
         for (a, along) in places.iter_mut().enumerate() {
             if self.is_flat[a] {
                 continue;
@@ -112,21 +112,21 @@ impl<'a> Carrier<'a> {
 
     /// Returns the places along an axis among values that lie on faces, or in the middle between them.
     #[inline]
-    fn along(&self, axis: usize, places: Vec4, is_on_faces: bool) -> Along {
+    fn along(&self, axis: usize, places: Vec4, is_on_faces: bool) -> AxisPlaces {
         if self.is_flat[axis] {
-            return Along::flat(axis);
+            return AxisPlaces::flat(axis);
         }
-        Along::new(axis, places + Vec4::splat(GHOSTS as f32) - Vec4::splat(if is_on_faces { 0.0 } else { 0.5 }))
+        AxisPlaces::new(axis, places + Vec4::splat(GHOSTS as f32) - Vec4::splat(if is_on_faces { 0.0 } else { 0.5 }))
     }
 
     #[inline]
-    pub(super) fn taps(&self, component: usize, [x, y, z]: Places) -> Taps {
+    pub(super) fn taps(&self, component: usize, [x, y, z]: FacePlaces) -> Taps {
         let along = |axis: usize, places: Vec4| self.along(axis, places, axis == component);
         self.taps_between(along(0, x), along(1, y), along(2, z))
     }
 
     #[inline]
-    fn taps_between(&self, x: Along, y: Along, z: Along) -> Taps {
+    fn taps_between(&self, x: AxisPlaces, y: AxisPlaces, z: AxisPlaces) -> Taps {
         let [dx, dy, dz] = self.lattice.stride;
         let position = |lane: usize| x.low[lane] as usize * dx + y.low[lane] as usize * dy + z.low[lane] as usize * dz;
         let lowest = if (x.follows & y.follows & z.follows).all() {
@@ -242,10 +242,10 @@ impl<'a> Carrier<'a> {
     }
 
     #[inline]
-    fn velocity(&self, [x, y, z]: Places) -> [Vec4; 3] {
+    fn velocity(&self, [x, y, z]: FacePlaces) -> [Vec4; 3] {
         let faces = [self.along(0, x, true), self.along(1, y, true), self.along(2, z, true)];
         let middles = [self.along(0, x, false), self.along(1, y, false), self.along(2, z, false)];
-        let component = |c: usize, x: Along, y: Along, z: Along| match self.is_flat[c] {
+        let component = |c: usize, x: AxisPlaces, y: AxisPlaces, z: AxisPlaces| match self.is_flat[c] {
             true => Vec4::ZERO,
             false => self.linear(&self.wind[c], &self.taps_between(x, y, z)),
         };
@@ -259,7 +259,7 @@ impl<'a> Carrier<'a> {
     /// Returns the wind at four faces of a component, the first at a position in the list. Another component there is
     /// the mean of the four faces around.
     #[inline]
-    pub(super) fn velocity_on_faces(&self, component: usize, at: usize) -> [Vec4; 3] {
+    pub(super) fn velocity_on_faces(&self, component: usize, first: usize) -> [Vec4; 3] {
         let half = Vec4::splat(0.5);
         let along = |a: usize| {
             let v = &self.wind[a];
@@ -268,13 +268,13 @@ impl<'a> Carrier<'a> {
                 return Vec4::ZERO;
             }
             if a == component {
-                return from(at);
+                return from(first);
             }
             let [across, along] = [self.next[component], self.next[a]];
-            let [first, second] = [across.min(along), across.max(along)];
-            let at = at - across;
-            let middle = |at: usize| from(at) + (from(at + first) - from(at)) * half;
-            middle(at) + (middle(at + second) - middle(at)) * half
+            let [inner, outer] = [across.min(along), across.max(along)];
+            let low = first - across;
+            let middle = |at: usize| from(at) + (from(at + inner) - from(at)) * half;
+            middle(low) + (middle(low + outer) - middle(low)) * half
         };
         [along(0), along(1), along(2)]
     }
@@ -282,8 +282,8 @@ impl<'a> Carrier<'a> {
     /// Returns where air at faces of a component will be after `dt` (or was, if negative), along a curved path (third
     /// order, Ralston 1962).
     #[inline]
-    pub(super) fn curved(&self, places: Places, component: usize, at: usize, dt: f32) -> Places {
-        let v1 = self.velocity_on_faces(component, at);
+    pub(super) fn curved(&self, places: FacePlaces, component: usize, first: usize, dt: f32) -> FacePlaces {
+        let v1 = self.velocity_on_faces(component, first);
         let v2 = self.velocity(self.moved(places, v1, 0.5 * dt));
         let v3 = self.velocity(self.moved(places, v2, 0.75 * dt));
         let mean = |a: usize| (2.0 * v1[a] + 3.0 * v2[a] + 4.0 * v3[a]) / 9.0;

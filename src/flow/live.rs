@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    FlowBox, FlowField, FlowObstacles, FlowSettings, Scheme, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls,
+    FlowBox, FlowField, FlowObstacles, FlowSettings, WindFieldDesc, WindFieldMode, WindFieldReport, WindWalls,
     moving::SolidBodies, turbulence::Whirls,
 };
 use crate::{
@@ -296,7 +296,8 @@ fn settings(desc: &WindFieldDesc, roughness_m: f64, level: u32) -> FlowSettings 
     FlowSettings {
         cells: desc.cells.map(|n| n >> level),
         cell_m: desc.cell_m * f64::from(1 << level),
-        scheme: Scheme::Reflection,
+        scheme: desc.scheme,
+        pressure: desc.pressure,
         tolerance: 1e-3,
         roughness_m: if desc.walls == WindWalls::Rough { roughness_m } else { 0.0 },
         has_eddies: true,

@@ -7,7 +7,7 @@
 
 use std::mem::{swap, take};
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use super::halves::{Halves, LANES, Lanes, RowNeighbours, lanes, vector};
 
@@ -16,7 +16,7 @@ const SWEEPS: usize = 2;
 /// Number of sweeps on the coarsest grid.
 const COARSEST_SWEEPS: usize = 24;
 /// Number of cells up to which a grid is not coarsened.
-const FEW_CELLS: usize = 32;
+const FEW_CELLS: u64 = 32;
 /// Ratio to the shortest cell side up to which an axis is coarsened.
 const LONGER: f32 = 1.5;
 
@@ -158,7 +158,14 @@ impl GridLevel {
     }
 
     #[inline(always)]
-    fn sweep<'a>(&'a self, x: &'a [f32], b: &'a [f32], relaxation: f32, row: &RowNeighbours, half: usize) -> RowSweep<'a> {
+    fn sweep<'a>(
+        &'a self,
+        x: &'a [f32],
+        b: &'a [f32],
+        relaxation: f32,
+        row: &RowNeighbours,
+        half: usize,
+    ) -> RowSweep<'a> {
         let at = |values: &'a [f32]| self.halves.own(values, row.own, half);
         RowSweep { faces: self.faces(x, row, half), x: at(x), b: at(b), sums: at(&self.sum), relaxation }
     }
@@ -232,20 +239,10 @@ impl GridLevel {
         });
     }
 
-    /// Returns the number of cells that the next level joins along each axis, 1 or 2; 1 on all axes if this is the last
-    /// level.
-    fn joined(&self) -> [usize; 3] {
-        let can = |a: &usize| self.halves.n[*a] > 2;
-        let shortest = (0..3).filter(can).map(|a| self.h[a]).fold(f32::INFINITY, f32::min);
-        [0, 1, 2].map(|a| if can(&a) && self.h[a] <= LONGER * shortest { 2 } else { 1 })
-    }
-
     /// Returns the next coarser level and the numbers of cells that it joins.
     fn coarser(&self) -> Option<([usize; 3], Self)> {
-        let (join, fine) = (self.joined(), self.halves.n);
-        if join == [1; 3] || fine.iter().product::<usize>() <= FEW_CELLS {
-            return None;
-        }
+        let fine = self.halves.n;
+        let join = joined(fine, self.h)?;
         let n = [0, 1, 2].map(|a| fine[a].div_ceil(join[a]));
         let h = [0, 1, 2].map(|a| self.h[a] * join[a] as f32);
         let mut lower = [0, 1, 2].map(|_| vec![0.0; n.iter().product()]);
@@ -366,6 +363,30 @@ impl GridLevel {
     }
 }
 
+/// Returns the numbers of cells that the level after one with `n` cells of the size `h` joins along each axis, 1 or 2;
+/// `None` if there is no further level.
+fn joined(n: [usize; 3], h: [f32; 3]) -> Option<[usize; 3]> {
+    let can = |a: &usize| n[*a] > 2;
+    let shortest = (0..3).filter(can).map(|a| h[a]).fold(f32::INFINITY, f32::min);
+    let join = [0, 1, 2].map(|a| if can(&a) && h[a] <= LONGER * shortest { 2 } else { 1 });
+    (join != [1; 3] && n.iter().map(|n| *n as u64).product::<u64>() > FEW_CELLS).then_some(join)
+}
+
+/// Returns the number of values that the equation on all grids and its solution need.
+pub(super) fn values(cells: [u32; 3], cell_m: Vec3) -> u64 {
+    let (mut n, mut h) = (cells.map(|n| n as usize), cell_m.to_array());
+    // Five lists of the solution; coefficients, their sum, solution and right-hand side of each level, and two lists of
+    // all but the finest.
+    let list = |n: [usize; 3]| [Halves::new(n).row, n[1], n[2]].map(|n| n as u64).iter().product::<u64>();
+    let mut sum = 5 * list(n);
+    loop {
+        sum += 8 * list(n);
+        let Some(join) = joined(n, h) else { return sum };
+        n = [0, 1, 2].map(|a| n[a].div_ceil(join[a]));
+        h = [0, 1, 2].map(|a| h[a] * join[a] as f32);
+    }
+}
+
 /// Equation on all grids, finest first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Levels(pub Vec<GridLevel>);
@@ -392,7 +413,8 @@ impl Levels {
 
     /// Runs one V-cycle from zero. `x` of the finest level then approximates the solution for the right-hand side `b`.
     pub(super) fn cycle(&mut self, b: &mut Vec<f32>) {
-        let exchange = |levels: &mut Self, b: &mut Vec<f32>| levels.0.iter_mut().take(1).for_each(|l| swap(&mut l.b, b));
+        let exchange =
+            |levels: &mut Self, b: &mut Vec<f32>| levels.0.iter_mut().take(1).for_each(|l| swap(&mut l.b, b));
         exchange(self, b);
         v_cycle(&mut self.0);
         exchange(self, b);

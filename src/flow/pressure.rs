@@ -34,6 +34,13 @@ pub enum PressureMethod {
     },
 }
 
+impl Default for PressureMethod {
+    /// Returns at most 50 V-cycles, which weather never needs.
+    fn default() -> Self {
+        Self::Multigrid { max_cycles: 50 }
+    }
+}
+
 impl PressureMethod {
     /// Method with 5 iterations whose relaxation factor falls from 1.7 to 1.1, as in an older snow simulator.
     pub const FIVE_SWEEPS: Self = Self::Sor { relaxation: [1.7, 1.1], max_iterations: 5 };
@@ -44,19 +51,19 @@ impl PressureMethod {
         (2.0 / (1.0 + libm::sin(std::f64::consts::PI / f64::from(n.max(2))))) as f32
     }
 
-    /// Checks that the numbers of the method are in their ranges.
-    pub(super) fn check(&self) -> Result<()> {
+    /// Checks that the numbers of the parameter `name` are within their ranges.
+    pub(super) fn check(&self, name: &str) -> Result<()> {
         match *self {
             Self::Multigrid { max_cycles } => {
-                check_range("flow.pressure.max_cycles", f64::from(max_cycles), 1.0, 1e3, "")
+                check_range(&format!("{name}.max_cycles"), f64::from(max_cycles), 1.0, 1e3, "")
             }
             Self::Sor { relaxation, max_iterations } => {
                 for (i, v) in relaxation.into_iter().enumerate() {
                     if !(v > 0.0 && v < 2.0) {
-                        return Err(Error::range(&format!("flow.pressure.relaxation[{i}]"), "in (0, 2)", v));
+                        return Err(Error::range(&format!("{name}.relaxation[{i}]"), "in (0, 2)", v));
                     }
                 }
-                check_range("flow.pressure.max_iterations", f64::from(max_iterations), 1.0, 1e6, "")
+                check_range(&format!("{name}.max_iterations"), f64::from(max_iterations), 1.0, 1e6, "")
             }
         }
     }

@@ -4,8 +4,10 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    advect::Scheme,
     desc::{FieldChange, WindFieldDesc, WindFieldMode, WindWalls},
     live::{Anchor, Live},
+    pressure::PressureMethod,
 };
 use crate::{
     error::{Error, Result},
@@ -13,8 +15,28 @@ use crate::{
     world::World,
 };
 
-/// Name of the solver. The state of another solver would continue differently.
-const SOLVER: &str = "reflection 1";
+/// Returns the name of the solver of a scheme. The state of another solver would continue differently.
+fn solver(scheme: Scheme) -> String {
+    format!("{} 1", scheme.name())
+}
+
+/// Saved scheme.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum SavedScheme {
+    SemiLagrangian,
+    #[serde(rename = "maccormack")]
+    MacCormack,
+    Reflection,
+}
+
+/// Saved method for the pressure.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+enum SavedPressure {
+    Multigrid { max_cycles: u32 },
+    Sor { relaxation: [f32; 2], max_iterations: u32 },
+}
 
 /// Saved description.
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -30,8 +52,47 @@ pub(super) struct SavedDesc {
     running: bool,
     /// Whether the walls are [`WindWalls::Smooth`].
     smooth: bool,
-    /// Limit of the memory of the field, bytes.
+    /// Absent for the default, as in states saved before this existed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scheme: Option<SavedScheme>,
+    /// Absent for the default, as in states saved before this existed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pressure: Option<SavedPressure>,
     most_bytes: u64,
+}
+
+impl SavedScheme {
+    fn of(scheme: Scheme) -> Self {
+        match scheme {
+            Scheme::SemiLagrangian => Self::SemiLagrangian,
+            Scheme::MacCormack => Self::MacCormack,
+            Scheme::Reflection => Self::Reflection,
+        }
+    }
+
+    fn scheme(self) -> Scheme {
+        match self {
+            Self::SemiLagrangian => Scheme::SemiLagrangian,
+            Self::MacCormack => Scheme::MacCormack,
+            Self::Reflection => Scheme::Reflection,
+        }
+    }
+}
+
+impl SavedPressure {
+    fn of(method: PressureMethod) -> Self {
+        match method {
+            PressureMethod::Multigrid { max_cycles } => Self::Multigrid { max_cycles },
+            PressureMethod::Sor { relaxation, max_iterations } => Self::Sor { relaxation, max_iterations },
+        }
+    }
+
+    fn method(self) -> PressureMethod {
+        match self {
+            Self::Multigrid { max_cycles } => PressureMethod::Multigrid { max_cycles },
+            Self::Sor { relaxation, max_iterations } => PressureMethod::Sor { relaxation, max_iterations },
+        }
+    }
 }
 
 /// Saved change.
@@ -94,6 +155,8 @@ impl SavedDesc {
             cells: d.cells,
             running: d.mode == WindFieldMode::Running,
             smooth: d.walls == WindWalls::Smooth,
+            scheme: Some(d.scheme).filter(|s| *s != Scheme::default()).map(SavedScheme::of),
+            pressure: Some(d.pressure).filter(|p| *p != PressureMethod::default()).map(SavedPressure::of),
             most_bytes: d.most_bytes,
         }
     }
@@ -106,6 +169,8 @@ impl SavedDesc {
             cells: self.cells,
             mode: if self.running { WindFieldMode::Running } else { WindFieldMode::Steady },
             walls: if self.smooth { WindWalls::Smooth } else { WindWalls::Rough },
+            scheme: self.scheme.map_or(Scheme::default(), SavedScheme::scheme),
+            pressure: self.pressure.map_or(PressureMethod::default(), SavedPressure::method),
             most_bytes: self.most_bytes,
         };
         desc.validate()?;
@@ -130,7 +195,7 @@ impl SavedField {
     pub fn of(live: &Live) -> Self {
         let (last_dt_s, last_change_m_s) = live.field.last_step();
         Self {
-            solver: SOLVER.into(),
+            solver: solver(live.desc.scheme),
             time_s: live.time_s,
             begun_s: live.begun_s,
             anchor_m: live.anchor.origin.to_array(),
@@ -155,13 +220,12 @@ impl SavedField {
     /// [`crate::Status::InvalidArgument`] for values that cannot be a field.
     pub fn live(&self, world: &World) -> Result<Live> {
         let unfit = |what: &str| Error::invalid("wind_field.field", what);
-        if self.solver != SOLVER {
-            return Err(unfit(&format!(
-                "must be of the solver `{SOLVER}`, got `{}`",
-                crate::error::shown(&self.solver)
-            )));
-        }
         let desc = self.desc.desc()?;
+        let solver = solver(desc.scheme);
+        if self.solver != solver {
+            let got = crate::error::shown(&self.solver);
+            return Err(unfit(&format!("must be of the solver `{solver}`, got `{got}`")));
+        }
         let numbers = [self.time_s, self.begun_s, self.anchor_altitude_m, self.awake_s, self.last_dt_s];
         let axes = DMat3::from_cols_array(&self.anchor_axes);
         let is_rotation = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-6);

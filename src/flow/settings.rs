@@ -44,7 +44,7 @@ impl Default for FlowSettings {
             cell_m: DVec3::splat(4.0),
             sides: [[Side::Open; 2], [Side::Open; 2], [Side::Slip; 2]],
             scheme: Scheme::default(),
-            pressure: PressureMethod::Multigrid { max_cycles: 50 },
+            pressure: PressureMethod::default(),
             tolerance: 1e-4,
             viscosity_m2_s: 0.0,
             is_slip: true,
@@ -57,7 +57,7 @@ impl Default for FlowSettings {
 impl FlowSettings {
     /// Checks that the settings are within their ranges.
     pub(super) fn check(&self) -> Result<()> {
-        self.pressure.check()?;
+        self.pressure.check("flow.pressure")?;
         check_range("flow.tolerance", self.tolerance, 1e-7, 1.0, "")?;
         check_range("flow.viscosity_m2_s", self.viscosity_m2_s, 0.0, 1e6, "m2/s")?;
         check_range("flow.roughness_m", self.roughness_m, 0.0, 5.0, "m")?;

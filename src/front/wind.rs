@@ -12,8 +12,8 @@ impl Context {
     /// windscreen, and for drops and flakes near a camera. A host's grid ([`Context::set_wind_grid`]) replaces the
     /// field.
     ///
-    /// A field that is set again with another position moves by whole cells; with another size, mode or walls it starts
-    /// anew. [`Context::update`] advances it in steps on a time grid that is anchored at time 0; [`crate::flow`] says
+    /// A field that is set again with another position moves by whole cells; with another size, mode, walls, scheme or
+    /// pressure method it starts anew. [`Context::update`] advances it in steps on a time grid that is anchored at time 0; [`crate::flow`] says
     /// how long they take. It starts with the steady field of its first moment, and starts so again after a leap of
     /// time of more than a minute ([`WindFieldReport::begun_s`]). Part of the saved state.
     ///

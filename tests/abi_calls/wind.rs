@@ -3,7 +3,8 @@
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_grid::*,
+    conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
+    wind_field::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, resealed};
@@ -33,6 +34,50 @@ fn wind(world: &World, at: [f64; 3], time_s: f64) -> wk_wind {
 fn refused(status: wk_status, wanted: &str) {
     assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{wanted}: {}", message());
     assert!(message().contains(wanted), "{wanted}: {}", message());
+}
+
+fn saved(world: &World) -> Vec<u8> {
+    let mut size = 0;
+    // SAFETY: live pointers, and `size` bytes.
+    unsafe {
+        assert_eq!(wk_context_save(world.context, null_mut(), 0, &mut size), WK_OK);
+        let mut state = vec![0_u8; size];
+        assert_eq!(wk_context_save(world.context, state.as_mut_ptr().cast(), size, &mut size), WK_OK);
+        state
+    }
+}
+
+#[test]
+fn schemes_and_methods_of_a_wind_field_are_chosen_and_wrong_ones_refused_by_name() {
+    let world = World::new();
+    // SAFETY: live pointers.
+    let set = |field: &wk_wind_field| unsafe { wk_context_set_wind_field(world.context, field, 100.0) };
+    let small = wk_wind_field { cells: [8; 3], ..init("wk_wind_field") };
+    let relaxed = wk_wind_field { pressure: WK_WIND_PRESSURE_RELAXATION, ..small };
+    for good in [
+        wk_wind_field { scheme: WK_WIND_SCHEME_MACCORMACK, ..small },
+        wk_wind_field { scheme: WK_WIND_SCHEME_SEMI_LAGRANGIAN, most_iterations: 1000, ..small },
+        relaxed,
+        wk_wind_field { most_iterations: 1_000_000, relaxation: [1.9, 0.5], ..relaxed },
+    ] {
+        assert_eq!(set(&good), WK_OK, "{}", message());
+    }
+    let state = saved(&world);
+    for (bad, wanted) in [
+        (
+            wk_wind_field { scheme: 3, ..small },
+            "wind_field.scheme must be one of WK_WIND_SCHEME_REFLECTION, WK_WIND_SCHEME_MACCORMACK",
+        ),
+        (wk_wind_field { pressure: 2, ..small }, "wind_field.pressure must be one of WK_WIND_PRESSURE_MULTIGRID"),
+        (wk_wind_field { most_iterations: 1001, ..small }, "wind_field.most_iterations must be in [0, 1000]"),
+        (wk_wind_field { most_iterations: 1_000_001, ..relaxed }, "wind_field.most_iterations must be in [0, 1000000]"),
+        (wk_wind_field { relaxation: [1.7, 2.0], ..relaxed }, "wind_field.relaxation[1] must be in (0, 2), or both 0"),
+        (wk_wind_field { relaxation: [0.0, 1.1], ..relaxed }, "wind_field.relaxation[0] must be in (0, 2), or both 0"),
+        (wk_wind_field { reserved1: 1, ..small }, "wind_field.reserved1 must be 0"),
+    ] {
+        refused(set(&bad), wanted);
+        assert!(saved(&world) == state, "{wanted}");
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3, dvec3};
 use super::*;
 use crate::{
     almanac::sun::Utc,
-    flow::{WindFieldMode, WindWalls},
+    flow::{PressureMethod, Scheme, WindFieldMode, WindWalls},
     light::{Exposure, ToneCurve},
     planet::Planet,
     scene::WorldFrame,
@@ -175,6 +175,57 @@ fn a_loaded_field_goes_on_to_the_bit() {
             other.to(t);
             assert!(other.saved() == bench.saved(), "{mode:?} at {t} s");
         }
+    }
+}
+
+/// The wind behind the house, and the state, of a field of a scheme and a method for the pressure after a few steps;
+/// the state goes on as the field does.
+fn led_by(scheme: Scheme, pressure: PressureMethod) -> (DVec3, toml::Table) {
+    let desc = WindFieldDesc { scheme, pressure, ..small(WindFieldMode::Running) };
+    let mut bench = Bench::new(WindFieldMode::Running);
+    bench.flow.set(&bench.world, Some(desc), 0.0).expect("a field");
+    bench.to(2.0);
+    let state = bench.saved();
+    let mut other = Bench::new(WindFieldMode::Running);
+    other.world.time_s = 2.0;
+    let mut loaded = HeldFlow::read(&other.world, &mut state.clone()).expect("a field");
+    other.flow.swap_in(&mut other.world, &mut loaded);
+    assert_eq!(other.flow.live.as_ref().map(|live| live.desc), Some(desc));
+    [&mut bench, &mut other].map(|bench| bench.to(4.0));
+    assert!(other.saved() == bench.saved(), "{scheme:?} {pressure:?}");
+    (bench.wind(dvec3(2.0, 0.0, 3.0)), state)
+}
+
+#[test]
+fn another_scheme_or_method_is_another_wind_that_the_state_names() {
+    let usual = PressureMethod::default();
+    let (wind, state) = led_by(Scheme::Reflection, usual);
+    let field = |state: &toml::Table| state[KEY]["field"].as_table().expect("a field").clone();
+    assert_eq!(field(&state)["solver"].as_str(), Some("reflection 1"));
+    // States of the usual scheme and method name neither, as before there was a choice.
+    let desc = field(&state)["desc"].as_table().expect("a desc").clone();
+    assert!(!desc.contains_key("scheme") && !desc.contains_key("pressure"), "{desc}");
+    for (scheme, pressure, solver) in [
+        (Scheme::SemiLagrangian, usual, "semi-lagrangian 1"),
+        (Scheme::MacCormack, PressureMethod::FIVE_SWEEPS, "maccormack 1"),
+        (Scheme::Reflection, PressureMethod::FIVE_SWEEPS, "reflection 1"),
+    ] {
+        let (other, state) = led_by(scheme, pressure);
+        println!("{scheme:?} {pressure:?}: {other:.3}, the usual {wind:.3}");
+        assert_ne!(other, wind, "{scheme:?} {pressure:?}");
+        assert_eq!(field(&state)["solver"].as_str(), Some(solver));
+        let world = &Bench::new(WindFieldMode::Running).world;
+        let broken = |change: fn(&mut toml::Table), sentence: &str| {
+            let mut state = state.clone();
+            change(state[KEY]["field"].as_table_mut().expect("a field"));
+            let e = HeldFlow::read(world, &mut state).map(|_| ()).expect_err("a broken state");
+            assert!(e.status == Status::Parse && e.to_string().contains(sentence), "{e}");
+        };
+        broken(|f| f["solver"] = "maccormack 9".into(), "must be of the solver");
+        broken(
+            |f| _ = f["desc"].as_table_mut().expect("a desc").insert("scheme".into(), "upwind".into()),
+            "`semi-lagrangian`, `maccormack`, `reflection`",
+        );
     }
 }
 

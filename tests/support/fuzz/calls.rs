@@ -527,6 +527,7 @@ pub const CALLS: &[(&str, Call)] = &[
         let mut field = Struct::random(d, "wk_wind_field", 10);
         let cells: [u32; 3] = std::array::from_fn(|_| 6 + d.below(6) as u32);
         field.set("cells", cells);
+        field.set("most_iterations", d.below(6) as u32);
         let start_s = 20.0 * d.unit();
         unsafe { wk_context_set_wind_field(handle(d, &w.contexts), field.ptr().cast(), start_s) }.into()
     }),
