@@ -137,7 +137,7 @@ impl Mixing<'_> {
         let old = |at: usize| four(&self.old[at..at + LANES]);
         let own = 0.5 * (cells(above) + cells(below));
         let mut sum = Vec4::ZERO;
-        for a in 0..3 {
+        for a in lattice.axes() {
             let (s, step, hh) = (lattice.stride[a], steps[a], lattice.h[a] * lattice.h[a]);
             let [up, down] = if a == c {
                 [cells(above), cells(below)]
