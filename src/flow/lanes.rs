@@ -306,13 +306,13 @@ fn wrapped(places: Vec4, n: f32) -> Vec4 {
 /// Returns the lesser number of each lane; of two zeros the first, whatever their signs.
 #[inline]
 pub(super) fn lesser(a: Vec4, b: Vec4) -> Vec4 {
-    b.min(a)
+    Vec4::select(b.cmplt(a), b, a)
 }
 
 /// Returns the larger number of each lane; of two zeros the first, whatever their signs.
 #[inline]
 pub(super) fn larger(a: Vec4, b: Vec4) -> Vec4 {
-    b.max(a)
+    Vec4::select(b.cmpgt(a), b, a)
 }
 
 /// Returns the sum of four values times their weights.

@@ -57,9 +57,11 @@
 //!
 //! V-cycles that reduce the residual to a tenth: 1.0 at 64^2 around a box, each with the work of 9 sweeps over the
 //! grid; over-relaxation needs 11 times this work (`cargo test --lib flow -- --nocapture multigrid`). A step of the
-//! default scheme takes two projections. The cost grows only with the number of cells: twice the cells take 1.8 to 2
-//! times as long (`cargo bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs
-//! on one thread and without the GPU; every run gives the same bits.
+//! default scheme takes two projections. Advection, sweeps and eddies compute four neighbouring values at a time
+//! (`lanes.rs`, `halves.rs`), each with the operations and the order of a single value, so the bits do not depend on
+//! it. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long (`cargo bench --bench
+//! speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread and without the GPU;
+//! every run gives the same bits.
 //!
 //! # Limits
 //!
