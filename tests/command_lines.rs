@@ -120,6 +120,10 @@ fn examples_in_rust_keep_the_conventions() {
             (&["why"], "why"),
         ],
     );
+    assert_conventions(
+        &built().join("cigi_host"),
+        &[(&["--decode"], "--decode has no value"), (&[], "--listen"), (&["--rate", "60x"], "--rate")],
+    );
     assert_conventions(&built().join("lab"), &[(&["chart", "soup"], "soup"), (&["--scene"], "--scene")]);
     assert_conventions(&native, &[(&["a.png", "METAR", "more"], "more")]);
     // What goes wrong later is a sentence too.
