@@ -145,7 +145,8 @@ impl Decoded {
 
 fn packet_json(message: &Message<'_>, placed: &Placed<'_>, named: &mut Named, form: Form) -> String {
     let family = message.version.family();
-    let name = placed.packet.map_or_else(|| Packet::other_name(family, placed.id), |packet| packet.layout().name_in(family));
+    let name =
+        placed.packet.map_or_else(|| Packet::other_name(family, placed.id), |packet| packet.layout().name_in(family));
     let (offset, id, size) = (placed.offset, placed.id, placed.bytes.len());
     let mut out =
         format!("{{\"offset\": {offset}, \"id\": {id}, \"size\": {size}, \"name\": \"{name}\", \"fields\": {{");

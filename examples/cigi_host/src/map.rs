@@ -225,7 +225,7 @@ pub fn map(state: &State, site: &Site) -> Mapped {
         star_intensity: sky.star_intensity_percent / 100.0,
         ..Mapped::default()
     };
-    out.global = Mapping { state, site, left_out: &mut out.left_out }.weather(&state.global);
+    out.global = Mapping { state, site, left_out: &mut out.left_out }.weather(&state.global, true);
     out.fill_in_atmosphere(state);
     out.map_regions(state, site);
     for (key, component) in &state.components {
@@ -282,7 +282,7 @@ impl Mapped {
         }
         for (id, region) in shown.into_iter().skip(surplus) {
             let Some(shape) = region.shape else { continue };
-            let weather = Mapping { state, site, left_out: &mut self.left_out }.weather(&region.scope);
+            let weather = Mapping { state, site, left_out: &mut self.left_out }.weather(&region.scope, false);
             self.regions.push(RegionValues { id: *id, shape, merge: region.merge, weather });
         }
     }
@@ -312,9 +312,10 @@ impl Mapping<'_> {
         self.left_out.insert(Note { subject, field, reason });
     }
 
-    fn weather(&mut self, scope: &Scope) -> WeatherValues {
+    fn weather(&mut self, scope: &Scope, is_global: bool) -> WeatherValues {
         let station_m = self.site.station_altitude_m;
-        let mut out = WeatherValues { sea: self.sea(scope), surface: self.surface(scope), ..WeatherValues::default() };
+        let mut out =
+            WeatherValues { sea: self.sea(scope, is_global), surface: self.surface(scope), ..WeatherValues::default() };
         let mut rates = Rates::default();
         let (mut extinction_per_m, mut is_convective) = (0.0, false);
         let enabled: Vec<(u8, Layer)> =
@@ -442,10 +443,9 @@ impl Mapping<'_> {
         table[usize::from(layer.severity.min(5))] * layer.coverage_percent / 100.0
     }
 
-    fn sea(&mut self, scope: &Scope) -> SeaValues {
+    fn sea(&mut self, scope: &Scope, is_global: bool) -> SeaValues {
         const NAME: &str = "Maritime Surface Conditions Control";
         let mut out = SeaValues::default();
-        let is_global = std::ptr::eq(scope, &self.state.global);
         if let Some(sea) = scope.sea.filter(|sea| is_global || sea.is_enabled) {
             out.temperature_c = Some(sea.temperature_c.clamp(-3.0, 45.0));
             if sea.surface_height_m != 0.0 {

@@ -287,7 +287,7 @@ impl Session {
         let now = self.ig_frame_number;
         let is_due = |request: &HatHotRequest, came: u32| {
             let period = u32::from(request.update_period);
-            period == 0 || now.wrapping_sub(came).wrapping_sub(1) % period == 0
+            period == 0 || now.wrapping_sub(came).wrapping_sub(1).is_multiple_of(period)
         };
         let due: Vec<HatHotRequest> = self
             .height_requests

@@ -7,9 +7,11 @@ use super::{MaritimeSurfaceConditionsControl, Order, Slot, Version};
 
 /// Returns the region or entity that the sender means.
 ///
-/// A byte 5 that is not 0 shows a sender that writes too early, since the byte is reserved. A big-endian sender of this
-/// sort shows nothing there: a number below 256 looks 256 times as large. `is_known` says whether the host has named a
-/// region or entity with a number in this scope; a multiple of 256 that it has not named is taken for such a number.
+/// A byte 5 that is not 0 shows a sender that writes too early, since the byte is reserved. Some numbers of such a
+/// sender leave it 0: those below 256 of a big-endian sender look 256 times as large, and multiples of 256 of a
+/// little-endian one look 256 times as small. `is_known` says whether the host has named a region or entity with a
+/// number in this scope. A number that it has not named is taken for an early one: always of a big-endian sender, and
+/// of a little-endian sender if the host has named the early one.
 pub fn meant_id(
     sea: &MaritimeSurfaceConditionsControl,
     bytes: &[u8],
@@ -25,6 +27,6 @@ pub fn meant_id(
     if Slot::U8(5).read(bytes, order) != 0 {
         return early;
     }
-    let may_be_early = order == Order::Big && stated != 0 && stated % 256 == 0;
-    if may_be_early && !is_known(stated) { early } else { stated }
+    let may_be_early = Slot::U8(7).read(bytes, order) == 0 && !is_known(stated);
+    if may_be_early && (order == Order::Big || is_known(early)) { early } else { stated }
 }

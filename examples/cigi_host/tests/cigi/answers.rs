@@ -235,7 +235,7 @@ fn weather_and_particles_are_those_of_the_table_at_100_places() {
         let place = [random.between(43.35, 43.46), random.between(5.03, 5.23), altitude];
         let weights: Vec<f64> = REGIONS.iter().map(|s| region_weight(s, place)).collect();
         kinds[0] += usize::from(weights.iter().all(|w| *w == 0.0));
-        kinds[1] += usize::from(weights.iter().any(|w| *w == 1.0));
+        kinds[1] += usize::from(weights.contains(&1.0));
         kinds[2] += usize::from(weights.iter().filter(|w| **w > 0.0).count() > 1);
         kinds[3] += usize::from(weights.iter().any(|w| (0.01..0.99).contains(w)));
         let asked = Place { latitude_deg: place[0], longitude_deg: place[1], altitude_m: place[2] };

@@ -4,7 +4,9 @@
 use crate::common::{Capture, captures, named_bits};
 use serde_json::Value;
 use welkin_cigi_host::capture::{Decoded, Form, datagrams, decode};
-use welkin_cigi_host::wire::{Fault, MAX_DATAGRAM, Message, Order, Version, Writer};
+use welkin_cigi_host::wire::{
+    Fault, MAX_DATAGRAM, MaritimeSurfaceConditionsControl, Message, Order, Slot, Version, Writer, maritime,
+};
 
 const FORM: Form = Form { has_all_fields: false, reads_early_ids: true };
 
@@ -190,4 +192,30 @@ fn what_is_wrong_with_a_datagram_is_named() {
         }
     };
     assert_eq!((full, count), (Fault::Full, MAX_DATAGRAM / 32));
+}
+
+#[test]
+fn early_numbers_are_found_by_what_the_host_has_named() {
+    let sea = MaritimeSurfaceConditionsControl { scope: 1, ..Default::default() };
+    // What a sender writes for a number too early or in its place, and the number that is meant where these are named.
+    let meant = |order: Order, number: u16, is_early: bool, named: &[u16]| {
+        let mut bytes = [0u8; 24];
+        let place = if is_early { 5 } else { 6 };
+        Slot::U16(place).write(&mut bytes, order, number.into());
+        let stated = Slot::U16(6).read(&bytes, order) as u16;
+        let sea = MaritimeSurfaceConditionsControl { entity_or_region_id: stated, ..sea };
+        maritime::meant_id(&sea, &bytes, Version::V4_0, order, |id| named.contains(&id))
+    };
+    for number in [1u16, 3, 255, 256, 300, 768, 0xff00, 0xffff] {
+        for order in [Order::Little, Order::Big] {
+            for is_early in [false, true] {
+                assert_eq!(meant(order, number, is_early, &[number]), number, "{order:?} {is_early}");
+            }
+        }
+        // Nothing named yet: what stands in its place is right but for multiples of 256 of a big-endian sender.
+        let is_sure = !number.is_multiple_of(256);
+        assert!(!is_sure || meant(Order::Big, number, false, &[]) == number);
+        assert_eq!(meant(Order::Little, number, false, &[]), number);
+        assert_eq!(meant(Order::Big, number, true, &[]), number);
+    }
 }

@@ -5,6 +5,7 @@
 mod answers;
 mod captures;
 mod common;
+mod dissector;
 mod map;
 mod mutated;
 mod session;

@@ -2,7 +2,7 @@
 
 use crate::common::{Random, Slope, captures, is_accept, packets};
 use welkin_cigi_host::capture::datagrams;
-use welkin_cigi_host::map::map;
+use welkin_cigi_host::map::{WeatherValues, map};
 use welkin_cigi_host::session::Session;
 use welkin_cigi_host::site::Site;
 use welkin_cigi_host::wire::{Direction, Family, Message, Order, Value, Version, Writer};
@@ -81,6 +81,45 @@ fn no_datagram_is_read_beyond_its_end() {
     assert!(opened > count as u64 / 2 && packets > opened && refused > opened / 20, "{opened} {packets} {refused}");
 }
 
+/// Checks that Welkin takes all values: the ranges are those of `welkin::weather::Weather`.
+fn assert_ranges(weather: &WeatherValues, bytes: &[u8]) {
+    let check = |name: &str, value: Option<f64>, low: f64, high: f64| {
+        let is_good = value.is_none_or(|value| (low..=high).contains(&value));
+        assert!(is_good, "{name} {value:?} after {bytes:?}");
+    };
+    check("temperature_c", weather.temperature_c, -90.0, 60.0);
+    check("relative_humidity", weather.relative_humidity, 0.0, 1.0);
+    check("pressure_hpa", weather.pressure_hpa, 800.0, 1100.0);
+    check("visibility_m", weather.visibility_m, 1.0, 1e6);
+    check("visibility_above_fog_m", weather.visibility_above_fog_m, 100.0, 1e6);
+    check("flashes", Some(weather.flashes_per_minute), 0.0, 60.0);
+    check("wind", weather.wind.map(|wind| wind.speed_m_s), 0.0, 120.0);
+    check("from", weather.wind.map(|wind| wind.from_deg), 0.0, 360.0);
+    check("fog.top_m", weather.fog.map(|fog| fog.top_m), 0.1, 2000.0);
+    check("fog.visibility", weather.fog.map(|fog| fog.visibility_inside_m), 1.0, 1e4);
+    check("fog.coverage", weather.fog.map(|fog| fog.coverage), 0.0, 1.0);
+    check("lofted.top_m", weather.lofted.map(|lofted| lofted.top_m), 0.1, 5000.0);
+    check("clouds", Some(weather.clouds.len() as f64), 0.0, 16.0);
+    for cloud in &weather.clouds {
+        check("cover", Some(cloud.cover), 0.0, 1.0);
+        check("base_m", Some(cloud.base_m), 0.0, 2e4);
+        check("thickness_m", Some(cloud.thickness_m), 1.0, 2e4);
+        check("water_g_m3", Some(cloud.water_g_m3), 0.0, 10.0);
+        check("cloud wind", Some(cloud.wind.speed_m_s), 0.0, 150.0);
+        check("cloud from", Some(cloud.wind.from_deg), 0.0, 360.0);
+    }
+    check("rate", weather.precipitation.map(|fall| fall.rate_mm_h), 0.0, 500.0);
+    check("liquid", weather.precipitation.map(|fall| fall.liquid_fraction), 0.0, 1.0);
+    check("extinction", weather.precipitation.and_then(|fall| fall.extinction_per_m), 0.0, 10.0);
+    check("water", weather.sea.temperature_c, -3.0, 45.0);
+    check("waves", weather.sea.significant_wave_height_m, 0.0, 30.0);
+    check("swell height", weather.sea.swell.map(|swell| swell[0]), 0.0, 20.0);
+    check("swell period", weather.sea.swell.map(|swell| swell[1]), 1.0, 30.0);
+    check("swell from", weather.sea.swell.map(|swell| swell[2]), 0.0, 360.0);
+    check("snow_depth_m", weather.surface.map(|surface| surface.snow_depth_m), 0.0, 20.0);
+    check("surface.coverage", weather.surface.map(|surface| surface.coverage), 0.0, 1.0);
+}
+
 #[test]
 fn no_datagram_stops_a_session() {
     let count = if is_accept() { 1_000_000 } else { 30_000 };
@@ -110,7 +149,9 @@ fn no_datagram_stops_a_session() {
             });
         }
         let mapped = map(session.state(), session.site());
-        assert!(mapped.regions.len() <= 64 && mapped.global.clouds.len() <= 16);
+        assert!(mapped.regions.len() <= 64);
+        let weathers = mapped.regions.iter().map(|region| &region.weather).chain([&mapped.global]);
+        weathers.for_each(|weather| assert_ranges(weather, &bytes));
     }
     assert!(taken > count / 2 && answers > count / 40, "{taken} {answers}");
     assert!(session.notes().iter().count() > 20);

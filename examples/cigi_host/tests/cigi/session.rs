@@ -276,7 +276,7 @@ fn storm(frame: u32) -> Vec<Packet> {
     };
     let mut all: Vec<Packet> =
         vec![air.into(), region(7, 43.4, 5.0 + 4e-4 * f64::from(frame)).into(), rain(1, 7).into()];
-    if frame % 10 == 0 {
+    if frame.is_multiple_of(10) {
         all.extend([request(frame as u8, 4, PLACE), request(frame as u8 + 1, 8, PLACE)].map(Packet::from));
     }
     all
@@ -310,7 +310,7 @@ fn a_scripted_host_and_the_session_go_in_lock_step() {
                 let first = start_of_frame(&buffer[..length]);
                 assert_eq!((first.ig_frame_number, first.last_host_frame_number), (frame + 1, 5000 + frame));
                 let answers = packets(&buffer[..length]);
-                assert!(answers.len() >= if frame % 10 == 0 { 2 } else { 1 } && answers.len() <= 3);
+                assert!(answers.len() >= if frame.is_multiple_of(10) { 2 } else { 1 } && answers.len() <= 3);
                 for answer in &answers[1..] {
                     match answer {
                         Packet::WeatherConditionsResponse(air) if air.request_id == frame as u8 => {
