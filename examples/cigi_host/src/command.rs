@@ -25,7 +25,7 @@ usage: cigi_host --decode FILE.bin [--all] [--strict-ids]
   --listen ADDRESS   take a host's messages at this UDP address, such as 0.0.0.0:8000, and answer them
   --host ADDRESS     send there; without it, to the sender of the last good message
   --site FILE.toml   what CIGI leaves open: severities, layers, clouds, surfaces, components, altitudes
-  --rate HERTZ       frames a second, (0, 1000]; default 60
+  --rate HERTZ       frames a second, [0.1, 1000]; default 60
   --lock-step        a frame with each message
   --cigi 3.3|4.0     version until the host's first message; default 3.3
   --frames N         end after so many frames";
@@ -72,8 +72,8 @@ impl Options {
                 "--site" => options.site = Some(value()?),
                 "--rate" => {
                     let text = value()?;
-                    let rate = text.parse().ok().filter(|rate| (f64::MIN_POSITIVE..=1000.0).contains(rate));
-                    options.rate = Some(rate.ok_or_else(|| format!("--rate must be in (0, 1000], not {text:?}"))?);
+                    let rate = text.parse().ok().filter(|rate| (0.1..=1000.0).contains(rate));
+                    options.rate = Some(rate.ok_or_else(|| format!("--rate must be in [0.1, 1000], not {text:?}"))?);
                 }
                 "--lock-step" => options.is_lock_step = true,
                 "--cigi" => {

@@ -16,8 +16,10 @@ pub enum Pace {
     LockStep,
 }
 
-/// Longest wait in lock-step.
+/// Longest wait in lock-step, and at a rate that is no number above 0.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Most datagrams of one frame: a flood does not keep a frame from its time.
+const MAX_DATAGRAMS: usize = 1024;
 /// Shortest time limit that a socket takes.
 const SHORTEST: Duration = Duration::from_micros(10);
 
@@ -42,18 +44,17 @@ impl Link<'_> {
         let began = Instant::now();
         let mut buffer = vec![0; 65_536];
         let mut answers_go = self.host;
-        let mut done = 0;
+        let (mut done, mut last) = (0, began);
         while frames.is_none_or(|frames| done < frames) {
             done += 1;
-            let deadline = match pace {
-                Pace::Rate(hertz) => began + Duration::from_secs_f64(done as f64 / hertz),
-                Pace::LockStep => Instant::now() + PATIENCE,
+            let period = match pace {
+                Pace::Rate(hertz) => Duration::try_from_secs_f64(1.0 / hertz).unwrap_or(PATIENCE),
+                Pace::LockStep => PATIENCE,
             };
-            while let Some(from) = self.message_before(deadline, &mut buffer)? {
+            // Frames that a stall has left out are not made up for.
+            last = Instant::now().max(last + period);
+            if let Some(from) = self.take_before(last, pace, &mut buffer)? {
                 answers_go = Some(self.host.unwrap_or(from));
-                if pace == Pace::LockStep {
-                    break;
-                }
             }
             let ticks = began.elapsed().as_micros() / 10;
             let message = self.session.frame(ticks as u32, self.world);
@@ -66,25 +67,29 @@ impl Link<'_> {
         Ok(())
     }
 
-    /// Returns who sent the next good message, or `None` once the deadline is over.
-    fn message_before(&mut self, deadline: Instant, buffer: &mut [u8]) -> io::Result<Option<SocketAddr>> {
-        loop {
+    /// Takes what arrives before the deadline, in lock-step one good message, and returns who sent the last good one.
+    /// What lies in the socket already counts after the deadline too.
+    fn take_before(&mut self, deadline: Instant, pace: Pace, buffer: &mut [u8]) -> io::Result<Option<SocketAddr>> {
+        let mut good = None;
+        for _ in 0..MAX_DATAGRAMS {
             let left = deadline.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return Ok(None);
-            }
             self.socket.set_read_timeout(Some(left.max(SHORTEST)))?;
             match self.socket.recv_from(buffer) {
                 Ok((_, from)) if self.host.is_some_and(|host| host.ip() != from.ip()) => {}
                 Ok((length, from)) => {
                     if self.session.receive(&buffer[..length]).is_ok() {
-                        return Ok(Some(from));
+                        good = Some(from);
+                        if pace == Pace::LockStep {
+                            return Ok(good);
+                        }
                     }
                 }
-                Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Ok(None),
+                Err(e) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => return Ok(good),
                 Err(e) if matches!(e.kind(), ErrorKind::Interrupted | ErrorKind::ConnectionReset) => {}
                 Err(e) => return Err(e),
             }
         }
+        std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
+        Ok(good)
     }
 }

@@ -7,6 +7,7 @@
 mod layout;
 pub mod maritime;
 mod message;
+mod names;
 mod packets;
 mod slot;
 

@@ -363,3 +363,26 @@ fn a_session_begins_by_itself_and_takes_no_stranger() {
     }
     assert_eq!(ig.join().expect("no panic"), 42);
 }
+
+#[test]
+fn a_rate_beyond_the_machine_and_a_flood_leave_messages_and_frames_their_time() {
+    for pace in [Pace::Rate(1e9), Pace::Rate(f64::NAN), Pace::Rate(-1.0), Pace::Rate(1e-300), Pace::Rate(30.0)] {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        let address = socket.local_addr().expect("an address");
+        let host = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        for frame in 1..=50 {
+            host.send_to(&message(Version::V4_0, Order::Big, frame, &[]), address).expect("sent");
+            host.send_to(&[frame as u8; 40], address).expect("sent");
+        }
+        let mut world = Slope::default();
+        let session = Session::new(Site::default(), Version::V3_3, Order::Little);
+        let mut link = Link { socket, host: None, session, world: &mut world };
+        link.run(pace, Some(1), |_| {}).expect("the socket works");
+        assert_eq!(link.session.host_frame_number(), 50, "{pace:?}");
+        assert_eq!(link.session.notes().count("datagram", ""), 50, "{pace:?}");
+        host.set_read_timeout(Some(Duration::from_secs(20))).expect("a time");
+        let mut buffer = [0; 256];
+        let length = host.recv(&mut buffer).expect("an answer");
+        assert_eq!(start_of_frame(&buffer[..length]).last_host_frame_number, 50, "{pace:?}");
+    }
+}
