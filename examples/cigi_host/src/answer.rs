@@ -1,7 +1,7 @@
 //! Answers to requests about a place: the environment from what the host has said, heights from the world.
 
 use crate::geodesy::Place;
-use crate::notes::Notes;
+use crate::notes::{Checked, Notes};
 use crate::state::State;
 use crate::wire::{
     AerosolConcentrationResponse, EnvironmentalConditionsRequest, HatHotExtendedResponse, HatHotRequest,
@@ -17,6 +17,21 @@ const AEROSOL: u8 = 8;
 /// Temperature of a sea of which the host has said nothing, degrees Celsius: at least that at which it freezes.
 const FREEZING_SEA_C: f64 = -1.8;
 
+/// Returns the nearest place with a latitude, a longitude and an altitude in their ranges; `None` if one is not finite.
+fn on_earth(place: Place, packet: &'static str, notes: &mut Notes) -> Option<Place> {
+    let Place { latitude_deg, longitude_deg, altitude_m } = place;
+    if ![latitude_deg, longitude_deg, altitude_m].iter().all(|v| v.is_finite()) {
+        notes.add(packet, "", "its place is not finite");
+        return None;
+    }
+    let mut checked = Checked { notes, packet };
+    Some(Place {
+        latitude_deg: checked.number("latitude_deg", latitude_deg, 0.0, [-90.0, 90.0]),
+        longitude_deg: checked.number("longitude_deg", longitude_deg, 0.0, [-360.0, 360.0]),
+        altitude_m: checked.number("altitude_m", altitude_m, 0.0, [-1e7, 1e9]),
+    })
+}
+
 /// Returns the answers to a request: sea, ground, weather, particles, as far as it asks for them. `geoid_height_m` is
 /// how high mean sea level lies above the datum of the request's altitude.
 pub fn environment(
@@ -26,11 +41,9 @@ pub fn environment(
     notes: &mut Notes,
 ) -> Vec<Packet> {
     let EnvironmentalConditionsRequest { request_id, latitude_deg, longitude_deg, altitude_m, .. } = *request;
-    if ![latitude_deg, longitude_deg, altitude_m].iter().all(|v| v.is_finite()) {
-        notes.add(EnvironmentalConditionsRequest::LAYOUT.name, "", "not answered, its place is not finite");
-        return Vec::new();
-    }
-    let place = Place { latitude_deg, longitude_deg, altitude_m: altitude_m - geoid_height_m };
+    let stated = Place { latitude_deg, longitude_deg, altitude_m };
+    let Some(place) = on_earth(stated, EnvironmentalConditionsRequest::LAYOUT.name, notes) else { return Vec::new() };
+    let place = Place { altitude_m: place.altitude_m - geoid_height_m, ..place };
     let asks = |bit: u8| request.request_type_bits & bit != 0;
     let mut answers: Vec<Packet> = Vec::new();
     let air = if asks(WEATHER) || asks(MARITIME) { state.air_at(place) } else { state.atmosphere };
@@ -96,9 +109,7 @@ pub fn height(
         let offset = [request.x_offset_m, request.y_offset_m, request.z_offset_m];
         state.entity_pose(request.entity_id).map(|pose| pose.with_child(offset, [0.0; 3]).place)
     };
-    let is_finite =
-        |place: &Place| [place.latitude_deg, place.longitude_deg, place.altitude_m].iter().all(|v| v.is_finite());
-    let place = place.filter(is_finite);
+    let place = place.and_then(|place| on_earth(place, NAME, notes));
     if place.is_none() {
         notes.add(NAME, "", "answered as not valid, its place is not known");
     }

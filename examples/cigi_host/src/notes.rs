@@ -79,7 +79,8 @@ impl Checked<'_> {
         if value < low || value > high {
             self.notes.add(self.packet, field, "out of range, the nearest end is taken");
         }
-        value.clamp(low, high)
+        // Widths divide: a negative zero would change the sign of what they divide.
+        value.clamp(low, high) + 0.0
     }
 
     /// Returns an angle reduced to [0, 360), degrees, or the former value if it is not finite.

@@ -18,6 +18,17 @@ use crate::geodesy::{Place, north_east_m};
 /// Lowest visibility that counts, m: its extinction is finite.
 const MIN_VISIBILITY_M: f64 = 0.01;
 
+/// Returns 1 inside, and what is left of it at a distance from the edge of something that fades over a width.
+fn faded(distance_m: f64, width_m: f64) -> f64 {
+    if distance_m <= 0.0 {
+        1.0
+    } else if distance_m < width_m {
+        1.0 - distance_m / width_m
+    } else {
+        0.0
+    }
+}
+
 impl Shape {
     /// Returns the distance of a place from the rectangle with round corners, m; 0 inside.
     pub fn distance_m(&self, place: Place) -> f64 {
@@ -31,8 +42,7 @@ impl Shape {
 
     /// Returns the weight of the region at a place, from 1 inside to 0 at the perimeter's edge.
     pub fn weight(&self, place: Place) -> f64 {
-        let distance = self.distance_m(place);
-        if distance <= 0.0 { 1.0 } else { (1.0 - distance / self.perimeter_m).max(0.0) }
+        faded(self.distance_m(place), self.perimeter_m)
     }
 }
 
@@ -42,7 +52,7 @@ impl Layer {
     pub fn weight(&self, altitude_m: f64) -> f64 {
         let [below, above] = [self.base_m - altitude_m, altitude_m - self.base_m - self.thickness_m];
         let (distance, band) = if below > 0.0 { (below, self.transition_m[0]) } else { (above, self.transition_m[1]) };
-        if distance <= 0.0 { 1.0 } else { (1.0 - distance / band).max(0.0) }
+        faded(distance, band)
     }
 }
 

@@ -405,3 +405,44 @@ fn sea_and_ground_are_the_region_s_over_the_world_s() {
     let clear: &[Packet] = &[ground(0, 0, 0, true).into()];
     assert_eq!(answers(&[&base[..], clear].concat(), outside).1, vec![0]);
 }
+
+#[test]
+fn zeros_with_a_sign_and_places_beyond_the_earth_are_answered_as_their_nearest() {
+    let layer = WeatherControl {
+        base_elevation_m: 1000.0,
+        thickness_m: 100.0,
+        transition_band_m: -0.0,
+        bottom_transition_m: -0.0,
+        top_transition_m: -0.0,
+        ..rain(0, 0)
+    };
+    let edge = EnvironmentalRegionControl { transition_perimeter_m: -0.0, ..region(3, 43.4, 5.1) };
+    let air = AtmosphereControl {
+        air_temperature_c: 20.0,
+        visibility_m: 2e4,
+        pressure_hpa: 1e3,
+        ..AtmosphereControl::default()
+    };
+    let all = [air.into(), layer.into(), edge.into(), WeatherControl { visibility_m: 50.0, ..rain(1, 3) }.into()];
+    let mut session = Session::new(Site::default(), Version::V4_0, Order::Little);
+    session.receive(&message(Version::V4_0, Order::Little, 1, &all)).expect("a good message");
+    let mut visibility = |latitude_deg, longitude_deg, altitude_m| {
+        let asked = request(1, 4, Place { latitude_deg, longitude_deg, altitude_m });
+        session.receive(&message(Version::V4_0, Order::Little, 2, &[asked.into()])).expect("a good message");
+        let answers = packets(session.frame(0, &mut Groundless::default()));
+        match answers[1..] {
+            [Packet::WeatherConditionsResponse(air)] => (Some(air.visibility_m), session.notes().iter().count()),
+            [] => (None, session.notes().iter().count()),
+            _ => panic!("{answers:?}"),
+        }
+    };
+    assert_eq!(visibility(43.4, 5.1, 10.0), (Some(50.0), 0));
+    assert_eq!(visibility(42.0, 5.1, 999.0), (Some(2e4), 0));
+    assert_eq!(visibility(42.0, 5.1, 1000.0), (Some(3000.0), 0));
+    assert_eq!(visibility(1e308, 5.1, 0.0), (Some(2e4), 1));
+    assert_eq!(visibility(43.4, -1e308, 0.0), (Some(2e4), 2));
+    assert_eq!(visibility(43.4, 365.1, 0.0), (Some(2e4), 2));
+    assert_eq!(visibility(43.4, -354.9, 0.0), (Some(50.0), 2));
+    assert_eq!(visibility(43.4, 5.1, f64::MAX), (Some(2e4), 3));
+    assert_eq!(visibility(43.4, f64::NAN, 0.0), (None, 4));
+}
