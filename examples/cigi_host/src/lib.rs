@@ -5,6 +5,8 @@
 //! what CIGI leaves open. [`map`] turns the state into what Welkin's weather takes. [`capture`] prints files of
 //! datagrams.
 
+#![forbid(unsafe_code)]
+
 pub mod answer;
 pub mod capture;
 pub mod command;

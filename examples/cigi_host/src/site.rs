@@ -326,6 +326,12 @@ impl Site {
         number.checked_sub(1).and_then(|i| KINDS.get(usize::from(i)).copied()).or_else(own)
     }
 
+    /// Returns the height above the ellipsoid of an altitude as the host states it, m: that of Welkin's Earth-centred
+    /// world.
+    pub fn above_ellipsoid_m(&self, altitude_m: f64) -> f64 {
+        altitude_m + self.geoid_height_m - self.sea_level_m()
+    }
+
     /// Returns how high mean sea level lies above the datum of the host's altitudes, m.
     pub fn sea_level_m(&self) -> f64 {
         match self.altitudes {

@@ -1,7 +1,7 @@
 //! All that a host has said so far and that still holds.
 //!
 //! CIGI keeps state: a packet overrides what the last packet for the same object said, and holds until the next.
-//! Numbers that are not finite leave the former value, numbers out of range are clamped; [`Notes`](crate::notes::Notes)
+//! Numbers that are not finite leave the former value, numbers out of range are clamped; [`Notes`]
 //! counts both. Each kind of object has a limit, so that no peer makes the state grow without end.
 
 mod environment;

@@ -1,6 +1,7 @@
 //! The site's table: its defaults, and that wrong keys and values are named.
 
 use welkin_cigi_host::site::{CloudKind, LayerMeaning, Site};
+use welkin_cigi_host::wire::{Family, Packet};
 
 #[test]
 fn an_empty_table_is_the_default_and_rows_change_it() {
@@ -21,7 +22,9 @@ fn an_empty_table_is_the_default_and_rows_change_it() {
     });
     assert_eq!(site.severities.rain_mm_h[5], 5.0);
     assert_eq!(site.severities.snow_mm_h, Site::default().severities.snow_mm_h);
-    assert_eq!(Site::default().sea_level_m(), 0.0);
+    assert_eq!(site.above_ellipsoid_m(500.0), 500.0);
+    let level = Site::from_toml("geoid_height_m = 49.5").expect("a good table");
+    assert_eq!((level.sea_level_m(), level.above_ellipsoid_m(500.0)), (0.0, 549.5));
 }
 
 #[test]
@@ -62,4 +65,13 @@ fn wrong_keys_and_values_are_named() {
         let error = Site::from_toml(text).expect_err(text);
         assert!(error.contains(named), "{text}: {error}");
     }
+}
+
+#[test]
+fn the_support_table_names_every_packet() {
+    let document = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cigi-packets.md"));
+    let document = document.expect("docs/cigi-packets.md");
+    let missing = Packet::LAYOUTS.iter().flat_map(|layout| [layout.name, layout.name_in(Family::V4)]);
+    let missing: Vec<&str> = missing.filter(|name| !document.contains(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
