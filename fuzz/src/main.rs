@@ -1,4 +1,4 @@
-//! Writes what fuzzing begins with: the repository's own reports, planets, states and plans, and small files of noise and tables.
+//! Writes what fuzzing begins with: the repository's own reports, planets, states and plans, and small files of noise, heights and tables.
 
 use std::{fs, io, path::Path};
 
@@ -27,6 +27,9 @@ fn main() -> io::Result<()> {
     let settings = NoiseSettings { frequency: [2; 3], ..Default::default() };
     let images = [[16, 8, 1], [8, 8, 8]].map(|size| NoiseImage::generate(size, &settings).expect("good settings"));
     write("noise", images.iter().flat_map(|i| [i.to_dds(), i.to_ktx2()]).collect())?;
+    // A raw file's first byte says its layout: six columns, then the order of targets::raw_layouts.
+    let raw = (60..).zip(targets::raw_layouts()).map(|(first, (_, file))| [vec![first], file].concat());
+    write("heights", targets::height_files().into_iter().chain(raw).collect())?;
     write(
         "calls",
         (0..40_u8).map(|i| (0..200_u8).map(|k| k.wrapping_mul(7 + 2 * i).wrapping_add(i)).collect()).collect(),

@@ -6,13 +6,14 @@ use welkin_support::fuzz::targets;
 
 type Target = (&'static str, fn(&[u8]));
 
-const TARGETS: [Target; 7] = [
+const TARGETS: [Target; 8] = [
     ("metar", targets::metar),
     ("planet", targets::planet),
     ("state", targets::state),
     ("plan", targets::plan),
     ("cache", targets::cache),
     ("noise", targets::noise),
+    ("heights", targets::heights),
     ("calls", targets::calls),
 ];
 

@@ -4,6 +4,7 @@
 //! Seeded: `WELKIN_FUZZ_SEED=N` plays sequence N again and prints its calls.
 
 mod corpora;
+mod height_files;
 mod noise_files;
 
 use std::{

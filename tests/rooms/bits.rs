@@ -3,13 +3,14 @@
 use crate::{files, read, root};
 
 /// Rooms in which states are stepped and what they are stepped by is found.
-const SAME_BITS: [&str; 14] = [
+const SAME_BITS: [&str; 15] = [
     "almanac",
     "chance",
     "context",
     "falling",
     "flow",
     "ground",
+    "heights",
     "planet",
     "snowpack",
     "surroundings",

@@ -44,6 +44,16 @@ pub struct Canvas {
 /// Mean width of a letter divided by its height.
 const LETTER: f64 = 0.56;
 
+/// Gives plotters the font of all text in bitmaps.
+pub fn register_font() {
+    static FONT: Once = Once::new();
+    FONT.call_once(|| {
+        let bytes = dejavu::sans::regular();
+        // The bytes are a valid font. Without a font the PNG would have no text; the SVG has it.
+        let _ = plotters::style::register_font("sans-serif", FontStyle::Normal, bytes);
+    });
+}
+
 impl Canvas {
     /// An empty figure.
     pub fn new(width: u32, height: u32) -> Self {
@@ -90,12 +100,7 @@ impl Canvas {
     /// # Errors
     /// A file that cannot be written.
     pub fn save(&self, stem: &Path) -> Result<()> {
-        static FONT: Once = Once::new();
-        FONT.call_once(|| {
-            let bytes = dejavu::sans::regular();
-            // The bytes are a valid font. Without a font the PNG would have no text; the SVG has it.
-            let _ = plotters::style::register_font("sans-serif", FontStyle::Normal, bytes);
-        });
+        register_font();
         let fault = |e: String| Error::new(Status::Io, format!("{}: {e}", stem.display()));
         let svg = stem.with_extension("svg");
         let mut text = String::new();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, day, genera, growth, page, painted_chart, peers, regression, report, stability};
+use crate::{chart, clouds, compare, genera, growth, heights, page, painted_chart, peers, regression, report, stability};
 
 /// Every command and option.
 pub const USAGE: &str =
@@ -20,6 +20,7 @@ pub const USAGE: &str =
        lab scenes OLD NEW                 what differs between two such folders
        lab genera DIR [--scene PART]      a PNG of every kind of cloud, to be looked at
        lab painted DIR [--scene PART]     a PNG of every way to paint clouds, to be looked at
+       lab heights                        mistakes with height maps, as a sheet of pictures
        lab thresholds                     of the clouds' map, as src/clouds/field/thresholds.in has them
        lab photons                        how far the clouds' light is from photons
 options: --out DIR (docs/lab)   --quick (coarse truth, few rounds)   --fresh (forget what an earlier run kept)
@@ -95,6 +96,7 @@ pub fn run(arguments: &[String]) -> Result<bool> {
         ["scenes", ..] => Err(usage("scenes needs one folder to draw into, or two to compare")),
         ["genera", dir] => genera::draw(dir.as_ref(), options.scene.as_deref()),
         ["painted", dir] => painted_chart::draw(dir.as_ref(), options.scene.as_deref()),
+        ["heights"] => heights::draw(&options.out),
         ["thresholds"] => clouds::print_thresholds(),
         ["photons"] => clouds::print_photons(options.quick),
         [] => Err(usage("no command")),

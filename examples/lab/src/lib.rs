@@ -14,6 +14,7 @@ pub mod fog;
 pub mod front;
 pub mod genera;
 pub mod growth;
+pub mod heights;
 pub mod page;
 pub mod painted;
 pub mod painted_chart;

@@ -7,6 +7,7 @@ use std::{ffi::CString, ptr::null_mut};
 use welkin::{
     capi::{conditions::*, context::*, plan::*, report::*, status::WK_OK, timeline::*},
     error::{Error, Status},
+    heights::{ByteOrder, HeightMap, HeightScale, HeightSettings, NoiseTerrain, RawHeights, RawSample, RowOrder},
     noise::NoiseImage,
     planet::Planet,
     sky,
@@ -188,6 +189,102 @@ pub fn noise(data: &[u8]) {
                 assert_eq!(bytes.len(), texels as usize, "level {level}");
             }
         }
+    }
+}
+
+/// A file of heights, by its own format and as raw numbers: what is read must be in range, and once written and read
+/// again the same within a step.
+pub fn heights(data: &[u8]) {
+    heights_by(data, &HeightSettings::default());
+    let Some((first, numbers)) = data.split_first() else { return };
+    let kind = usize::from(*first);
+    let sample = [RawSample::U16, RawSample::I16, RawSample::F32][kind % 3];
+    let columns = 1 + kind / 12 % 8;
+    let size = if sample == RawSample::F32 { 4 } else { 2 };
+    let raw = RawHeights {
+        columns: columns as u32,
+        rows: (numbers.len() / size / columns).max(1) as u32,
+        sample,
+        byte_order: if kind / 3 % 2 == 0 { ByteOrder::Little } else { ByteOrder::Big },
+        row_order: if kind / 6 % 2 == 0 { RowOrder::NorthFirst } else { RowOrder::SouthFirst },
+    };
+    heights_by(numbers, &HeightSettings { raw: Some(raw), no_data: Some(-9999.0), ..Default::default() });
+}
+
+/// Small files of heights in each format that is told by its beginning.
+pub fn height_files() -> Vec<Vec<u8>> {
+    let terrain = NoiseTerrain { wavelength_m: 100.0, ..Default::default() };
+    let map = |columns, rows| HeightMap::generate(columns, rows, 10.0, [0.0; 2], &terrain).expect("good terrain");
+    let (wide, square) = (map(6, 4), map(4, 4));
+    let png = |map: &HeightMap| {
+        let settings = HeightSettings { scale: HeightScale::fitting(map), ..Default::default() };
+        map.to_png(&settings).expect("every height has a number")
+    };
+    let ter = |map: &HeightMap| map.to_ter().expect("every height has a number");
+    let chunks = ter(&wide);
+    // The heights before the numbers of points, and no end.
+    let (head, points, heights) = (&chunks[..16], &chunks[24..56], &chunks[56..chunks.len() - 4]);
+    let turned = [head, &chunks[16..24], heights, points].concat();
+    let values = |map: &HeightMap| map.heights_m().iter().map(|h| format!("{h:.2} ")).collect::<String>();
+    let grid = |map: &HeightMap, place: &str| {
+        let (columns, rows) = (map.columns(), map.rows());
+        format!("ncols {columns}\nnrows {rows}\n{place}\nNODATA_value -9999\n{}\n", values(map)).into_bytes()
+    };
+    let square_cells = "xllcorner 1000.5\nyllcorner -20\ncellsize 10";
+    let oblong_cells = "XLLCENTER 0\r\nYLLCENTER 1e3\r\nDX 10\r\nDY 20";
+    vec![png(&wide), ter(&wide), ter(&square), turned, grid(&wide, square_cells), grid(&square, oblong_cells)]
+}
+
+/// Small raw files of heights in each layout.
+pub fn raw_layouts() -> Vec<(RawHeights, Vec<u8>)> {
+    let heights = (0..24).map(|i| (7 * i % 31) as f32).collect();
+    let map = HeightMap::new(6, 4, heights).expect("good heights");
+    let layout = |i: usize| {
+        let raw = RawHeights {
+            columns: 6,
+            rows: 4,
+            sample: [RawSample::U16, RawSample::I16, RawSample::F32][i % 3],
+            byte_order: if i < 3 { ByteOrder::Little } else { ByteOrder::Big },
+            row_order: RowOrder::NorthFirst,
+        };
+        let settings = HeightSettings { raw: Some(raw), ..Default::default() };
+        (raw, map.to_raw(&settings).expect("every height has a number"))
+    };
+    (0..6).map(layout).collect()
+}
+
+/// Reads a file of heights by these settings. Returns whether it was read.
+pub fn heights_by(data: &[u8], settings: &HeightSettings) -> bool {
+    match HeightMap::from_bytes(data, settings) {
+        Err(e) => {
+            fit(&e);
+            let text = e.to_string();
+            let is_placed = ["byte ", "line ", "pixel ", "header", "chunk "].iter().any(|place| text.contains(place));
+            assert!(is_placed || e.status == Status::OutOfMemory, "no place: {text}");
+            false
+        }
+        Ok(map) => {
+            let samples = map.columns() as usize * map.rows() as usize;
+            assert_eq!(map.heights_m().len(), samples);
+            let known = map.heights_m().iter().filter(|h| !h.is_nan()).count();
+            assert!(known + map.missing() == samples && map.range_m().is_none_or(|[a, b]| -1e5 <= a && b <= 1e5));
+            let scale = HeightScale::fitting(&map);
+            returned(&map, HeightSettings { scale, no_data: Some(0.0), raw: None });
+            if let Ok(ter) = map.clone().with_cell([30.0; 2]).expect("a good cell").to_ter() {
+                HeightMap::from_bytes(&ter, &HeightSettings::default()).expect("what was written is read");
+            }
+            true
+        }
+    }
+}
+
+/// Panics unless a map is written as PNG by these settings and read again within a step.
+fn returned(map: &HeightMap, settings: HeightSettings) {
+    let file = map.to_png(&settings).expect("every height has a number");
+    let again = HeightMap::from_bytes(&file, &settings).expect("what was written is read");
+    for (a, b) in map.heights_m().iter().zip(again.heights_m()) {
+        let is_near = f64::from((a - b).abs()) <= settings.scale.step_m + 0.01;
+        assert!(is_near || (a.is_nan() && b.is_nan()), "{a} m came back as {b} m");
     }
 }
 
