@@ -7,6 +7,9 @@ pub const MAX_HEIGHT_SAMPLES: u64 = 1 << 28;
 /// Largest height above or below 0, m, as terrain has it.
 pub(super) const MOST_M: f64 = 1e5;
 
+/// Least and largest distance between samples.
+pub(super) const CELL_RANGE: [f64; 2] = [1e-9, 1e6];
+
 /// Rectangle of heights in metres, in rows from south to north; each row runs from west to east.
 #[derive(Clone, Debug)]
 pub struct HeightMap {
@@ -133,15 +136,18 @@ pub(super) fn check_size(columns: u32, rows: u32) -> Result<()> {
 /// Checks the distance between samples.
 pub(super) fn check_cell(cell: [f64; 2]) -> Result<()> {
     for (i, distance) in cell.into_iter().enumerate() {
-        check_range(&format!("cell[{i}]"), distance, 1e-9, 1e6, "")?;
+        check_range(&format!("cell[{i}]"), distance, CELL_RANGE[0], CELL_RANGE[1], "")?;
     }
     Ok(())
 }
 
-/// Returns an empty list with room for the heights of so many samples.
-pub(super) fn room_for(samples: u64) -> Result<Vec<f32>> {
-    let full = || Error::new(Status::OutOfMemory, format!("there is no memory for {samples} heights"));
+/// Returns an empty list with room for so many values.
+pub(super) fn room_for<T>(count: u64) -> Result<Vec<T>> {
+    let full = || {
+        let bytes = count.saturating_mul(size_of::<T>() as u64);
+        Error::new(Status::OutOfMemory, format!("there is no memory for {bytes} bytes of heights"))
+    };
     let mut room = Vec::new();
-    room.try_reserve_exact(usize::try_from(samples).map_err(|_| full())?).map_err(|_| full())?;
+    room.try_reserve_exact(usize::try_from(count).map_err(|_| full())?).map_err(|_| full())?;
     Ok(room)
 }

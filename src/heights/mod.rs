@@ -19,6 +19,25 @@
 //! and Woodward (1984, *The Piecewise Parabolic Method*, equations 1.5 to 1.9), whose mean in each old cell is the
 //! height there. [`NoiseTerrain`] is fractional Brownian motion or ridges, a pure function of place and seed.
 //!
+//! ```
+//! use welkin::heights::{HeightMap, HeightScale, HeightSettings};
+//!
+//! # fn main() -> welkin::Result<()> {
+//! // Feet in a text, the northern row first; a file is read by HeightMap::load.
+//! let text = b"ncols 3 nrows 2 cellsize 90 nodata_value -9999  1000 1010 1030  990 -9999 1005";
+//! let feet = HeightScale { step_m: 0.3048, base_m: 0.0 };
+//! let map = HeightMap::from_bytes(text, &HeightSettings { scale: feet, ..Default::default() })?;
+//! assert_eq!(map.height_m(0, 1), Some(304.8));
+//! assert_eq!(map.height_m(1, 0), None);
+//!
+//! // 16 bits in as fine steps as the heights allow; 0 means no data.
+//! let settings = HeightSettings { scale: HeightScale::fitting(&map), no_data: Some(0.0), ..Default::default() };
+//! let png = map.to_png(&settings)?;
+//! assert_eq!(HeightMap::from_bytes(&png, &settings)?.missing(), 1);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! The room needs no GPU and has no state. Reading takes memory in proportion to the file, never to the size that a
 //! header claims.
 

@@ -33,7 +33,9 @@ impl HeightMap {
         let mut heights_m = room_for(u64::from(columns) * u64::from(rows))?;
         heights_m.resize(columns as usize * rows as usize, 0.0);
         let (old_columns, old_rows) = (self.columns() as usize, self.rows() as usize);
-        let mut strip = vec![PartlyKnown::default(); STRIP.min(columns as usize) * old_rows];
+        let strip_cells = STRIP.min(columns as usize) * old_rows;
+        let mut strip = room_for(strip_cells as u64)?;
+        strip.resize(strip_cells, PartlyKnown::default());
         for first in (0..columns as usize).step_by(STRIP) {
             let width = STRIP.min(columns as usize - first);
             for row in 0..old_rows {

@@ -9,7 +9,7 @@ pub struct HeightScale {
     /// Metres for each 1 of a number, 1e-6 to 10 000 in amount; below 0 where numbers are depths. Default 1; 0.3048 for
     /// international feet, 1200/3937 for US survey feet.
     pub step_m: f64,
-    /// Height of the number 0, m, within 100 000. Default 0.
+    /// Height of the number 0, m, within 1 000 000. Default 0.
     pub base_m: f64,
 }
 
@@ -106,7 +106,7 @@ impl HeightSettings {
         if !(1e-6..=1e4).contains(&step.abs()) {
             return Err(Error::range("scale.step_m", "1e-6 to 10000 m in amount", step));
         }
-        check_range("scale.base_m", self.scale.base_m, -1e5, 1e5, "m")?;
+        check_range("scale.base_m", self.scale.base_m, -1e6, 1e6, "m")?;
         self.raw.map_or(Ok(()), |raw| check_size(raw.columns, raw.rows).map_err(|e| e.within("raw")))
     }
 

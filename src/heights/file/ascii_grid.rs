@@ -4,16 +4,18 @@ use std::fmt;
 
 use super::{
     super::{
-        map::{HeightMap, check_cell},
+        map::{CELL_RANGE, HeightMap, MAX_HEIGHT_SAMPLES},
         settings::{HeightSettings, RowOrder},
     },
     samples::Samples,
 };
-use crate::error::{Error, Result, Status, shown};
+use crate::error::{Error, Result, Status, check_range, shown};
 
 /// Keywords of the header, in lower case. GDAL writes `dx` and `dy` where cells are not square.
 const KEYWORDS: [&str; 10] =
     ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
+/// Largest coordinate of a place in amount.
+const MOST_PLACE: f64 = 1e12;
 /// Bytes that some programs put before text (Unicode's mark of byte order in UTF-8).
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -80,9 +82,16 @@ fn parse<T: std::str::FromStr>(word: &[u8], place: TextPlace, what: &str) -> Res
     })
 }
 
+/// Value of a keyword.
+#[derive(Clone, Copy)]
+struct HeaderValue {
+    value: f64,
+    place: TextPlace,
+}
+
 /// Values of the header, by keyword.
 struct Header {
-    values: [Option<f64>; KEYWORDS.len()],
+    values: [Option<HeaderValue>; KEYWORDS.len()],
     /// Place of the first height.
     end: TextPlace,
 }
@@ -91,54 +100,59 @@ impl Header {
     fn read(words: &mut Words<'_>) -> Result<Self> {
         let mut values = [None; KEYWORDS.len()];
         while let Some(key) = keyword(words.peek()) {
-            let place = words.next().1;
-            let (word, value_place) = words.next();
+            let key_place = words.next().1;
+            let (word, place) = words.next();
             let name = KEYWORDS[key];
             let value = match name {
-                "ncols" | "nrows" => f64::from(parse::<u32>(word, value_place, &format!("a whole number for {name}"))?),
-                _ => parse(word, value_place, &format!("a number for {name}"))?,
+                "ncols" | "nrows" => f64::from(parse::<u32>(word, place, &format!("a whole number for {name}"))?),
+                _ => parse(word, place, &format!("a number for {name}"))?,
             };
-            if values[key].replace(value).is_some() {
-                return Err(Error::new(Status::Parse, format!("{place}: {name} must be there once, this is another")));
+            if values[key].replace(HeaderValue { value, place }).is_some() {
+                let sentence = format!("{key_place}: {name} must be there once, this is another");
+                return Err(Error::new(Status::Parse, sentence));
             }
         }
         Ok(Self { values, end: words.place })
     }
 
-    fn value(&self, name: &str) -> Option<f64> {
+    fn value(&self, name: &str) -> Option<HeaderValue> {
         self.values[KEYWORDS.iter().position(|k| *k == name)?]
     }
 
-    fn needed(&self, name: &str) -> Result<f64> {
-        self.value(name).ok_or_else(|| {
+    /// Returns the value of a keyword that must be there and lie in a range.
+    fn needed(&self, name: &str, low: f64, high: f64) -> Result<f64> {
+        let found = self.value(name).ok_or_else(|| {
             let listed = "ncols, nrows and cellsize (or dx and dy)";
-            Error::new(
-                Status::Parse,
-                format!("{}: {listed} must stand before the heights, {name} is missing", self.end),
-            )
-        })
+            let sentence = format!("{}: {listed} must stand before the heights, {name} is missing", self.end);
+            Error::new(Status::Parse, sentence)
+        })?;
+        let placed = |e: Error| e.with_status(Status::Parse).found_in(found.place);
+        check_range(name, found.value, low, high, "").map_err(placed)?;
+        Ok(found.value)
+    }
+
+    /// Returns the number of columns or rows.
+    fn side(&self, name: &str) -> Result<u32> {
+        self.needed(name, 1.0, MAX_HEIGHT_SAMPLES as f64).map(|side| side as u32)
     }
 
     /// Returns the distance between samples.
     fn cell(&self) -> Result<[f64; 2]> {
-        let cell = match (self.value("dx"), self.value("dy")) {
-            (None, None) => [self.needed("cellsize")?; 2],
-            _ => [self.needed("dx")?, self.needed("dy")?],
-        };
-        let named = |e: Error| e.renamed("cell[0]", "cellsize").renamed("cell[1]", "dy").with_status(Status::Parse);
-        check_cell(cell).map_err(|e| named(e).found_in("the header"))?;
-        Ok(cell)
+        let [low, high] = CELL_RANGE;
+        if self.value("dx").is_none() && self.value("dy").is_none() {
+            return Ok([self.needed("cellsize", low, high)?; 2]);
+        }
+        Ok([self.needed("dx", low, high)?, self.needed("dy", low, high)?])
     }
 
     /// Returns the place of the south-western sample: half a cell from the corner, if that is given.
     fn south_west(&self, cell: [f64; 2]) -> Result<Option<[f64; 2]>> {
         let side = |corner: &str, center: &str, cell: f64| {
-            let place = self.value(corner).map(|v| v + 0.5 * cell).or(self.value(center));
-            if place.is_some_and(|v| !v.is_finite()) {
-                let sentence = format!("the header: {corner} or {center} must be finite");
-                return Err(Error::new(Status::Parse, sentence));
-            }
-            Ok(place)
+            let moved = |(name, shift): (&str, f64)| {
+                let far = MOST_PLACE;
+                self.value(name).map(|_| Ok(self.needed(name, -far, far)? + shift)).transpose()
+            };
+            Ok(moved((corner, 0.5 * cell))?.or(moved((center, 0.0))?))
         };
         let (x, y) = (side("xllcorner", "xllcenter", cell[0])?, side("yllcorner", "yllcenter", cell[1])?);
         Ok(x.zip(y).map(|(x, y)| [x, y]))
@@ -148,7 +162,7 @@ impl Header {
 pub fn read(bytes: &[u8], settings: &HeightSettings) -> Result<HeightMap> {
     let mut words = Words::new(bytes);
     let header = Header::read(&mut words)?;
-    let (columns, rows) = (header.needed("ncols")? as u32, header.needed("nrows")? as u32);
+    let (columns, rows) = (header.side("ncols")?, header.side("nrows")?);
     let cell = header.cell()?;
     let south_west = header.south_west(cell)?;
     // A height has at least one digit and a space.
@@ -161,8 +175,8 @@ pub fn read(bytes: &[u8], settings: &HeightSettings) -> Result<HeightMap> {
         );
         return Err(Error::new(Status::Parse, sentence));
     }
-    let mut samples = Samples::new(columns, rows, settings).map_err(|e| e.found_in("the header"))?;
-    samples.own_no_data = header.value("nodata_value");
+    let mut samples = Samples::new(columns, rows, settings).map_err(|e| e.found_in(header.end))?;
+    samples.own_no_data = header.value("nodata_value").map(|none| none.value);
     let all = u64::from(columns) * u64::from(rows);
     while (samples.len() as u64) < all {
         let (word, place) = words.next();

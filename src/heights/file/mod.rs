@@ -10,7 +10,7 @@ mod terragen;
 use std::{fs::File, io::Read as _, path::Path};
 
 use super::{
-    map::{HeightMap, MAX_HEIGHT_SAMPLES},
+    map::{HeightMap, MAX_HEIGHT_SAMPLES, room_for},
     settings::HeightSettings,
 };
 use crate::error::{Error, Result, Status, shown};
@@ -36,9 +36,7 @@ impl HeightMap {
             let sentence = format!("{name}: a file of heights has at most {MOST_BYTES} bytes, this one has {length}");
             return Err(Error::unsupported(sentence));
         }
-        let full = |_| Error::new(Status::OutOfMemory, format!("{name}: there is no memory for {length} bytes"));
-        let mut bytes = Vec::new();
-        bytes.try_reserve_exact(length as usize).map_err(full)?;
+        let mut bytes = room_for(length).map_err(|e| e.found_in(&name))?;
         file.take(MOST_BYTES).read_to_end(&mut bytes).map_err(failed)?;
         Self::from_bytes(&bytes, settings).map_err(|e| e.found_in(&name))
     }

@@ -10,7 +10,7 @@ use image::{
 
 use super::{
     super::{
-        map::{HeightMap, check_size},
+        map::{HeightMap, check_size, room_for},
         settings::{HeightSettings, RowOrder},
     },
     numbers::{in_order, whole_number},
@@ -121,7 +121,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 }
 
 pub fn write(map: &HeightMap, settings: &HeightSettings) -> Result<Vec<u8>> {
-    let mut pixels = Vec::with_capacity(2 * map.heights_m().len());
+    let mut pixels = room_for(2 * map.heights_m().len() as u64)?;
     for index in in_order(map, RowOrder::NorthFirst) {
         pixels.extend((whole_number(map, index, settings, [0, 65_535])? as u16).to_ne_bytes());
     }

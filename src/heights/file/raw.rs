@@ -2,7 +2,7 @@
 
 use super::{
     super::{
-        map::HeightMap,
+        map::{HeightMap, room_for},
         settings::{ByteOrder, HeightSettings, RawHeights, RawSample},
     },
     numbers::{check_free, in_order, whole_number},
@@ -57,17 +57,19 @@ pub fn write(map: &HeightMap, settings: &HeightSettings) -> Result<Vec<u8>> {
         let got = format!("{} x {}", raw.columns, raw.rows);
         return Err(Error::range("settings.raw.columns", &accepted, got));
     }
-    let mut file = Vec::with_capacity(map.heights_m().len() * raw.sample.bytes());
+    let size = raw.sample.bytes();
+    let mut file = room_for((size * map.heights_m().len()) as u64)?;
     for index in in_order(map, raw.row_order) {
-        let mut number = match raw.sample {
-            RawSample::U16 => (whole_number(map, index, settings, [0, 65_535])? as u16).to_le_bytes().to_vec(),
-            RawSample::I16 => (whole_number(map, index, settings, [-32_768, 32_767])? as i16).to_le_bytes().to_vec(),
-            RawSample::F32 => float(map, index, settings)?.to_le_bytes().to_vec(),
+        let number = match raw.sample {
+            RawSample::U16 => whole_number(map, index, settings, [0, 65_535])? as u32,
+            RawSample::I16 => whole_number(map, index, settings, [-32_768, 32_767])? as u32,
+            RawSample::F32 => float(map, index, settings)?.to_bits(),
         };
+        let mut bytes = number.to_le_bytes();
         if raw.byte_order == ByteOrder::Big {
-            number.reverse();
+            bytes[..size].reverse();
         }
-        file.extend(number);
+        file.extend_from_slice(&bytes[..size]);
     }
     Ok(file)
 }

@@ -3,7 +3,7 @@
 
 use super::{
     super::{
-        map::{HeightMap, check_cell},
+        map::{HeightMap, check_cell, room_for},
         settings::{HeightSettings, RowOrder},
     },
     samples::{Samples, cut_short},
@@ -19,6 +19,8 @@ const LONGEST: u32 = 32_767;
 /// Chunks of fixed size, with their marker, bytes.
 const FIXED: [(&[u8], usize); 7] =
     [(b"SIZE", 8), (b"XPTS", 8), (b"YPTS", 8), (b"SCAL", 16), (b"CRAD", 8), (b"CRVM", 8), (b"EOF ", 4)];
+/// Room for all that a written file has besides its heights, bytes.
+const MOST_BEFORE_HEIGHTS: u64 = 128;
 /// Chunk of heights, and the bytes of its marker, scale and base.
 const HEIGHTS: (&[u8], usize) = (b"ALTW", 8);
 
@@ -29,6 +31,8 @@ struct Fields {
     x_points: Option<u16>,
     y_points: Option<u16>,
     scale: Option<[f32; 3]>,
+    /// Offset of the chunk of the scale.
+    scale_begin: usize,
     /// Offset of the heights' chunk.
     heights: Option<usize>,
     is_ended: bool,
@@ -43,7 +47,10 @@ impl Fields {
             b"SIZE" => self.size.replace(short(4)).is_some(),
             b"XPTS" => self.x_points.replace(short(4)).is_some(),
             b"YPTS" => self.y_points.replace(short(4)).is_some(),
-            b"SCAL" => self.scale.replace([4, 8, 12].map(float)).is_some(),
+            b"SCAL" => {
+                self.scale_begin = begin;
+                self.scale.replace([4, 8, 12].map(float)).is_some()
+            }
             b"EOF " => std::mem::replace(&mut self.is_ended, true),
             // The radius and the curvature of a planet change no height.
             _ => false,
@@ -156,8 +163,9 @@ pub fn read(bytes: &[u8], settings: &HeightSettings) -> Result<HeightMap> {
     let scale = fields.scale.unwrap_or([DEFAULT_SCALE; 3]).map(f64::from);
     for scale in scale {
         if !(scale.is_finite() && scale > 0.0 && scale <= 1e6) {
+            let place = format!("byte {}, chunk SCAL,", fields.scale_begin);
             let rest = format!("must have three scales above 0 and up to 1e6 m, got {scale}");
-            return Err(Error::about(Status::Parse, "chunk SCAL", rest));
+            return Err(Error::about(Status::Parse, place, rest));
         }
     }
     let end = at + fields.heights_size().unwrap_or_default();
@@ -221,7 +229,8 @@ pub fn write(map: &HeightMap) -> Result<Vec<u8>> {
         let accepted = format!("at least {least:.3} for heights from {} to {} m", low * unit, high * unit);
         Error::range("cell", &accepted, cell[0])
     })?;
-    let mut file = MAGIC.to_vec();
+    let mut file = room_for(MOST_BEFORE_HEIGHTS + 2 * map.heights_m().len() as u64)?;
+    file.extend_from_slice(MAGIC);
     for (marker, value) in [(b"SIZE", columns.min(rows) - 1), (b"XPTS", columns), (b"YPTS", rows)] {
         file.extend(marker);
         file.extend(value.to_le_bytes());

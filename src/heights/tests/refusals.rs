@@ -29,11 +29,17 @@ fn grids_are_refused_by_line_and_column() {
         ("ncols 2.5\nnrows 1", "line 1, column 7: must be a whole number for ncols, got 2.5"),
         ("ncols -2", "line 1, column 7: must be a whole number for ncols, got -2"),
         ("ncols", "line 1, column 6: must be a whole number for ncols, got the end of the file"),
-        ("ncols 2\nnrows 1\ncellsize 0\n1 2", "the header: cellsize must be in [0.000000001, 1000000], got 0"),
-        ("ncols 2\nnrows 1\ncellsize nan\n1 2", "the header: cellsize must be in [0.000000001, 1000000], got NaN"),
+        ("ncols 2\nnrows 1\ncellsize 0\n1 2", "line 3, column 10: cellsize must be in [0.000000001, 1000000], got 0"),
+        (
+            "ncols 2\nnrows 1\ncellsize nan\n1 2",
+            "line 3, column 10: cellsize must be in [0.000000001, 1000000], got NaN",
+        ),
         ("ncols 2\nnrows 1\ndx 1\n1 2", "dy is missing"),
-        ("ncols 0\nnrows 1\ncellsize 1\n", "the header: columns must be at least 1, got 0"),
-        ("ncols 2\nnrows 1\ncellsize 1\nxllcorner inf\n1 2", "the header: xllcorner or xllcenter must be finite"),
+        ("ncols 0\nnrows 1\ncellsize 1\n", "line 1, column 7: ncols must be in [1, 268435456], got 0"),
+        (
+            "ncols 2\nnrows 1\ncellsize 1\nxllcorner inf\n1 2",
+            "line 4, column 11: xllcorner must be in [-1000000000000, 1000000000000], got inf",
+        ),
     ] {
         let found = refused(text.as_bytes(), &HeightSettings::default());
         assert!(found.starts_with("ESRI ASCII grid: ") && found.contains(says), "{found}");
@@ -58,7 +64,10 @@ fn terrains_are_refused_by_byte() {
             "byte 40: a chunk must be SIZE, XPTS, YPTS, SCAL, CRAD, CRVM, ALTW or EOF, got ROCK",
         ),
         (terrain(&[size, heights, b"EO"]), "byte 40, the marker of a chunk: needs 44 bytes, the file has 42"),
-        (terrain(&[size, heights, &scale(0.0)]), "chunk SCAL must have three scales above 0 and up to 1e6 m, got 0"),
+        (
+            terrain(&[size, heights, &scale(0.0)]),
+            "byte 40, chunk SCAL, must have three scales above 0 and up to 1e6 m, got 0",
+        ),
         (terrain(&[size, heights, &scale(f32::NAN)]), "up to 1e6 m, got NaN"),
         (terrain(&[b"XPTS\0\0\0\0YPTS\x01\0\0\0ALTW\0\0\0\0"]), "columns must be at least 1, got 0"),
         (
@@ -150,7 +159,7 @@ fn settings_are_refused_by_name() {
     for (settings, says) in [
         (scale(0.0, 0.0), "settings.scale.step_m must be 1e-6 to 10000 m in amount, got 0"),
         (scale(f64::NAN, 0.0), "settings.scale.step_m must be 1e-6 to 10000 m in amount, got NaN"),
-        (scale(1.0, 2e5), "settings.scale.base_m must be in [-100000, 100000] m, got 200000"),
+        (scale(1.0, 2e6), "settings.scale.base_m must be in [-1000000, 1000000] m, got 2000000"),
     ] {
         assert_eq!(refused(b"", &settings), says);
     }
