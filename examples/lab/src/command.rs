@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
-use crate::{chart, clouds, compare, genera, growth, heights, page, painted_chart, peers, regression, report, stability};
+use crate::{
+    chart, clouds, compare, genera, growth, heights, page, painted_chart, peers, regression, report, stability,
+};
 
 /// Every command and option.
 pub const USAGE: &str =

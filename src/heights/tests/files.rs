@@ -188,7 +188,7 @@ fn terragen_chunks_are_read_in_any_order_and_written_in_one() {
         let markers: Vec<&[u8]> = vec![b"SIZE", b"XPTS", b"YPTS", b"SCAL", b"ALTW"];
         let mut parts = chunks(&ter);
         assert_eq!(parts.iter().map(|p| &p[..4]).collect::<Vec<_>>(), markers);
-        assert!(ter.ends_with(b"EOF ") && ter.len() % 4 == 0);
+        assert!(ter.ends_with(b"EOF ") && ter.len().is_multiple_of(4));
         assert_eq!(parts[0][4..6], (columns.min(rows) as u16 - 1).to_le_bytes());
         let truth = HeightMap::from_bytes(&ter, &HeightSettings::default()).unwrap();
         parts.push([&b"CRAD"[..], &6370.0_f32.to_le_bytes()].concat());
