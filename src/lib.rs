@@ -62,6 +62,9 @@
 //! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. [`heights`] reads
 //! elevation files for [`terrain`]. The manual is `docs/README.md`. C and C++ hosts use the same types and functions
 //! through `include/welkin.h`, which [`capi`] implements as a thin layer.
+//! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is
+//! `docs/README.md`. C and C++ hosts use the same types and functions through `include/welkin.h`, which [`capi`]
+//! implements as a thin layer.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 // Items that only the lab calls are public under its feature; tests and clippy check them with that feature.
 #![cfg_attr(not(feature = "lab"), allow(dead_code, unused_imports, unreachable_pub))]
@@ -99,8 +102,10 @@ pub mod planet;
 pub mod rain;
 pub mod scene;
 pub mod sky;
+mod slides;
 pub mod snow;
 pub mod snowpack;
+pub mod soil;
 mod stage;
 pub mod stars;
 mod surroundings;

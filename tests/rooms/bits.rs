@@ -3,7 +3,7 @@
 use crate::{files, read, root};
 
 /// Rooms in which states are stepped and what they are stepped by is found.
-const SAME_BITS: [&str; 15] = [
+const SAME_BITS: [&str; 16] = [
     "almanac",
     "chance",
     "context",
@@ -12,7 +12,9 @@ const SAME_BITS: [&str; 15] = [
     "ground",
     "heights",
     "planet",
+    "slides",
     "snowpack",
+    "soil",
     "surroundings",
     "terrain",
     "weather",

@@ -9,7 +9,7 @@ use welkin::sky::probe::{Probe, Question};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 use welkin::{Error, Result, Status};
 
-use crate::{clouds, flow, fog, lightning, rain, sky, snow};
+use crate::{clouds, flow, fog, lightning, rain, sky, snow, soil};
 
 /// Usage text with every question and option.
 pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
@@ -20,6 +20,10 @@ pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--mod
                      probe ice < rates.csv\n       \
                      probe slab < slabs.csv\n       \
                      probe cover --genus NAME --okta 0..8 --seeds N\n       \
+                     probe soil-force < cuts.csv\n       \
+                     probe soil-wall < walls.csv\n       \
+                     probe soil-sinkage < plates.csv\n       \
+                     probe soil-heap < heaps.csv\n       \
                      probe lightning --rate FLASHES_A_MINUTE --hours H\n       \
                      probe cavity --re R --n N\n       \
                      probe taylor-green --n N --cfl C [--scheme NAME]\n       \
@@ -141,6 +145,15 @@ fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
     flow::wind(&text, &read_input()?)
 }
 
+/// Answers `soil-sinkage`; its warnings go to standard error.
+fn sinkages(input: &str) -> Result<String> {
+    let (answers, warnings) = soil::sinkages(input)?;
+    for warning in warnings {
+        eprintln!("probe: {warning}");
+    }
+    Ok(answers)
+}
+
 /// Runs the question of a command line, without its first word, on the text from standard input.
 ///
 /// # Errors
@@ -158,6 +171,10 @@ pub fn run(mut arguments: impl Iterator<Item = String>) -> Result<String> {
         "ice" => Options::parse(&[], arguments).and_then(|_| rain::ice(&read_input()?)),
         "slab" => Options::parse(&[], arguments).and_then(|_| clouds::slabs(&*device()?, &read_input()?)),
         "cover" => cover(arguments),
+        "soil-force" => Options::parse(&[], arguments).and_then(|_| soil::forces(&read_input()?)),
+        "soil-wall" => Options::parse(&[], arguments).and_then(|_| soil::walls(&read_input()?)),
+        "soil-sinkage" => Options::parse(&[], arguments).and_then(|_| sinkages(&read_input()?)),
+        "soil-heap" => Options::parse(&[], arguments).and_then(|_| soil::heaps(&read_input()?)),
         "lightning" => lightning(arguments),
         "cavity" => cavity(arguments),
         "wind" => wind(arguments),

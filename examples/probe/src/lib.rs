@@ -10,3 +10,4 @@ pub mod rain;
 pub mod scene;
 pub mod sky;
 pub mod snow;
+pub mod soil;

@@ -10,6 +10,10 @@
 //! probe ice
 //! probe slab
 //! probe cover --genus NAME --okta 0..8 --seeds N
+//! probe soil-force
+//! probe soil-wall
+//! probe soil-sinkage
+//! probe soil-heap
 //! probe lightning --rate FLASHES_A_MINUTE --hours H
 //! probe cavity --re R --n N
 //! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]

@@ -9,7 +9,7 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     sky::probe::{Probe, Question},
 };
-use welkin_probe::{clouds, flow, fog, lightning, rain, sky, snow};
+use welkin_probe::{clouds, flow, fog, lightning, rain, sky, snow, soil};
 use welkin_support::coarse_sky::coarse_sky;
 
 fn device() -> Arc<Device> {
@@ -200,4 +200,37 @@ fn bad_scenes_and_questions_are_refused_by_place() {
     refused(SCENE, "x,y,z,t\n110,60,20,0\n110,6,20,0\n", "line 3, column 5: y must be a number in [50, 130]");
     refused(SCENE, "x,y,z,t\n110,60,20\n", "line 2, column 10: 3 fields");
     refused(SCENE, "", "a header");
+}
+
+#[test]
+fn soil_answers_as_its_laws_and_names_faults() {
+    let cuts = "rake_deg,soil_metal_deg,phi_deg,density_kg_m3,c_kpa,ca_kpa,width_m,depth_m\n\
+                60,20,30,1700,3,1,1.5,0.3\n90,0,30,2000,0,0,1,1\n";
+    let forces = column(&soil::forces(cuts).unwrap(), "force_n");
+    // The second is half the passive pressure of Rankine: 0.5 * 3 * 2000 * 9.81.
+    assert!((forces[0] / 7552.0 - 1.0).abs() < 1e-3 && (forces[1] / 29_430.0 - 1.0).abs() < 1e-9, "{forces:?}");
+    let e = soil::forces(&cuts.replace("90,0,30", "140,30,40")).unwrap_err().to_string();
+    assert!(e.starts_with("line 3, column 1: no plane of failure at these angles: rake must be in [0.05, "), "{e}");
+    let walls =
+        column(&soil::walls("c_kpa,phi_deg,density_kg_m3\n5,30,1732.925\n0,30,1700\n").unwrap(), "critical_height_m");
+    assert!((walls[0] / 2.038 - 1.0).abs() < 1e-3 && walls[1] == 0.0, "{walls:?}");
+    let (out, warnings) = soil::sinkages(
+        "kc,kphi,n,b_m,p_kpa\n0.99,1528.43,1.1,0.6,50\n2.56,43.12,0.2,0.3,100\n4.37,196.72,1.6,0.1,200\n",
+    )
+    .unwrap();
+    let sinkages = column(&out, "sinkage_m");
+    assert!((sinkages[0] - 0.0446).abs() < 5e-5 && (sinkages[1] - 27.0).abs() < 0.5, "{out}");
+    assert!(warnings.len() == 2 && warnings[0].starts_with("line 3, column 1: n is below 0.3"), "{warnings:?}");
+    assert!(warnings[1].starts_with("line 4, column 1: the plate sinks by more than its width"), "{warnings:?}");
+    assert!(
+        soil::sinkages("kc,kphi,n,b_m,p_kpa\n0,0,1,1,1\n").unwrap_err().to_string().starts_with("line 2, column 1: kc")
+    );
+    let out = soil::heaps("volume_m3,repose_deg,cell_m\n1,35,0.1\n").unwrap();
+    for name in ["r0", "r11", "r22", "r34", "r45"] {
+        // The cone of this volume and slope.
+        assert!((column(&out, name)[0] / 1.1090 - 1.0).abs() < 0.015, "{out}");
+    }
+    let e = soil::heaps("volume_m3,repose_deg,cell_m\n1,35,1\n").unwrap_err().to_string();
+    assert!(e.starts_with("line 2, column 1: cell_m must be in [0.0069, 0.3697] m"), "{e}");
+    assert!(soil::walls("c_kpa,phi_deg\n1,2\n").unwrap_err().to_string().contains("no column density_kg_m3"));
 }

@@ -1,0 +1,87 @@
+//! Edge flux between the cells of a height field: how much of a granular material slides across each edge in a sweep.
+//!
+//! Material lies at rest up to the gradient tan(repose). Rules that let a cell slide to its neighbours wherever the drop
+//! between two cells is too steep judge the slope along eight directions only, and heaps become polygons: their radius
+//! is off by 7 to 33 % by azimuth. Here each edge is judged by the full gradient: with `a` the drop across the edge and
+//! `b` the mean of the four drops beside it, both over one cell, the slope is `s = sqrt(a^2 + b^2)`. Where it exceeds the
+//! gradient `t` at which the higher cell's material rests, `RATE (s - t) a / s` slides across the edge. Heaps are then
+//! round within 1 %. No pattern of cells escapes the rule, as a checkerboard escapes gradients at cells' corners.
+//!
+//! Heights and flows are whole numbers of units in f64. Flows are truncated to whole units, so that sums are exact, and
+//! the material comes to rest. The caller moves the material, because only it knows what the material consists of.
+
+/// Share of the excess drop that slides across an edge in one sweep. Above 0.25 a sweep can overshoot (von Neumann's
+/// limit for diffusion on a square lattice).
+const RATE: f64 = 0.24;
+
+/// Heights of a rectangle of cells with a margin of one cell on each side, by rows from the south-west.
+#[derive(Clone, Copy)]
+pub(crate) struct SlopeInputs<'a> {
+    /// Number of cells east and north, without the margin.
+    pub size: [usize; 2],
+    /// Heights in units, `(size[0] + 2) * (size[1] + 2)` of them; NaN where there is no ground.
+    pub heights: &'a [f64],
+    /// Drop over one cell, in units, at which the material on top of each cell rests; infinite where nothing can move.
+    /// As many as the heights.
+    pub grades: &'a [f64],
+}
+
+/// Drop over one cell beside an edge, from the heights on both sides of it; 0 where neither side has ground.
+fn side_drop(middle: f64, before: f64, after: f64) -> f64 {
+    match (before.is_nan(), after.is_nan()) {
+        (false, false) => 0.5 * (after - before),
+        (true, false) => after - middle,
+        (false, true) => middle - before,
+        (true, true) => 0.0,
+    }
+}
+
+/// Flow across the edge from cell `from` to cell `from + step`; `across` is the distance in memory to the neighbours
+/// beside.
+#[inline(always)]
+fn edge_flow(inputs: &SlopeInputs<'_>, from: usize, step: usize, across: usize) -> f64 {
+    let (heights, other) = (inputs.heights, from + step);
+    let a = heights[from] - heights[other];
+    let beside =
+        (heights[from + across] - heights[from - across]) + (heights[other + across] - heights[other - across]);
+    let grade = inputs.grades[if a > 0.0 { from } else { other }];
+    let b = 0.25 * beside;
+    // Where ground is missing, the comparison with NaN is false.
+    if a * a + b * b <= grade * grade {
+        return 0.0;
+    }
+    steep_flow(inputs, from, step, across)
+}
+
+/// As [`edge_flow`], for an edge that is too steep or lies beside missing ground.
+fn steep_flow(inputs: &SlopeInputs<'_>, from: usize, step: usize, across: usize) -> f64 {
+    let (heights, other) = (inputs.heights, from + step);
+    let a = heights[from] - heights[other];
+    if a.is_nan() || a == 0.0 {
+        return 0.0;
+    }
+    let side = |cell: usize| side_drop(heights[cell], heights[cell - across], heights[cell + across]);
+    let b = 0.5 * (side(from) + side(other));
+    let slope = (a * a + b * b).sqrt();
+    let over = slope - inputs.grades[if a > 0.0 { from } else { other }];
+    // An infinite grade gives a negative excess.
+    if over > 0.0 { (RATE * over * (a / slope)).trunc() } else { 0.0 }
+}
+
+/// Writes the flows of one sweep, in units: those across the eastern edge of each cell into `east`, those across the
+/// northern edge into `north`, positive where material leaves the cell. Returns whether anything flows.
+pub(crate) fn edge_flows(inputs: &SlopeInputs<'_>, east: &mut [f64], north: &mut [f64]) -> bool {
+    let [columns, rows] = inputs.size;
+    let stride = columns + 2;
+    let mut flows = false;
+    for row in 0..rows {
+        let first = (row + 1) * stride + 1;
+        for column in 0..columns {
+            let (cell, here) = (row * columns + column, first + column);
+            east[cell] = edge_flow(inputs, here, 1, stride);
+            north[cell] = edge_flow(inputs, here, stride, 1);
+            flows |= east[cell] != 0.0 || north[cell] != 0.0;
+        }
+    }
+    flows
+}

@@ -1,0 +1,149 @@
+//! Kinds of soil and their properties, and the layers of undisturbed ground.
+
+use super::laws::{GRAVITY_M_S2, SinkageSet, WallLaw};
+use crate::error::{Error, Result, check_range};
+
+/// Largest number of kinds of a site, the built-in ones among them.
+pub const MAX_SOIL_KINDS: usize = 16;
+/// Largest number of layers of undisturbed ground.
+pub const MAX_HORIZONS: usize = 8;
+
+/// Number of a kind of soil: an index into the kinds of a site. The built-in kinds come first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct SoilKindId(pub u8);
+
+impl SoilKindId {
+    /// Moist sand.
+    pub const SAND: Self = Self(0);
+    /// Dry gravel.
+    pub const GRAVEL: Self = Self(1);
+    /// Dry clay.
+    pub const CLAY: Self = Self(2);
+    /// Moist sandy loam; the default.
+    pub const LOAM: Self = Self(3);
+    /// Topsoil.
+    pub const TOPSOIL: Self = Self(4);
+    /// Limestone.
+    pub const ROCK: Self = Self(5);
+    /// Hard coal.
+    pub const COAL: Self = Self(6);
+
+    pub(super) fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// Properties of a kind of soil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoilKind {
+    /// Density of the undisturbed soil (bank), kg/m^3, \[50, 10 000\].
+    pub density_kg_m3: f64,
+    /// Growth of volume when the soil is dug, as a share of its bank volume, \[0, 1.5\].
+    pub swell: f64,
+    /// Angle at which the loose soil rests, degrees, \[5, 60\].
+    pub repose_deg: f64,
+    /// Cohesion of the bank, kPa, \[0, 10 000\].
+    pub cohesion_kpa: f64,
+    /// Friction angle of the bank, degrees, \[0, 60\].
+    pub friction_deg: f64,
+    /// How the soil yields to wheels and tracks; `None` for soil that carries them without sinking.
+    pub sinkage: Option<SinkageSet>,
+}
+
+/// Built-in kinds in the order of their numbers. The densities are those of dug soil in the engineers' tables (sand dry
+/// 1602, gravel dry 1522, clay dry 1073, earth moist 1442 and dry 1249, broken limestone 1554, coal 890 kg/m^3) times
+/// 1 + swell, so that the dug soil has them. Angles of repose lie in the middle of the published ranges. Cohesion and
+/// friction of sand, loam, clay and topsoil belong to the sets of their sinkage (Wong 2008, table 2.3).
+pub(super) const BUILT_IN: [SoilKind; 7] = [
+    kind([1794.0, 0.12, 34.0], [1.04, 28.0], Some(SinkageSet::DRY_SAND)),
+    kind([1750.0, 0.15, 37.0], [0.0, 37.0], None),
+    kind([1449.0, 0.35, 32.0], [4.14, 13.0], Some(SinkageSet::CLAYEY_38)),
+    kind([1803.0, 0.25, 37.0], [1.72, 29.0], Some(SinkageSet::SANDY_LOAM_15)),
+    kind([1561.0, 0.25, 37.0], [3.3, 33.7], Some(SinkageSet::UPLAND_LOAM)),
+    kind([2533.0, 0.63, 38.0], [1000.0, 40.0], None),
+    kind([1202.0, 0.35, 37.0], [100.0, 35.0], None),
+];
+
+const fn kind(bulk: [f64; 3], strength: [f64; 2], sinkage: Option<SinkageSet>) -> SoilKind {
+    let [density_kg_m3, swell, repose_deg] = bulk;
+    let [cohesion_kpa, friction_deg] = strength;
+    SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage }
+}
+
+impl SoilKind {
+    /// Checks that every property is within its range.
+    ///
+    /// # Errors
+    /// [`crate::error::Status::InvalidArgument`] naming the field.
+    pub fn validate(&self) -> Result<()> {
+        check_range("soil_kind.density_kg_m3", self.density_kg_m3, 50.0, 1e4, "kg/m^3")?;
+        check_range("soil_kind.swell", self.swell, 0.0, 1.5, "")?;
+        check_range("soil_kind.repose_deg", self.repose_deg, 5.0, 60.0, "deg")?;
+        check_range("soil_kind.cohesion_kpa", self.cohesion_kpa, 0.0, 1e4, "kPa")?;
+        check_range("soil_kind.friction_deg", self.friction_deg, 0.0, 60.0, "deg")?;
+        if let Some(set) = self.sinkage {
+            check_range("soil_kind.sinkage.kc", set.kc, 0.0, 1e6, "kN/m^(n+1)")?;
+            check_range("soil_kind.sinkage.kphi", set.kphi, 0.1, 1e8, "kN/m^(n+2)")?;
+            check_range("soil_kind.sinkage.n", set.n, 0.1, 3.0, "")?;
+        }
+        Ok(())
+    }
+
+    /// Density of the dug soil, kg/m^3.
+    pub fn loose_density_kg_m3(&self) -> f64 {
+        self.density_kg_m3 / (1.0 + self.swell)
+    }
+
+    /// Strength of the bank, by which its walls stand.
+    pub fn wall_law(&self) -> WallLaw {
+        WallLaw {
+            cohesion_kpa: self.cohesion_kpa,
+            friction: self.friction_deg.to_radians(),
+            density_kg_m3: self.density_kg_m3,
+        }
+    }
+
+    /// Weight of the bank, kN/m^3.
+    pub fn weight_kn_m3(&self) -> f64 {
+        1e-3 * GRAVITY_M_S2 * self.density_kg_m3
+    }
+}
+
+/// Layer of undisturbed ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoilHorizon {
+    /// Depth of its upper side below the undug surface, m, \[0, 1000\].
+    pub top_m: f64,
+    /// Kind of soil.
+    pub kind: SoilKindId,
+}
+
+/// Checks the layers: the first begins at the surface, and each other one deeper than the one before.
+pub(super) fn check_horizons(horizons: &[SoilHorizon], kinds: usize) -> Result<()> {
+    if !(1..=MAX_HORIZONS).contains(&horizons.len()) {
+        return Err(Error::range("horizons.len", &format!("in [1, {MAX_HORIZONS}]"), horizons.len()));
+    }
+    for (i, horizon) in horizons.iter().enumerate() {
+        let name = format!("horizons[{i}].top_m");
+        check_range(&name, horizon.top_m, 0.0, 1000.0, "m")?;
+        let before_m = i.checked_sub(1).map(|before| horizons[before].top_m);
+        match before_m {
+            None if horizon.top_m != 0.0 => return Err(Error::range(&name, "0, the surface", horizon.top_m)),
+            Some(before_m) if horizon.top_m <= before_m => {
+                return Err(Error::range(
+                    &name,
+                    &format!("more than {before_m} m, that of the layer above"),
+                    horizon.top_m,
+                ));
+            }
+            _ => check_kind(&format!("horizons[{i}].kind"), horizon.kind, kinds)?,
+        }
+    }
+    Ok(())
+}
+
+/// Checks that a kind is known.
+pub(super) fn check_kind(name: &str, kind: SoilKindId, kinds: usize) -> Result<()> {
+    let accepted = || format!("a known kind of soil, in [0, {}]", kinds - 1);
+    if kind.index() < kinds { Ok(()) } else { Err(Error::range(name, &accepted(), kind.0)) }
+}

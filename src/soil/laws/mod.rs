@@ -1,0 +1,17 @@
+//! Laws of soil in f64, each with its source: cutting force, standing walls, sinkage, heaps and swell.
+//!
+//! Lengths are in m, forces in N, densities in kg/m^3; cohesion, adhesion and pressure are in kPa, as in the tables of
+//! the field. Angles are in radians.
+
+mod force;
+mod heap;
+mod sinkage;
+mod wall;
+
+pub use force::{CuttingForce, CuttingInputs, cutting_force};
+pub use heap::{cone_radius_m, heap_volume_m3, load_factor, voids_share};
+pub use sinkage::{ReeceSet, SinkageSet, WheelLoad};
+pub use wall::{WallLaw, WallTable};
+
+/// Gravity in all laws of soil, m/s^2.
+pub const GRAVITY_M_S2: f64 = 9.81;

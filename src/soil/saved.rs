@@ -1,0 +1,306 @@
+//! Saved form of a site as text. Depths and masses are whole numbers; a run of equal ones is written as "bits*times".
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    field::SoilField,
+    kind::{MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId},
+    laws::SinkageSet,
+    material::SoilParcel,
+    patch::{CELLS, Pressed, SoilPatch, UndugGround},
+    site::{SoilSite, SoilSiteDesc},
+    tool::{SoilToolPose, SoilToolShape},
+    work::{PassedCell, SoilTool, StepWork},
+};
+use crate::{
+    error::{Error, Result, Status, toml_fault},
+    world::{values, words},
+};
+
+/// Largest number of patches of a saved site.
+const MOST_PATCHES: usize = 1 << 20;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedSite {
+    cell_m: f64,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    own_kinds: Vec<SavedKind>,
+    horizons: Vec<(f64, u8)>,
+    steps: i64,
+    idle: u32,
+    revision: u64,
+    next_id: u32,
+    /// Mass that left and that came, in whole micrograms; text, because it may be more than a number of TOML.
+    taken: String,
+    brought: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    tools: Vec<SavedTool>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    patches: Vec<SavedPatch>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedKind {
+    bulk: [f64; 3],
+    strength: [f64; 2],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sinkage: Option<[f64; 3]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedTool {
+    id: u32,
+    shape: String,
+    sizes: [f64; 2],
+    is_ended: bool,
+    depth: i64,
+    masses: String,
+    /// Time, edge, upper edge, facing and load of the present pose and of those that wait.
+    poses: Vec<[f64; 17]>,
+    passed: Vec<([i32; 2], [f64; 2])>,
+    /// Cut volume, area, way and sinkage of the last step; its kind, and whether its sinkage was limited.
+    work: ([f64; 4], u8, bool),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedPatch {
+    key: [i32; 2],
+    revision: u64,
+    /// Whether it is awake, has changed since the last sweep, and has unchecked walls.
+    flags: [bool; 3],
+    cut: String,
+    loose: String,
+    masses: Vec<(u8, String)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pressed: Option<[String; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    broken: Option<String>,
+}
+
+fn pose_numbers(pose: &SoilToolPose) -> [f64; 17] {
+    let mut numbers = [0.0; 17];
+    numbers[0] = pose.time_s;
+    let points = [pose.edge[0], pose.edge[1], pose.upper[0], pose.upper[1], pose.facing];
+    points.iter().zip(numbers[1..16].chunks_mut(3)).for_each(|(point, to)| to.copy_from_slice(&point.to_array()));
+    numbers[16] = pose.load_n;
+    numbers
+}
+
+fn pose_of(numbers: &[f64; 17]) -> SoilToolPose {
+    let point = |i: usize| glam::DVec3::new(numbers[3 * i + 1], numbers[3 * i + 2], numbers[3 * i + 3]);
+    SoilToolPose {
+        time_s: numbers[0],
+        edge: [point(0), point(1)],
+        upper: [point(2), point(3)],
+        facing: point(4),
+        load_n: numbers[16],
+    }
+}
+
+fn shape_numbers(shape: &SoilToolShape) -> (&'static str, [f64; 2]) {
+    match *shape {
+        SoilToolShape::Bucket { struck_m3, heap_rise } => ("bucket", [struck_m3, heap_rise]),
+        SoilToolShape::Blade => ("blade", [0.0; 2]),
+        SoilToolShape::Bed { struck_m3, heap_rise } => ("bed", [struck_m3, heap_rise]),
+        SoilToolShape::Wheel { diameter_m } => ("wheel", [diameter_m, 0.0]),
+        SoilToolShape::Track { contact_m } => ("track", [contact_m, 0.0]),
+    }
+}
+
+fn shape_of(name: &str, [first, heap_rise]: [f64; 2]) -> Option<SoilToolShape> {
+    Some(match name {
+        "bucket" => SoilToolShape::Bucket { struck_m3: first, heap_rise },
+        "blade" => SoilToolShape::Blade,
+        "bed" => SoilToolShape::Bed { struck_m3: first, heap_rise },
+        "wheel" => SoilToolShape::Wheel { diameter_m: first },
+        "track" => SoilToolShape::Track { contact_m: first },
+        _ => return None,
+    })
+}
+
+/// Returns whole numbers as text.
+fn text(numbers: impl Iterator<Item = i64>) -> String {
+    words(numbers.map(|number| number as u64))
+}
+
+/// Returns the numbers of a text, none of them negative.
+fn numbers(text: &str, count: usize) -> Option<Vec<i64>> {
+    let found: Vec<i64> = values(text, count)?.into_iter().map(|number| number as i64).collect();
+    found.iter().all(|number| *number >= 0).then_some(found)
+}
+
+impl SavedKind {
+    fn of(kind: &SoilKind) -> Self {
+        Self {
+            bulk: [kind.density_kg_m3, kind.swell, kind.repose_deg],
+            strength: [kind.cohesion_kpa, kind.friction_deg],
+            sinkage: kind.sinkage.map(|set| [set.kc, set.kphi, set.n]),
+        }
+    }
+
+    fn kind(&self) -> SoilKind {
+        let ([density_kg_m3, swell, repose_deg], [cohesion_kpa, friction_deg]) = (self.bulk, self.strength);
+        let sinkage = self.sinkage.map(|[kc, kphi, n]| SinkageSet { kc, kphi, n });
+        SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage }
+    }
+}
+
+impl SavedTool {
+    fn of(tool: &SoilTool) -> Self {
+        let (shape, sizes) = shape_numbers(&tool.shape);
+        let work = &tool.work;
+        Self {
+            id: tool.id,
+            shape: shape.to_owned(),
+            sizes,
+            is_ended: tool.is_ended,
+            depth: tool.content.depth,
+            masses: text(tool.content.masses.into_iter()),
+            poses: std::iter::once(&tool.pose).chain(&tool.poses).map(pose_numbers).collect(),
+            passed: tool.passed.iter().map(|passed| (passed.place, [passed.share, passed.raised])).collect(),
+            work: ([work.cut_m3, work.area_m2, work.way_m, work.sinkage_m], work.kind as u8, work.is_clamped),
+        }
+    }
+
+    fn tool(&self, kinds: usize) -> Option<SoilTool> {
+        let shape = shape_of(&self.shape, self.sizes).filter(|shape| shape.validate().is_ok())?;
+        let mut poses: Vec<SoilToolPose> = self.poses.iter().map(pose_of).collect();
+        poses.iter().all(|pose| pose.validate(&shape).is_ok()).then_some(())?;
+        poses.is_sorted_by(|a, b| b.validate_after(a).is_ok()).then_some(())?;
+        let pose = if poses.is_empty() { return None } else { poses.remove(0) };
+        let masses: [i64; MAX_SOIL_KINDS] = numbers(&self.masses, MAX_SOIL_KINDS)?.try_into().ok()?;
+        let passed: Vec<PassedCell> = self
+            .passed
+            .iter()
+            .map(|(place, [share, raised])| PassedCell { place: *place, share: *share, raised: *raised })
+            .collect();
+        let ([cut_m3, area_m2, way_m, sinkage_m], kind, is_clamped) = self.work;
+        let is_sound = self.depth >= 0
+            && usize::from(kind) < kinds
+            && masses[kinds..].iter().all(|mass| *mass == 0)
+            && passed.is_sorted_by_key(|passed| [passed.place[1], passed.place[0]])
+            && passed.iter().all(|passed| (0.0..=1.0).contains(&passed.share) && passed.raised.is_finite());
+        is_sound.then_some(SoilTool {
+            id: self.id,
+            shape,
+            pose,
+            poses,
+            is_ended: self.is_ended,
+            content: SoilParcel { depth: self.depth, masses },
+            passed,
+            work: StepWork { cut_m3, area_m2, way_m, kind: usize::from(kind), sinkage_m, is_clamped },
+        })
+    }
+}
+
+impl SavedPatch {
+    fn of(field: &SoilField, slot: u32) -> Self {
+        let patch = field.patch(slot);
+        let pressed = |value: fn(&Pressed) -> i64| text(patch.pressed.iter().map(value));
+        Self {
+            key: patch.key,
+            revision: patch.revision,
+            flags: [field.awake.contains(&slot), field.has_changed(slot), patch.is_unchecked],
+            cut: text(patch.cut.iter().copied()),
+            loose: text(patch.loose.iter().copied()),
+            masses: patch.masses.iter().map(|(kind, masses)| (*kind, text(masses.iter().copied()))).collect(),
+            pressed: (!patch.pressed.is_empty())
+                .then(|| [pressed(|p| p.packed), pressed(|p| p.sunk), pressed(|p| p.reached)]),
+            broken: patch.broken.contains(&true).then(|| text(patch.broken.iter().map(|broken| i64::from(*broken)))),
+        }
+    }
+
+    fn patch(&self, kinds: usize, ground: &dyn UndugGround) -> Option<SoilPatch> {
+        let key = self.key;
+        key.iter().all(|k| k.abs() < 1 << 26).then_some(())?;
+        let mut patch = SoilPatch::new(key, ground)?;
+        (patch.cut, patch.loose) = (numbers(&self.cut, CELLS)?, numbers(&self.loose, CELLS)?);
+        for (kind, masses) in &self.masses {
+            (usize::from(*kind) < kinds).then_some(())?;
+            patch.masses.push((*kind, numbers(masses, CELLS)?));
+        }
+        patch.masses.is_sorted_by(|a, b| a.0 < b.0).then_some(())?;
+        if let Some([packed, sunk, reached]) = &self.pressed {
+            let lists = [numbers(packed, CELLS)?, numbers(sunk, CELLS)?, numbers(reached, CELLS)?];
+            let press = |i: usize| Pressed { packed: lists[0][i], sunk: lists[1][i], reached: lists[2][i] };
+            patch.pressed = (0..CELLS).map(press).collect();
+            patch.pressed.iter().all(|press| press.sunk <= press.packed).then_some(())?;
+        }
+        if let Some(broken) = &self.broken {
+            patch.broken = numbers(broken, CELLS)?.into_iter().map(|broken| broken != 0).collect();
+        }
+        (patch.revision, patch.is_unchecked) = (self.revision, self.flags[2]);
+        Some(patch)
+    }
+}
+
+impl SoilSite {
+    /// Returns the site as text: [`SoilSite::decode`] gives a site that continues with the same bits.
+    ///
+    /// # Errors
+    /// [`Status::Internal`] if the text cannot be written.
+    pub fn encode(&self) -> Result<String> {
+        let slots = self.field.slots.values();
+        let saved = SavedSite {
+            cell_m: self.desc.cell_m,
+            own_kinds: self.desc.own_kinds.iter().map(SavedKind::of).collect(),
+            horizons: self.desc.horizons.iter().map(|horizon| (horizon.top_m, horizon.kind.0)).collect(),
+            steps: self.steps,
+            idle: self.idle,
+            revision: self.field.revision,
+            next_id: self.next_id,
+            taken: self.taken.to_string(),
+            brought: self.brought.to_string(),
+            tools: self.tools.iter().map(SavedTool::of).collect(),
+            patches: slots.map(|slot| SavedPatch::of(&self.field, *slot)).collect(),
+        };
+        toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("writing soil: {e}")))
+    }
+
+    /// Returns the site that [`SoilSite::encode`] wrote, on the same undug ground.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for a text that is no site; [`Status::InvalidArgument`] naming a setting outside its range.
+    pub fn decode(text: &str, ground: &dyn UndugGround) -> Result<Self> {
+        let parse = |fault: String| Error::new(Status::Parse, format!("saved soil: {fault}"));
+        let saved: SavedSite = toml::from_str(text).map_err(|e| parse(toml_fault(text, &e)))?;
+        let horizons =
+            saved.horizons.iter().map(|(top_m, kind)| SoilHorizon { top_m: *top_m, kind: SoilKindId(*kind) });
+        let desc = SoilSiteDesc {
+            cell_m: saved.cell_m,
+            own_kinds: saved.own_kinds.iter().map(SavedKind::kind).collect(),
+            horizons: horizons.collect(),
+        };
+        let mut site = Self::new(desc)?;
+        saved.fill(&mut site, ground).ok_or_else(|| parse("values that no site can have".to_owned()))?;
+        if !site.books().is_balanced() {
+            return Err(parse("masses that do not balance".to_owned()));
+        }
+        Ok(site)
+    }
+}
+
+impl SavedSite {
+    fn fill(&self, site: &mut SoilSite, ground: &dyn UndugGround) -> Option<()> {
+        let kinds = site.field.materials.kinds.len();
+        (self.steps >= 0 && self.patches.len() <= MOST_PATCHES).then_some(())?;
+        (site.steps, site.idle, site.next_id) = (self.steps, self.idle, self.next_id);
+        (site.taken, site.brought) = (self.taken.parse().ok()?, self.brought.parse().ok()?);
+        for tool in &self.tools {
+            let is_new = site.tools.iter().all(|other| other.id < tool.id) && tool.id < self.next_id;
+            site.tools.push(tool.tool(kinds).filter(|_| is_new)?);
+        }
+        for saved in &self.patches {
+            let patch = saved.patch(kinds, ground).filter(|patch| site.field.slot(patch.key).is_none())?;
+            let slot = site.field.insert(patch);
+            site.field.restore(slot, saved.flags);
+        }
+        site.field.revision = self.revision;
+        site.bar();
+        Some(())
+    }
+}
