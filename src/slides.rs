@@ -27,43 +27,41 @@ pub(crate) struct SlopeInputs<'a> {
 }
 
 /// Drop over one cell beside an edge, from the heights on both sides of it; 0 where neither side has ground.
-fn side_drop(middle: f64, before: f64, after: f64) -> f64 {
-    match (before.is_nan(), after.is_nan()) {
-        (false, false) => 0.5 * (after - before),
-        (true, false) => after - middle,
-        (false, true) => middle - before,
+fn side_drop(middle: f64, lower: f64, upper: f64) -> f64 {
+    match (lower.is_nan(), upper.is_nan()) {
+        (false, false) => 0.5 * (upper - lower),
+        (true, false) => upper - middle,
+        (false, true) => middle - lower,
         (true, true) => 0.0,
     }
 }
 
-/// Flow across the edge from cell `from` to cell `from + step`; `across` is the distance in memory to the neighbours
-/// beside.
+/// Flow across the edge between a cell and `cell + step`; `aside` is the distance in memory to the neighbours beside.
 #[inline(always)]
-fn edge_flow(inputs: &SlopeInputs<'_>, from: usize, step: usize, across: usize) -> f64 {
-    let (heights, other) = (inputs.heights, from + step);
-    let a = heights[from] - heights[other];
-    let beside =
-        (heights[from + across] - heights[from - across]) + (heights[other + across] - heights[other - across]);
-    let grade = inputs.grades[if a > 0.0 { from } else { other }];
+fn edge_flow(inputs: &SlopeInputs<'_>, cell: usize, step: usize, aside: usize) -> f64 {
+    let (heights, other) = (inputs.heights, cell + step);
+    let a = heights[cell] - heights[other];
+    let beside = (heights[cell + aside] - heights[cell - aside]) + (heights[other + aside] - heights[other - aside]);
+    let grade = inputs.grades[if a > 0.0 { cell } else { other }];
     let b = 0.25 * beside;
     // Where ground is missing, the comparison with NaN is false.
     if a * a + b * b <= grade * grade {
         return 0.0;
     }
-    steep_flow(inputs, from, step, across)
+    steep_flow(inputs, cell, step, aside)
 }
 
 /// As [`edge_flow`], for an edge that is too steep or lies beside missing ground.
-fn steep_flow(inputs: &SlopeInputs<'_>, from: usize, step: usize, across: usize) -> f64 {
-    let (heights, other) = (inputs.heights, from + step);
-    let a = heights[from] - heights[other];
+fn steep_flow(inputs: &SlopeInputs<'_>, cell: usize, step: usize, aside: usize) -> f64 {
+    let (heights, other) = (inputs.heights, cell + step);
+    let a = heights[cell] - heights[other];
     if a.is_nan() || a == 0.0 {
         return 0.0;
     }
-    let side = |cell: usize| side_drop(heights[cell], heights[cell - across], heights[cell + across]);
-    let b = 0.5 * (side(from) + side(other));
+    let side = |i: usize| side_drop(heights[i], heights[i - aside], heights[i + aside]);
+    let b = 0.5 * (side(cell) + side(other));
     let slope = (a * a + b * b).sqrt();
-    let over = slope - inputs.grades[if a > 0.0 { from } else { other }];
+    let over = slope - inputs.grades[if a > 0.0 { cell } else { other }];
     // An infinite grade gives a negative excess.
     if over > 0.0 { (RATE * over * (a / slope)).trunc() } else { 0.0 }
 }

@@ -171,8 +171,8 @@ impl SoilField {
     }
 
     /// Whether a blade holds the soil that would slide from a cell.
-    fn is_held(&self, slot: u32, edge: u16, from: SoilCell) -> bool {
-        let top = self.patches[from.slot as usize].surface[from.cell];
+    fn is_held(&self, slot: u32, edge: u16, donor: SoilCell) -> bool {
+        let top = self.patches[donor.slot as usize].surface[donor.cell];
         let holds = |(closed, [low, high]): &(u16, [f64; 2])| *closed == edge && *low < top && top <= *high;
         self.patches[slot as usize].barriers.iter().any(holds)
     }
@@ -232,34 +232,34 @@ impl SoilField {
     }
 
     /// Moves loose soil of up to `depth` units from a cell to another. Bank that has lost its hold is loosened first.
-    fn slide(&mut self, from: SoilCell, to: SoilCell, depth: i64) {
-        let patch = &mut self.patches[from.slot as usize];
-        let missing = depth - patch.loose[from.cell];
-        if missing > 0 && patch.broken[from.cell] {
-            let kind = self.materials.bank_kind(patch.cut[from.cell]);
+    fn slide(&mut self, donor: SoilCell, receiver: SoilCell, depth: i64) {
+        let patch = &mut self.patches[donor.slot as usize];
+        let missing = depth - patch.loose[donor.cell];
+        if missing > 0 && patch.broken[donor.cell] {
+            let kind = self.materials.bank_kind(patch.cut[donor.cell]);
             let bank = (missing as f64 / (1.0 + self.materials.kinds[kind].kind.swell)) as i64;
-            let parcel = patch.dig_bank(from.cell, bank, &self.materials);
-            patch.put(from.cell, &parcel, &self.materials);
+            let parcel = patch.dig_bank(donor.cell, bank, &self.materials);
+            patch.put(donor.cell, &parcel, &self.materials);
         }
-        let (whole, depth) = (patch.loose[from.cell], depth.min(patch.loose[from.cell]));
+        let (whole, depth) = (patch.loose[donor.cell], depth.min(patch.loose[donor.cell]));
         if depth <= 0 {
             return;
         }
-        for i in 0..self.patches[from.slot as usize].masses.len() {
-            let (kind, masses) = &mut self.patches[from.slot as usize].masses[i];
-            let (kind, moved) = (*kind, share(masses[from.cell], depth, whole));
+        for i in 0..self.patches[donor.slot as usize].masses.len() {
+            let (kind, masses) = &mut self.patches[donor.slot as usize].masses[i];
+            let (kind, moved) = (*kind, share(masses[donor.cell], depth, whole));
             if moved > 0 {
-                masses[from.cell] -= moved;
-                self.patches[to.slot as usize].kind_masses(kind)[to.cell] += moved;
+                masses[donor.cell] -= moved;
+                self.patches[receiver.slot as usize].kind_masses(kind)[receiver.cell] += moved;
             }
         }
-        self.patches[from.slot as usize].loose[from.cell] -= depth;
-        let below = &mut self.patches[to.slot as usize];
-        below.loose[to.cell] += depth;
-        if let Some(press) = below.pressed.get_mut(to.cell) {
+        self.patches[donor.slot as usize].loose[donor.cell] -= depth;
+        let below = &mut self.patches[receiver.slot as usize];
+        below.loose[receiver.cell] += depth;
+        if let Some(press) = below.pressed.get_mut(receiver.cell) {
             press.reached = (press.reached - depth).max(0);
         }
-        for cell in [from, to] {
+        for cell in [donor, receiver] {
             self.touch(cell.slot);
             self.patches[cell.slot as usize].refresh(cell.cell, &self.materials);
         }
@@ -409,12 +409,12 @@ impl SoilField {
 fn margin(
     patches: &[SoilPatch],
     patch: &SoilPatch,
-    near: usize,
+    side: usize,
     cell: usize,
     place: usize,
     [heights, grades]: [&mut Vec<f64>; 2],
 ) {
-    (heights[place], grades[place]) = match patches.get(patch.near[near] as usize) {
+    (heights[place], grades[place]) = match patches.get(patch.near[side] as usize) {
         Some(other) => (other.surface[cell], other.grade[cell]),
         None => (patch.ground[place], f64::INFINITY),
     };

@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn heaps_are_round() {
         for (volume_m3, repose_deg, cell_m, percent) in
-            [(1.0, 35.0f64, 0.1, 1.0), (1.0, 35.0, 0.05, 0.5), (40.0, 28.0, 0.3, 0.8)]
+            [(1.0, 35.0f64, 0.1, 1.0), (1.0, 35.0, 0.05, 0.5), (40.0, 28.0, 0.3, 0.8), (1.0, 35.0, 0.185, 2.0)]
         {
             let radii = heap_radii_m(volume_m3, repose_deg, cell_m).unwrap();
             let cone_m = cone_radius_m(volume_m3, repose_deg.to_radians());

@@ -346,14 +346,14 @@ fn top_kind(field: &SoilField, SoilCell { slot, cell }: SoilCell) -> usize {
 }
 
 /// Depth by which loose soil gives way to a press, in units: at most down to its compacted volume.
-fn squeeze(loose: i64, down: i64, masses: impl Iterator<Item = (usize, i64)>, materials: &SoilMaterials) -> i64 {
+fn squeeze(loose: i64, pressed: i64, masses: impl Iterator<Item = (usize, i64)>, materials: &SoilMaterials) -> i64 {
     let compacted: f64 = masses
         .map(|(kind, mass)| {
             let material = &materials.kinds[kind];
             mass as f64 * material.loose_depth * COMPACTED / (1.0 + material.kind.swell)
         })
         .sum();
-    down.min((loose - compacted.ceil() as i64).max(0))
+    pressed.min((loose - compacted.ceil() as i64).max(0))
 }
 
 /// Pours soil from the opening of a tool: into another tool below, or onto the ground. Returns what nothing below could
@@ -361,7 +361,7 @@ fn squeeze(loose: i64, down: i64, masses: impl Iterator<Item = (usize, i64)>, ma
 pub(super) fn pour(
     parcel: SoilParcel,
     pose: &SoilToolPose,
-    below: &mut [SoilTool],
+    catchers: &mut [SoilTool],
     place: &mut Place<'_>,
 ) -> SoilParcel {
     let edge = pose.pouring_edge();
@@ -371,7 +371,7 @@ pub(super) fn pour(
         let part = rest.take(rest.depth / (points - i));
         let part = if i + 1 == points { with(part, std::mem::take(&mut rest)) } else { part };
         let point = edge[0] + (edge[1] - edge[0]) * ((i as f64 + 0.5) / points as f64);
-        let catcher = below.iter_mut().find(|tool| tool.shape.hold().is_some() && tool.pose.is_under(point));
+        let catcher = catchers.iter_mut().find(|tool| tool.shape.hold().is_some() && tool.pose.is_under(point));
         match catcher {
             Some(tool) => tool.content.add(&part),
             None => {

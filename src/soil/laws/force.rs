@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::GRAVITY_M_S2;
+use super::gravity::GRAVITY_M_S2;
 use crate::error::{Result, check_range};
 
 /// Soil and blade of a cut.

@@ -4,14 +4,13 @@
 //! the field. Angles are in radians.
 
 mod force;
+mod gravity;
 mod heap;
 mod sinkage;
 mod wall;
 
 pub use force::{CuttingForce, CuttingInputs, cutting_force};
+pub use gravity::GRAVITY_M_S2;
 pub use heap::{cone_radius_m, heap_volume_m3, load_factor, voids_share};
 pub use sinkage::{ReeceSet, SinkageSet, WheelLoad};
 pub use wall::{WallLaw, WallTable};
-
-/// Gravity in all laws of soil, m/s^2.
-pub const GRAVITY_M_S2: f64 = 9.81;

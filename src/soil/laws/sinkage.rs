@@ -114,7 +114,7 @@ impl ReeceSet {
     /// Returns the sinkage, m, of a plate whose shorter side is `width_m` in soil of this cohesion, kPa, and density,
     /// kg/m^3.
     pub fn plate_m(&self, width_m: f64, pressure_kpa: f64, cohesion_kpa: f64, density_kg_m3: f64) -> f64 {
-        let weight_kn_m3 = 1e-3 * density_kg_m3 * super::GRAVITY_M_S2;
+        let weight_kn_m3 = 1e-3 * density_kg_m3 * super::gravity::GRAVITY_M_S2;
         let modulus = cohesion_kpa * self.kc + weight_kn_m3 * width_m * self.kphi;
         width_m * libm::pow(pressure_kpa / modulus, 1.0 / self.n)
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::GRAVITY_M_S2;
+use super::gravity::GRAVITY_M_S2;
 
 /// Strength of a soil, by which its faces stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
