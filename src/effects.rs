@@ -35,6 +35,7 @@ use crate::{
     planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
+    sea::HeldSea,
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
@@ -104,6 +105,7 @@ pub(crate) struct Held {
     pub stars: HeldStars,
     pub clouds: HeldClouds,
     pub lightning: HeldLightning,
+    pub sea: HeldSea,
 }
 
 /// State that was read from a saved one and is not yet in use.
@@ -115,6 +117,7 @@ pub(crate) struct LoadedHeld {
     stars: HeldStars,
     clouds: HeldClouds,
     lightning: HeldLightning,
+    sea: HeldSea,
 }
 
 impl Held {
@@ -134,11 +137,12 @@ impl Held {
             stars: HeldStars::default(),
             clouds: HeldClouds::default(),
             lightning: HeldLightning::default(),
+            sea: HeldSea::default(),
         })
     }
 
     /// Returns all effects with simulation state, in the order in which they are advanced.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 7] {
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 8] {
         [
             &mut self.flow,
             &mut self.snowpack,
@@ -147,12 +151,13 @@ impl Held {
             &mut self.stars,
             &mut self.clouds,
             &mut self.lightning,
+            &mut self.sea,
         ]
     }
 
     /// As [`Self::each`], by shared reference.
-    pub fn all(&self) -> [&dyn HeldEffect; 7] {
-        [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning]
+    pub fn all(&self) -> [&dyn HeldEffect; 8] {
+        [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning, &self.sea]
     }
 
     /// Takes the effects' entries out of a saved state and reads them.
@@ -168,6 +173,7 @@ impl Held {
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
         let clouds = HeldClouds::read(state);
         let lightning = self.lightning.read(state);
+        let sea = HeldSea::read(world, state);
         Ok(LoadedHeld {
             flow: flow?,
             snowpack: snowpack?,
@@ -176,6 +182,7 @@ impl Held {
             stars: stars?,
             clouds: clouds?,
             lightning: lightning?,
+            sea: sea?,
         })
     }
 
@@ -189,6 +196,7 @@ impl Held {
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
         std::mem::swap(&mut self.lightning, &mut other.lightning);
+        std::mem::swap(&mut self.sea, &mut other.sea);
         world.night = self.stars.night();
         self.flow.swap_in(world, &mut other.flow);
     }

@@ -63,6 +63,7 @@
 //! elevation files for [`terrain`]. The manual is `docs/README.md`. C and C++ hosts use the same types and functions
 //! through `include/welkin.h`, which [`capi`] implements as a thin layer.
 //! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is
+//! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`], [`sea`]. The manual is
 //! `docs/README.md`. C and C++ hosts use the same types and functions through `include/welkin.h`, which [`capi`]
 //! implements as a thin layer.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
@@ -101,6 +102,7 @@ pub mod plan;
 pub mod planet;
 pub mod rain;
 pub mod scene;
+pub mod sea;
 pub mod sky;
 mod slides;
 pub mod snow;

@@ -214,6 +214,7 @@ impl SeaState {
         let q = share(self.swell_height_m, other.swell_height_m, t);
         Self {
             significant_wave_height_m: mix(self.significant_wave_height_m, other.significant_wave_height_m, t),
+            given_share: mix(self.given_share, other.given_share, t),
             swell_height_m: mix(self.swell_height_m, other.swell_height_m, t),
             swell_period_s: mix(self.swell_period_s, other.swell_period_s, q),
             swell_east: mix(self.swell_east, other.swell_east, q),

@@ -198,6 +198,9 @@ pub struct WindProfile {
 pub struct SeaState {
     /// Significant height of the wind sea, m.
     pub significant_wave_height_m: f64,
+    /// Share of this height that a host or a report gave, 0 to 1. The rest is that of a sea fully developed by the wind.
+    #[serde(default = "whole")]
+    pub given_share: f64,
     /// Significant height of the swell, m; 0 without swell.
     pub swell_height_m: f64,
     /// Peak period of the swell, s.

@@ -79,13 +79,11 @@ pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option
     let z0 = wind.sea_roughness_length_m;
     let to_19_5 = libm::log(19.5 / z0) / libm::log(10.0 / z0);
     let from_wind = || fully_developed_wave_height_m(w.wind.speed_m_s * to_19_5);
-    let height = height_override
-        .or(w.sea.significant_wave_height_m)
-        .or(w.sea.state.map(wave_height_of_state_m))
-        .unwrap_or_else(from_wind);
+    let given = height_override.or(w.sea.significant_wave_height_m).or(w.sea.state.map(wave_height_of_state_m));
     let (sin, cos) = libm::sincos(w.sea.swell.map_or(0.0, |s| s.from_deg).to_radians());
     SeaState {
-        significant_wave_height_m: height,
+        significant_wave_height_m: given.unwrap_or_else(from_wind),
+        given_share: if given.is_some() { 1.0 } else { 0.0 },
         swell_height_m: w.sea.swell.map_or(0.0, |s| s.height_m),
         swell_period_s: w.sea.swell.map_or(10.0, |s| s.period_s),
         swell_east: -sin,

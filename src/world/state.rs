@@ -135,6 +135,11 @@ impl World {
         Ok(())
     }
 
+    /// Returns the revision of the timeline: every change of it makes a new one, and no two worlds share one.
+    pub fn timeline_revision(&self) -> u64 {
+        self.timeline_revision
+    }
+
     /// Returns the weather over all places and times.
     pub fn over(&self) -> WeatherOver<'_> {
         let revision = self.timeline_revision;

@@ -3,7 +3,7 @@
 use crate::{files, read, root};
 
 /// Rooms in which states are stepped and what they are stepped by is found.
-const SAME_BITS: [&str; 16] = [
+const SAME_BITS: [&str; 15] = [
     "almanac",
     "chance",
     "context",
@@ -12,7 +12,7 @@ const SAME_BITS: [&str; 16] = [
     "ground",
     "heights",
     "planet",
-    "slides",
+    "sea",
     "snowpack",
     "soil",
     "surroundings",

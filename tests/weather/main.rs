@@ -7,5 +7,6 @@ mod logged;
 mod random;
 mod real_reports;
 mod reports;
+mod sea;
 mod seams;
 mod second_opinion;

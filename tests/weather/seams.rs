@@ -129,8 +129,16 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
     } = wind;
     out.extend([east_m_s, north_m_s, gust_m_s, turbulence_intensity, wander_deg, roughness_length_m]);
     out.push(sea_roughness_length_m);
-    let SeaState { significant_wave_height_m, swell_height_m, swell_period_s, swell_east, swell_north, temperature_c } =
-        sea;
+    let SeaState {
+        significant_wave_height_m,
+        given_share,
+        swell_height_m,
+        swell_period_s,
+        swell_east,
+        swell_north,
+        temperature_c,
+    } = sea;
+    out.push(given_share);
     out.extend([significant_wave_height_m, swell_height_m, swell_period_s, swell_east, swell_north, temperature_c]);
     out.extend([c.visibility_m(), c.cloud_cover(), clear_sky]);
 }

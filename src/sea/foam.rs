@@ -1,0 +1,76 @@
+//! Whitecaps: their area by wind, their decay, and where on the drawn surface they stand.
+
+use std::f64::consts::PI;
+
+/// Time in which foam of breaking waves fades to 1/e in salt water, s (Monahan et al. 1986, second hand).
+pub const SALT_DECAY_S: f64 = 3.85;
+/// Time in which foam of breaking waves fades to 1/e in fresh water, s (Monahan et al. 1986, second hand).
+pub const FRESH_DECAY_S: f64 = 2.54;
+/// Mean reflectance of foam of all ages (Koepke 1984).
+pub const MEAN_REFLECTANCE: f64 = 0.22;
+
+/// Returns the share of the sea under whitecaps for a wind, m/s, at 10 m: 3.84e-6 U^3.41 (Monahan and O'Muircheartaigh
+/// 1980), at most 1. Published laws differ by a factor of 2.
+pub fn whitecap_share(wind_m_s: f64) -> f64 {
+    (3.84e-6 * libm::pow(wind_m_s.max(0.0), 3.41)).min(1.0)
+}
+
+/// Returns the share of Callaghan et al. (2008): 3.18e-5 (U - 3.7)^3, from 10.2 m/s on 4.82e-6 (U + 1.98)^3.
+pub fn callaghan_share(wind_m_s: f64) -> f64 {
+    let cube = |v: f64| v * v * v;
+    if wind_m_s < 10.2 { 3.18e-5 * cube((wind_m_s - 3.7).max(0.0)) } else { (4.82e-6 * cube(wind_m_s + 1.98)).min(1.0) }
+}
+
+/// Returns the compression c such that the surface is compressed by more than c on `share` of its area, for a sum of
+/// waves whose compression has the variance `variance`: the mean square slope of the drawn waves if their horizontal
+/// motion is that of Gerstner's waves. A compressed place covers 1 - c of its area at rest; therefore the share is
+/// Q(c / s) - s q(c / s) with the normal distribution's tail Q and density q.
+pub fn fold_threshold(share: f64, variance: f64) -> f64 {
+    let s = variance.max(0.0).sqrt();
+    if s <= 0.0 || share <= 0.0 {
+        return f64::INFINITY;
+    }
+    let area = |x: f64| {
+        let density = libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt();
+        0.5 * libm::erfc(x / std::f64::consts::SQRT_2) - s * density
+    };
+    // The area falls from x = -1/s on, where whole compression begins; it is sought where places are compressed.
+    let (mut low, mut high) = (-1.0 / s, 1.0 / s);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if area(middle) > share { low = middle } else { high = middle }
+    }
+    s * 0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn areas_are_those_published() {
+        for (wind, first, second) in
+            [(6.0, 0.0017, 0.0004), (10.0, 0.0099, 0.0080), (15.0, 0.039, 0.024), (20.0, 0.105, 0.051)]
+        {
+            assert!((whitecap_share(wind) / first - 1.0).abs() < 0.03, "{wind}: {}", whitecap_share(wind));
+            assert!((callaghan_share(wind) / second - 1.0).abs() < 0.1, "{wind}: {}", callaghan_share(wind));
+        }
+        assert_eq!((whitecap_share(-1.0), whitecap_share(100.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn thresholds_cover_the_area_that_was_asked() {
+        let mut chance = crate::chance::Chance::new(7, 1);
+        for (share, variance) in [(0.0017, 0.02), (0.0099, 0.03), (0.105, 0.06)] {
+            let c = fold_threshold(share, variance);
+            let (n, mut area) = (400_000, 0.0);
+            for _ in 0..n {
+                let squeezed = variance.sqrt() * chance.normal();
+                area += if squeezed > c { 1.0 - squeezed } else { 0.0 };
+            }
+            let found = area / f64::from(n);
+            assert!((found / share - 1.0).abs() < 0.1, "{share} {variance}: {found}");
+        }
+        assert_eq!(fold_threshold(0.01, 0.0), f64::INFINITY);
+    }
+}

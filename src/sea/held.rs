@@ -1,0 +1,258 @@
+//! The sea of a context: its settings, the state of growth that the timeline has forgotten, and what queries keep.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    growth::GrowthState,
+    history::DatedGrowth,
+    model::{PreparedSea, SeaStatistics, SeaWorkshop, WeatherPast},
+    settings::{SeaSettings, SeaSwell, Tide, WindSea},
+    surface::SeaSurface,
+};
+use crate::{
+    error::{Error, Result, Status},
+    weather::Timeline,
+    world::{HeldEffect, Within, World, parse_error},
+};
+
+/// Sea of a context.
+#[derive(Default)]
+pub(crate) struct HeldSea {
+    sea: Option<PreparedSea>,
+    /// States at the ends of changes that the timeline has forgotten or may forget next.
+    kept: Vec<DatedGrowth>,
+    /// Values that follow from all this and from the timeline; empty until the first query.
+    workshop: Mutex<Option<Box<SeaWorkshop>>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedSwell {
+    height_m: f64,
+    period_s: f64,
+    from_deg: f64,
+    spread_deg: Option<f64>,
+}
+
+/// Saved form of the settings and of the state that the timeline has forgotten.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedSea {
+    level_m: f64,
+    tide: Option<[f64; 2]>,
+    fetch_m: Option<f64>,
+    depth_m: f64,
+    salinity_g_kg: f64,
+    temperature_c: Option<f64>,
+    significant_m: Option<f64>,
+    peak_period_s: Option<f64>,
+    gamma: Option<f64>,
+    sea_state: Option<u8>,
+    beaufort: Option<f64>,
+    from_deg: Option<f64>,
+    swells: Option<Vec<SavedSwell>>,
+    /// Time, then the fields of the state.
+    grown: Option<[f64; 12]>,
+}
+
+/// Key of the sea in a saved state.
+const KEY: &str = "sea";
+
+fn numbers_of(dated: &DatedGrowth) -> [f64; 12] {
+    let s = &dated.state;
+    let [toward, swell] = [s.toward, s.swell_toward];
+    [
+        dated.time_s,
+        s.m0_m2,
+        s.given,
+        s.peak_rad_s,
+        s.gamma,
+        toward.x,
+        toward.y,
+        s.short_wind_m_s,
+        s.swell_m2,
+        s.swell_peaks,
+        swell.x,
+        swell.y,
+    ]
+}
+
+fn dated_of(n: &[f64; 12]) -> DatedGrowth {
+    let state = GrowthState {
+        m0_m2: n[1],
+        given: n[2],
+        peak_rad_s: n[3],
+        gamma: n[4],
+        toward: DVec2::new(n[5], n[6]),
+        short_wind_m_s: n[7],
+        swell_m2: n[8],
+        swell_peaks: n[9],
+        swell_toward: DVec2::new(n[10], n[11]),
+    };
+    DatedGrowth { time_s: n[0], state }
+}
+
+impl SavedSea {
+    fn new(settings: &SeaSettings, grown: Option<&DatedGrowth>) -> Self {
+        let swell = |s: &SeaSwell| SavedSwell {
+            height_m: s.height_m,
+            period_s: s.period_s,
+            from_deg: s.from_deg,
+            spread_deg: s.spread_deg,
+        };
+        let mut saved = Self {
+            level_m: settings.level_m,
+            tide: settings.tide.map(|tide| [tide.amplitude_m, tide.high_water_s]),
+            fetch_m: settings.fetch_m,
+            depth_m: settings.depth_m,
+            salinity_g_kg: settings.salinity_g_kg,
+            temperature_c: settings.temperature_c,
+            significant_m: None,
+            peak_period_s: None,
+            gamma: None,
+            sea_state: None,
+            beaufort: None,
+            from_deg: settings.from_deg,
+            swells: settings.swells.as_ref().map(|swells| swells.iter().map(swell).collect()),
+            grown: grown.map(numbers_of),
+        };
+        match settings.wind_sea {
+            WindSea::Weather => {}
+            WindSea::Height { significant_m, peak_period_s, gamma } => {
+                (saved.significant_m, saved.peak_period_s, saved.gamma) = (Some(significant_m), peak_period_s, gamma);
+            }
+            WindSea::SeaState(state) => saved.sea_state = Some(state),
+            WindSea::Beaufort(number) => saved.beaufort = Some(number),
+        }
+        saved
+    }
+
+    fn settings(&self) -> Result<SeaSettings> {
+        let wind_sea = match (self.significant_m, self.sea_state, self.beaufort) {
+            (None, None, None) => WindSea::Weather,
+            (Some(significant_m), None, None) => {
+                WindSea::Height { significant_m, peak_period_s: self.peak_period_s, gamma: self.gamma }
+            }
+            (None, Some(state), None) => WindSea::SeaState(state),
+            (None, None, Some(number)) => WindSea::Beaufort(number),
+            _ => return Err(parse_error(format_args!("{KEY}: more than one source of the wave height"))),
+        };
+        let swell = |s: &SavedSwell| SeaSwell {
+            height_m: s.height_m,
+            period_s: s.period_s,
+            from_deg: s.from_deg,
+            spread_deg: s.spread_deg,
+        };
+        let settings = SeaSettings {
+            level_m: self.level_m,
+            tide: self.tide.map(|[amplitude_m, high_water_s]| Tide { amplitude_m, high_water_s }),
+            fetch_m: self.fetch_m,
+            depth_m: self.depth_m,
+            salinity_g_kg: self.salinity_g_kg,
+            temperature_c: self.temperature_c,
+            wind_sea,
+            from_deg: self.from_deg,
+            swells: self.swells.as_ref().map(|swells| swells.iter().map(swell).collect()),
+        };
+        settings.validate().map_err(|e| e.found_in("saved state"))?;
+        Ok(settings)
+    }
+}
+
+impl HeldSea {
+    /// Returns the settings; `None` without a sea.
+    pub fn settings(&self) -> Option<&SeaSettings> {
+        self.sea.as_ref().map(|sea| &sea.settings)
+    }
+
+    /// Sets the sea, or takes it away.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set(&mut self, settings: Option<SeaSettings>, seed: u64) -> Result<()> {
+        settings.as_ref().map_or(Ok(()), SeaSettings::validate)?;
+        if settings.is_none() {
+            self.kept.clear();
+        }
+        self.sea = settings.map(|settings| PreparedSea::new(settings, seed));
+        *self.workshop.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
+        Ok(())
+    }
+
+    /// Takes the sea's part out of a saved state.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
+    pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
+        let Some(value) = state.remove(KEY) else { return Ok(Self::default()) };
+        let saved: SavedSea = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
+        if saved.grown.is_some_and(|numbers| numbers.iter().any(|n| !n.is_finite())) {
+            return Err(parse_error(format_args!("{KEY}: numbers must be finite")));
+        }
+        let sea = Some(PreparedSea::new(saved.settings()?, world.seed));
+        Ok(Self { sea, kept: saved.grown.iter().map(dated_of).collect(), workshop: Mutex::default() })
+    }
+
+    /// Calls `act` with the sea's workshop.
+    fn with<T>(
+        &self,
+        (timeline, revision): (&Timeline, u64),
+        act: impl FnOnce(&mut SeaWorkshop, &PreparedSea, &WeatherPast<'_>) -> T,
+    ) -> Result<T> {
+        let Some(sea) = &self.sea else {
+            return Err(Error::new(Status::WrongOrder, "the context has no sea: set one first"));
+        };
+        let mut kept = self.workshop.lock().unwrap_or_else(PoisonError::into_inner);
+        let workshop = kept.get_or_insert_with(|| Box::new(SeaWorkshop::new(sea)));
+        Ok(act(workshop, sea, &WeatherPast { timeline, revision, kept: &self.kept }))
+    }
+
+    /// Returns the surface at a time, kept from an earlier query or worked out now.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] without a sea; for times as [`World::weather_at`].
+    pub fn surface(&self, world: &World, time_s: f64) -> Result<Arc<SeaSurface>> {
+        world.over().check_time(time_s)?;
+        let past = (&world.timeline, world.timeline_revision());
+        self.with(past, |workshop, sea, past| workshop.surface(sea, past, time_s))
+    }
+
+    /// Returns the statistics at a time.
+    ///
+    /// # Errors
+    /// As [`HeldSea::surface`].
+    pub fn statistics(&self, world: &World, time_s: f64) -> Result<SeaStatistics> {
+        world.over().check_time(time_s)?;
+        let past = (&world.timeline, world.timeline_revision());
+        self.with(past, |workshop, sea, past| workshop.statistics(sea, past, time_s))
+    }
+}
+
+impl HeldEffect for HeldSea {
+    fn lead(&mut self, world: &World, _within: Within) -> Result<Status> {
+        // The timeline is about to forget changes that have ended. Their waves stay.
+        if self.sea.is_some() && world.timeline.ends_before(world.time_s).is_some() {
+            let known_s = world.timeline.known_from_s();
+            let past = (&world.timeline, world.timeline_revision());
+            let ended = |dated: &&DatedGrowth| (known_s..=world.time_s).contains(&dated.time_s);
+            let kept = self.with(past, |workshop, sea, past| {
+                workshop.history(sea, past).dated.iter().filter(ended).copied().collect::<Vec<_>>()
+            })?;
+            self.kept = kept;
+        }
+        Ok(Status::Ok)
+    }
+
+    fn save_in(&self, world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
+        let Some(sea) = &self.sea else { return Ok(()) };
+        let known_s = world.timeline.known_from_s();
+        let grown = self.kept.iter().find(|dated| dated.time_s == known_s);
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        let value = toml::Value::try_from(SavedSea::new(&sea.settings, grown)).map_err(written)?;
+        state.insert(KEY.into(), value);
+        Ok(())
+    }
+}

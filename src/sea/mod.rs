@@ -1,0 +1,71 @@
+//! The sea: waves that have the spectrum and the height that were asked for, and queries of their surface.
+//!
+//! The surface is a function of (seed, time, settings, the weather's timeline). All views and machines see the same
+//! sea, and any time can be asked, past or future. Nothing draws it yet: this room has the waves, their laws and the
+//! queries, all in f64, and what draws it later will be held against them.
+//!
+//! # Model
+//! * [`spectrum`]: JONSWAP with the depth function of TMA. The height comes from the host, from the weather, or from
+//!   one law of growth ([`growth`](self): Kahma and Calkoen 1992 by fetch and duration, capped by Pierson and Moskowitz
+//!   1964); the level of the spectrum is solved for it. [`spreading`] is Donelan and Banner's, for swells narrowed by
+//!   Horvath's (2015) parameter.
+//! * Waves longer than about a tenth of those at the peak are single waves on a fixed lattice of frequencies and
+//!   directions, 160 to 256 at a time. They do not repeat.
+//! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about 0.6
+//!   % of the variance, and half of the slopes. They end where the slopes of all drawn waves reach Cox and Munk's
+//!   (1954) for the wind, at the latest at 45 times the wave number where they begin; the rest is known by its
+//!   variance.
+//! * Every wave has a fixed frequency, direction and phase and an amplitude that follows the spectrum: no random
+//!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
+//! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is
+//!   corrected for it. A query solves for the particle that is at the place.
+//!
+//! [`dispersion`], [`slopes`], [`water`], [`foam`], [`shore`], [`wake`] and [`far`] have the laws of lengths and
+//! speeds, slopes, light, whitecaps, shores, ships' wakes, ice and the horizon, each with its author.
+//!
+//! # Settings
+//! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, water. Without settings there is
+//! no sea.
+//!
+//! # Cost
+//! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
+//! that was asked before costs some microseconds. A weather that changes adds some milliseconds a time for its
+//! spectrum. The sums of two times are kept: 7 MB.
+//!
+//! # Error
+//! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
+//! exact; the place of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Waves are linear: crests of
+//! steep seas are some percent too low, and the surface's heights are hardly skewed.
+//!
+//! # What is not here
+//! No drawing, no shore, hulls, wakes or ice on the surface, no outlines of lakes, no memory of foam: their laws are
+//! here, but the surface does not use them yet. There is no `view.rs`, `passes.rs` or `candidates.rs`, because nothing
+//! is drawn; no `reference.rs`, because all of it is the f64 reference.
+
+mod bins;
+pub mod dispersion;
+pub mod far;
+mod fft;
+pub mod foam;
+mod growth;
+mod held;
+mod history;
+mod lattice;
+mod model;
+mod settings;
+pub mod shore;
+pub mod slopes;
+pub mod spectrum;
+pub mod spreading;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod tiles;
+mod turn;
+pub mod wake;
+pub mod water;
+
+pub(crate) use held::HeldSea;
+pub use model::SeaStatistics;
+pub use settings::{MAX_SWELLS, MOST_STEEPNESS, SeaSettings, SeaSwell, Tide, WindSea};
+pub use surface::SeaPoint;

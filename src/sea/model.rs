@@ -1,0 +1,393 @@
+//! The sea of a context: from settings and weather to waves, statistics, and surfaces that are kept for queries.
+
+use std::{f64::consts::TAU, sync::Arc};
+
+use glam::DVec2;
+
+use super::{
+    bins::{BINS, Bins, MAX_SYSTEMS, Spreading, WaveSystem, bin_rad_s},
+    dispersion::wave_length_m,
+    foam::{fold_threshold, whitecap_share},
+    growth::{GrowthState, gamma_of_variance, kept_variance_m2, peak_of_variance_rad_s},
+    history::{DatedGrowth, GrowthHistory},
+    lattice::{SeaWave, list},
+    settings::{MAX_SWELLS, MOST_STEEPNESS, SeaSettings, WindSea, developed_period_s},
+    slopes::mean_square_slope,
+    spectrum::{GROWING_GAMMA, highest_over_significant, significant_height_m},
+    spreading::{beta_of_width, swell_width},
+    surface::{SeaSurface, StillSea},
+    tiles::{TileWork, WaveTiles},
+    water::refractive_index,
+};
+use crate::weather::{Timeline, wave_height_of_state_m};
+
+/// Peak enhancement of swells: between that of a wind sea and the 10 of very distant swells (Goda 2010, 2.3).
+const SWELL_GAMMA: f64 = 7.0;
+/// Surfaces that are kept, each for a time.
+const KEPT_SURFACES: usize = 2;
+/// Largest share of the variance that narrow crests take and strengthening gives back.
+const MOST_LOST: f64 = 0.05;
+/// Wavelength of the refractive index, nm: where the eye sees best.
+const SEEN_NM: f64 = 550.0;
+/// Time over which the largest wave is expected, s.
+const HOUR_S: f64 = 3600.0;
+
+/// Statistics of the sea at a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeaStatistics {
+    /// Level without waves, m above mean sea level.
+    pub level_m: f64,
+    /// Significant height of all waves, m: four standard deviations of the surface's height.
+    pub significant_height_m: f64,
+    /// Period of the strongest waves, s; 0 without waves.
+    pub peak_period_s: f64,
+    /// Direction that the waves come from, degrees clockwise from true north, the mean weighted by variance; 0 without
+    /// waves.
+    pub mean_from_deg: f64,
+    /// Mean square slope of the surface: Cox and Munk's for the wind, or that of the waves if it is larger.
+    pub mean_square_slope: f64,
+    /// Part of it that the waves of the surface have; the rest is in waves too short for it.
+    pub drawn_square_slope: f64,
+    /// Height of the largest wave expected in an hour, m, crest to trough.
+    pub highest_in_hour_m: f64,
+    /// Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980).
+    pub whitecap_share: f64,
+    /// Temperature of the water, degrees Celsius.
+    pub water_temperature_c: f64,
+    /// Refractive index of the water against air at 550 nm (Quan and Fry 1995).
+    pub refractive_index: f64,
+}
+
+/// Systems of waves, and the wind under which the short ones stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Systems {
+    list: [WaveSystem; MAX_SYSTEMS],
+    count: usize,
+    wind_m_s: f64,
+    /// Mean square slope at which the drawn waves end.
+    most_slope: f64,
+}
+
+/// Settings in the form that the model reads.
+#[derive(Clone, Debug)]
+pub(super) struct PreparedSea {
+    pub settings: SeaSettings,
+    seed: u64,
+    /// Swells of the settings.
+    swells: [WaveSystem; MAX_SWELLS],
+    /// The weather's swell, but for height, period and direction.
+    weathers_swell: WaveSystem,
+}
+
+/// Returns the unit vector in which waves travel that come from a direction.
+fn toward_of(from_deg: f64) -> DVec2 {
+    let (sin, cos) = libm::sincos(from_deg.to_radians());
+    DVec2::new(-sin, -cos)
+}
+
+/// Returns the variance, m^2, of a significant height.
+fn variance_m2(significant_m: f64) -> f64 {
+    let quarter = 0.25 * significant_m;
+    quarter * quarter
+}
+
+impl PreparedSea {
+    /// Prepares valid settings.
+    pub fn new(settings: SeaSettings, seed: u64) -> Self {
+        let beta = beta_of_width(swell_width(1.0));
+        let swell = |height_m: f64, period_s: f64, toward: DVec2, beta: f64| WaveSystem {
+            m0_m2: variance_m2(height_m),
+            peak_rad_s: TAU / period_s,
+            gamma: SWELL_GAMMA,
+            toward,
+            spreading: Spreading::Even(beta),
+            deep_share: 0.0,
+            is_shaped: false,
+        };
+        let weathers_swell = swell(0.0, 10.0, DVec2::ZERO, beta);
+        let mut swells = [weathers_swell; MAX_SWELLS];
+        for (to, from) in swells.iter_mut().zip(settings.swells.iter().flatten()) {
+            let beta = from.spread_deg.map_or(beta, |deg| beta_of_width(deg.to_radians()));
+            *to = swell(from.height_m, from.period_s, toward_of(from.from_deg), beta);
+        }
+        Self { settings, seed, swells, weathers_swell }
+    }
+
+    /// Returns the wave systems of a state of growth.
+    fn systems(&self, grown: &GrowthState) -> Systems {
+        let (wind_sea, wind_m_s, most_slope) = self.wind_sea(grown);
+        let mut systems = Systems { list: [wind_sea; MAX_SYSTEMS], count: 1, wind_m_s, most_slope };
+        let mut push = |swell: WaveSystem| {
+            systems.list[systems.count] = self.limited(swell);
+            systems.count += 1;
+        };
+        match &self.settings.swells {
+            Some(swells) => self.swells[..swells.len()].iter().for_each(|swell| push(*swell)),
+            None if grown.swell_m2 > 1e-8 => push(WaveSystem {
+                m0_m2: grown.swell_m2,
+                peak_rad_s: (grown.swell_peaks / grown.swell_m2).clamp(TAU / 30.0, TAU),
+                toward: (grown.swell_toward / grown.swell_m2).clamp_length_max(1.0),
+                ..self.weathers_swell
+            }),
+            None => {}
+        }
+        systems
+    }
+
+    /// Returns the wind sea, the wind that roughens it, and the slope at which its drawn waves end.
+    fn wind_sea(&self, grown: &GrowthState) -> (WaveSystem, f64, f64) {
+        let toward = match self.settings.from_deg {
+            Some(deg) => toward_of(deg),
+            // A height that is asked for without any wind comes from north, as a calm does.
+            None if grown.toward == DVec2::ZERO => toward_of(0.0),
+            None => grown.toward,
+        };
+        let sea = |m0_m2: f64, peak_rad_s: f64, gamma: f64, deep_share: f64| {
+            let spreading = Spreading::WindSea;
+            self.limited(WaveSystem { m0_m2, peak_rad_s, gamma, toward, spreading, deep_share, is_shaped: true })
+        };
+        let short = grown.short_wind_m_s;
+        let developed = |height_m: f64| sea(variance_m2(height_m), TAU / developed_period_s(height_m), 1.0, 0.0);
+        match self.settings.wind_sea {
+            WindSea::Weather => {
+                let system = sea(grown.m0_m2, grown.peak_rad_s, grown.gamma, 1.0 - grown.given);
+                (system, short, mean_square_slope(short))
+            }
+            WindSea::Height { significant_m, peak_period_s: Some(period_s), gamma } => {
+                let gamma = gamma.unwrap_or(GROWING_GAMMA);
+                (sea(variance_m2(significant_m), TAU / period_s, gamma, 0.0), short, f64::INFINITY)
+            }
+            WindSea::Height { significant_m, peak_period_s: None, gamma } => {
+                let system = WaveSystem { gamma: gamma.unwrap_or(1.0), ..developed(significant_m) };
+                (system, short, f64::INFINITY)
+            }
+            WindSea::SeaState(state) => (developed(wave_height_of_state_m(state)), short, f64::INFINITY),
+            WindSea::Beaufort(number) => {
+                let wind = 0.836 * number * number.sqrt();
+                let m0 = kept_variance_m2(wind, self.settings.fetch_m);
+                let system = sea(m0, peak_of_variance_rad_s(m0, wind), gamma_of_variance(m0, wind), 1.0);
+                (system, wind, mean_square_slope(wind))
+            }
+        }
+    }
+
+    /// Returns a system no steeper than seas are. Settings are checked; weathers may ask for more.
+    fn limited(&self, system: WaveSystem) -> WaveSystem {
+        let most_m = MOST_STEEPNESS * wave_length_m(TAU / system.peak_rad_s, self.settings.depth_m);
+        WaveSystem { m0_m2: system.m0_m2.min(variance_m2(most_m)), ..system }
+    }
+}
+
+/// A surface that is kept, and its time.
+struct KeptSurface {
+    time_s: f64,
+    used: u64,
+    surface: Arc<SeaSurface>,
+}
+
+/// Everything that is worked out for queries, kept until its inputs change.
+pub(super) struct SeaWorkshop {
+    timeline_revision: Option<u64>,
+    history: GrowthHistory,
+    systems: Option<Systems>,
+    bins: Bins,
+    waves: Vec<SeaWave>,
+    tiles: WaveTiles,
+    statistics: SeaStatistics,
+    foam_from: f64,
+    work: TileWork,
+    surfaces: Vec<KeptSurface>,
+    /// Number of queries so far.
+    queries: u64,
+}
+
+/// The weather's timeline with its revision, and the states that the sea has kept of what it forgot.
+#[derive(Clone, Copy)]
+pub(super) struct WeatherPast<'a> {
+    pub timeline: &'a Timeline,
+    pub revision: u64,
+    pub kept: &'a [DatedGrowth],
+}
+
+impl SeaWorkshop {
+    /// Creates the workshop of a sea.
+    pub fn new(sea: &PreparedSea) -> Self {
+        let depth_m = sea.settings.depth_m;
+        let kept = |_| KeptSurface { time_s: f64::NAN, used: 0, surface: Arc::new(SeaSurface::new()) };
+        Self {
+            timeline_revision: None,
+            history: GrowthHistory::default(),
+            systems: None,
+            bins: Bins::new(depth_m),
+            waves: Vec::with_capacity(512),
+            tiles: WaveTiles::new(sea.seed, depth_m),
+            statistics: SeaStatistics::default(),
+            foam_from: f64::INFINITY,
+            work: TileWork::new(),
+            surfaces: (0..KEPT_SURFACES).map(kept).collect(),
+            queries: 0,
+        }
+    }
+
+    /// Returns the states at the beginnings and ends of the timeline's changes.
+    pub fn history(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>) -> &GrowthHistory {
+        if self.timeline_revision != Some(past.revision) {
+            self.history.fill(past.timeline, sea.settings.fetch_m, past.kept);
+            self.timeline_revision = Some(past.revision);
+            // Kept surfaces are those of the timeline before.
+            self.surfaces.iter_mut().for_each(|kept| kept.time_s = f64::NAN);
+        }
+        &self.history
+    }
+
+    /// Brings the waves to a time.
+    fn follow(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) {
+        let grown = self.history(sea, past).at(past.timeline, sea.settings.fetch_m, time_s);
+        let systems = sea.systems(&grown);
+        if self.systems == Some(systems) {
+            return;
+        }
+        self.bins.fill(&systems.list[..systems.count], systems.most_slope);
+        list(&self.bins, sea.seed, sea.settings.depth_m, &mut self.waves);
+        self.waves.sort_unstable_by(|a, b| a.turns_per_m.total_cmp(&b.turns_per_m).then(a.phase.total_cmp(&b.phase)));
+        self.tiles.fill(&self.bins);
+        self.systems = Some(systems);
+        let factor = self.strengthen();
+        self.count(&systems, factor);
+    }
+
+    /// Strengthens all waves so that heights at fixed places have the variance that was asked. Horizontal motion
+    /// narrows crests: with a and b the sums of k coth(k h) times variance times cos^2 and sin^2 of the direction, and
+    /// c that with cos sin, the variance at fixed places is m0 - a^2 - b^2 - 2 c^2 to second order (the mean of h^2 J,
+    /// less the square of that of h J, with J the Jacobian). Returns the factor, at most some 1.01.
+    fn strengthen(&mut self) -> f64 {
+        let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
+        let mut sums = [0.0; 3];
+        for tile in &self.tiles.tiles {
+            sums.iter_mut().zip(tile.narrowing_m).for_each(|(sum, part)| *sum += part);
+        }
+        for wave in &self.waves {
+            let own = 0.5 * wave.amplitude_m * wave.amplitude_m;
+            let steep = TAU * wave.turns_per_m * wave.stretch * own;
+            let (x, y) = (wave.toward.x, wave.toward.y);
+            variance += own;
+            sums.iter_mut().zip([x * x, y * y, x * y]).for_each(|(sum, part)| *sum += steep * part);
+        }
+        let lost = sums[0] * sums[0] + sums[1] * sums[1] + 2.0 * sums[2] * sums[2];
+        if lost <= 0.0 {
+            return 1.0;
+        }
+        // The loss grows as the square of the variance: f - r f^2 = 1.
+        let ratio = (lost / variance).min(MOST_LOST);
+        let factor = (1.0 - (1.0 - 4.0 * ratio).sqrt()) / (2.0 * ratio);
+        self.waves.iter_mut().for_each(|wave| wave.amplitude_m *= factor.sqrt());
+        self.tiles.tiles.iter_mut().for_each(|tile| tile.strengthen(factor));
+        factor
+    }
+
+    /// Works out the statistics of the waves, which were strengthened by a factor.
+    fn count(&mut self, systems: &Systems, factor: f64) {
+        let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
+        let mut slope = self.tiles.tiles.iter().map(|t| t.mean_square_slope).sum::<f64>();
+        let mut compression = self.tiles.tiles.iter().map(|t| t.compression).sum::<f64>();
+        for wave in &self.waves {
+            let own = 0.5 * wave.amplitude_m * wave.amplitude_m;
+            let k = TAU * wave.turns_per_m;
+            variance += own;
+            slope += own * k * k;
+            compression += own * k * k * wave.stretch * wave.stretch;
+        }
+        let significant = significant_height_m(variance / factor);
+        let energy = |b: usize| self.bins.waves_m2[b].iter().chain(&self.bins.tiles_m2[b]).sum::<f64>();
+        let second: f64 = (0..BINS).map(|b| energy(b) * bin_rad_s(b as f64 + 0.5).powi(2)).sum();
+        // Per bin the density over frequency falls as 1 / w.
+        let dense = |b: usize| energy(b) / bin_rad_s(b as f64 + 0.5);
+        let peak = (0..BINS).fold(0, |best, b| if dense(b) > dense(best) { b } else { best });
+        let waves_in_hour = if variance > 0.0 { HOUR_S * (second * factor / variance).sqrt() / TAU } else { 1.0 };
+        self.statistics = SeaStatistics {
+            significant_height_m: significant,
+            peak_period_s: if variance > 0.0 { TAU / self.peak_rad_s(peak) } else { 0.0 },
+            mean_from_deg: mean_from_deg(systems),
+            mean_square_slope: mean_square_slope(systems.wind_m_s).max(slope),
+            drawn_square_slope: slope,
+            highest_in_hour_m: significant * highest_over_significant(waves_in_hour),
+            whitecap_share: whitecap_share(systems.wind_m_s),
+            ..SeaStatistics::default()
+        };
+        self.foam_from = fold_threshold(self.statistics.whitecap_share, compression);
+    }
+
+    /// Returns the frequency of the highest density, which lies in or beside a bin: a parabola through three.
+    fn peak_rad_s(&self, bin: usize) -> f64 {
+        let dense = |b: usize| {
+            let energy: f64 = self.bins.waves_m2[b].iter().chain(&self.bins.tiles_m2[b]).sum();
+            energy / bin_rad_s(b as f64 + 0.5)
+        };
+        let middle = bin as f64 + 0.5;
+        if bin == 0 || bin + 1 >= BINS {
+            return bin_rad_s(middle);
+        }
+        let (a, b, c) = (dense(bin - 1), dense(bin), dense(bin + 1));
+        let bend = a - 2.0 * b + c;
+        let off = if bend < 0.0 { 0.5 * (a - c) / bend } else { 0.0 };
+        bin_rad_s(middle + off.clamp(-0.5, 0.5))
+    }
+
+    /// Returns the statistics at a time.
+    pub fn statistics(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) -> SeaStatistics {
+        self.follow(sea, past, time_s);
+        let temperature_c = sea.settings.temperature_c;
+        let water_temperature_c = temperature_c.unwrap_or_else(|| past.timeline.at(time_s).sea.temperature_c);
+        SeaStatistics {
+            level_m: sea.settings.level_at_m(time_s),
+            water_temperature_c,
+            refractive_index: refractive_index(sea.settings.salinity_g_kg, water_temperature_c, SEEN_NM),
+            ..self.statistics
+        }
+    }
+
+    /// Returns the single waves at a time, from long to short.
+    #[cfg(test)]
+    pub fn waves(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) -> &[SeaWave] {
+        self.follow(sea, past, time_s);
+        &self.waves
+    }
+
+    /// Returns the surface at a time.
+    pub fn surface(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) -> Arc<SeaSurface> {
+        self.queries += 1;
+        self.history(sea, past);
+        if let Some(kept) = self.surfaces.iter_mut().find(|kept| kept.time_s == time_s) {
+            kept.used = self.queries;
+            return kept.surface.clone();
+        }
+        self.follow(sea, past, time_s);
+        let still = StillSea {
+            level_m: sea.settings.level_at_m(time_s),
+            depth_m: sea.settings.depth_m + sea.settings.level_at_m(time_s) - sea.settings.level_m,
+            foam_from: self.foam_from,
+        };
+        let oldest = (0..KEPT_SURFACES).min_by_key(|i| self.surfaces[*i].used).unwrap_or(0);
+        let kept = &mut self.surfaces[oldest];
+        (kept.time_s, kept.used) = (time_s, self.queries);
+        if Arc::get_mut(&mut kept.surface).is_none() {
+            // Another thread still reads the old surface.
+            kept.surface = Arc::new(SeaSurface::new());
+        }
+        if let Some(surface) = Arc::get_mut(&mut kept.surface) {
+            surface.fill(&self.waves, &self.tiles, &mut self.work, (still, time_s));
+        }
+        kept.surface.clone()
+    }
+}
+
+/// Returns the direction that waves come from, degrees, weighted by variance.
+fn mean_from_deg(systems: &Systems) -> f64 {
+    let of = |s: &WaveSystem| s.toward * s.m0_m2;
+    let toward: DVec2 = systems.list[..systems.count].iter().map(of).sum();
+    if toward.length_squared() <= 0.0 {
+        return 0.0;
+    }
+    let deg = libm::atan2(-toward.x, -toward.y).to_degrees();
+    if deg < 0.0 { deg + 360.0 } else { deg }
+}

@@ -1,0 +1,185 @@
+//! Optics of sea water: index, reflectance of flat and rough surfaces, attenuation by water type, scattering.
+
+/// Optical water types of Jerlov (1976), from the clearest ocean to the most turbid coast.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaterType {
+    /// Ocean I: the clearest.
+    I,
+    /// Ocean IB.
+    IB,
+    /// Ocean II.
+    II,
+    /// Ocean III.
+    III,
+    /// Coast 1C.
+    Coast1,
+    /// Coast 3C.
+    Coast3,
+    /// Coast 5C.
+    Coast5,
+    /// Coast 7C: the most turbid.
+    Coast7,
+}
+
+impl WaterType {
+    /// Returns the diffuse attenuation of downward light, 1/m, at 450, 550 and 650 nm (Jerlov 1976; Solonenko and
+    /// Mobley 2015, table 3).
+    pub fn diffuse_attenuation_per_m(self) -> [f64; 3] {
+        match self {
+            Self::I => [0.019, 0.063, 0.36],
+            Self::IB => [0.036, 0.072, 0.375],
+            Self::II => [0.068, 0.089, 0.40],
+            Self::III => [0.135, 0.12, 0.445],
+            Self::Coast1 => [0.25, 0.12, 0.45],
+            Self::Coast3 => [0.39, 0.19, 0.46],
+            Self::Coast5 => [0.56, 0.30, 0.54],
+            Self::Coast7 => [0.89, 0.46, 0.63],
+        }
+    }
+}
+
+/// Returns the refractive index of water against air for a salinity, g/kg, a temperature, degrees Celsius, and a
+/// wavelength, nm (Quan and Fry 1995, equation 3; fitted for 0 to 35 g/kg, 0 to 30 C, 400 to 700 nm).
+pub fn refractive_index(salinity_g_kg: f64, temperature_c: f64, wavelength_nm: f64) -> f64 {
+    let (s, t, l) = (salinity_g_kg, temperature_c, wavelength_nm);
+    1.31405 + (1.779e-4 - 1.05e-6 * t + 1.6e-8 * t * t) * s - 2.02e-6 * t * t + (15.868 + 0.01155 * s - 0.00423 * t) / l
+        - 4382.0 / (l * l)
+        + 1.1455e6 / (l * l * l)
+}
+
+/// Returns the reflectance for unpolarised light that meets a flat surface at an angle of cosine `cos_incidence`, from
+/// a medium into one of `index` times its refractive index (Fresnel's equations): 1 beyond the critical angle.
+pub fn fresnel_reflectance(cos_incidence: f64, index: f64) -> f64 {
+    let cos = cos_incidence.clamp(0.0, 1.0);
+    let inner = 1.0 - (1.0 - cos * cos) / (index * index);
+    if inner <= 0.0 {
+        return 1.0;
+    }
+    let refracted = index * inner.sqrt();
+    let across = (cos - refracted) / (cos + refracted);
+    let along = (index * index * cos - refracted) / (index * index * cos + refracted);
+    0.5 * (across * across + along * along)
+}
+
+/// Returns the reflectance of a flat surface for diffuse light, the mean of [`fresnel_reflectance`] over the cosine.
+pub fn diffuse_reflectance(index: f64) -> f64 {
+    let steps = 4000u32;
+    let at = |i: u32| libm::sqrt((f64::from(i) + 0.5) / f64::from(steps));
+    (0..steps).map(|i| fresnel_reflectance(at(i), index)).sum::<f64>() / f64::from(steps)
+}
+
+/// Returns the mean reflectance of a rough surface seen at an angle of cosine `cos_view` from the vertical: facets with
+/// slopes of the variance `mean_square` (both axes together, the same in all directions), each weighted by the area
+/// that it shows to the eye, without shadowing. Towards the horizon it is far below that of flat water, because facets
+/// that face the eye are seen most.
+pub fn mean_reflectance(cos_view: f64, mean_square: f64, index: f64) -> f64 {
+    let cos = cos_view.clamp(0.0, 1.0);
+    let sin = (1.0 - cos * cos).sqrt();
+    let deviation = (0.5 * mean_square).sqrt();
+    if deviation < 1e-6 {
+        return fresnel_reflectance(cos, index);
+    }
+    // Trapezoids over 6 deviations converge like exponentials for such integrands; the kink where a facet turns away
+    // from the eye costs some 1e-4.
+    const STEPS: i32 = 48;
+    let (mut reflected, mut shown) = (0.0, 0.0);
+    for i in -STEPS..=STEPS {
+        let along = 6.0 * f64::from(i) / f64::from(STEPS);
+        let facing = cos - along * deviation * sin;
+        if facing <= 0.0 {
+            continue;
+        }
+        for j in 0..=STEPS {
+            let across = 6.0 * f64::from(j) / f64::from(STEPS);
+            let half = if j == 0 { 0.5 } else { 1.0 };
+            let weight = half * facing * libm::exp(-0.5 * (along * along + across * across));
+            let square = deviation * deviation * (along * along + across * across);
+            reflected += weight * fresnel_reflectance(facing / (1.0 + square).sqrt(), index);
+            shown += weight;
+        }
+    }
+    reflected / shown
+}
+
+/// Returns the scattering coefficient of pure sea water, 1/m, at a wavelength, nm: 16.06 times its volume scattering at
+/// 90 degrees, 4.72e-4 (400 / l)^4.32 (Morel 1974).
+pub fn pure_scattering_per_m(wavelength_nm: f64) -> f64 {
+    16.06 * 4.72e-4 * libm::pow(400.0 / wavelength_nm, 4.32)
+}
+
+/// Returns the angle of incidence, rad, at which reflected light is wholly polarised (Brewster).
+pub fn brewster_angle(index: f64) -> f64 {
+    libm::atan(index)
+}
+
+/// Returns the angle from the vertical, rad, beyond which no light leaves the water.
+pub fn critical_angle(index: f64) -> f64 {
+    libm::asin(1.0 / index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_are_those_of_quan_and_fry() {
+        for (salt, nm, index) in [
+            (35.0, 440.0, 1.346561),
+            (35.0, 550.0, 1.340789),
+            (35.0, 650.0, 1.337661),
+            (0.0, 440.0, 1.339926),
+            (0.0, 550.0, 1.334338),
+            (0.0, 650.0, 1.331324),
+        ] {
+            let found = refractive_index(salt, 20.0, nm);
+            assert!((found - index).abs() < 1e-6, "{salt} {nm}: {found}");
+        }
+    }
+
+    #[test]
+    fn flat_water_reflects_by_fresnel() {
+        for (index, deg, wanted) in [
+            (1.3398, 0.0f64, 0.02109),
+            (1.3398, 60.0, 0.06097),
+            (1.3398, 80.0, 0.35014),
+            (1.3398, 85.0, 0.58528),
+            (1.333, 45.0, 0.02790),
+            (1.333, 70.0, 0.13348),
+            (1.333, 89.0, 0.89628),
+        ] {
+            let found = fresnel_reflectance(deg.to_radians().cos(), index);
+            assert!((found - wanted).abs() < 1.5e-5, "{index} {deg}: {found}");
+        }
+        assert!((brewster_angle(1.3398).to_degrees() - 53.26).abs() < 6e-3);
+        assert!((critical_angle(1.3398).to_degrees() - 48.28).abs() < 6e-3);
+        assert!((diffuse_reflectance(1.3398) - 0.0675).abs() < 6e-5, "{}", diffuse_reflectance(1.3398));
+        let inside = diffuse_reflectance(1.0 / 1.3398);
+        assert!((inside - 0.4805).abs() < 2e-4, "{inside}");
+    }
+
+    #[test]
+    fn rough_water_reflects_less_towards_the_horizon() {
+        let degrees = [40.0f64, 60.0, 70.0, 80.0, 85.0, 89.0];
+        for (wind, row) in [
+            (0.0, [0.0253, 0.0610, 0.1354, 0.3502, 0.5853, 0.8968]),
+            (5.0, [0.0266, 0.0658, 0.1359, 0.2746, 0.3633, 0.4353]),
+            (10.0, [0.0278, 0.0690, 0.1311, 0.2328, 0.2941, 0.3456]),
+            (15.0, [0.0290, 0.0710, 0.1252, 0.2055, 0.2533, 0.2943]),
+        ] {
+            for (deg, wanted) in degrees.iter().zip(row) {
+                let mss = if wind > 0.0 { super::super::slopes::mean_square_slope(wind) } else { 0.0 };
+                let found = mean_reflectance(deg.to_radians().cos(), mss, 1.34);
+                assert!((found - wanted).abs() < 1e-3, "{wind} {deg}: {found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn water_scatters_and_absorbs_as_published() {
+        assert!((pure_scattering_per_m(440.0) - 0.00502).abs() < 6e-6);
+        assert!((pure_scattering_per_m(550.0) - 0.00192).abs() < 1.3e-5, "{}", pure_scattering_per_m(550.0));
+        let types = [WaterType::I, WaterType::IB, WaterType::II, WaterType::III, WaterType::Coast1, WaterType::Coast3];
+        let green = types.map(|t| t.diffuse_attenuation_per_m()[0]);
+        assert!(green.windows(2).all(|w| w[0] < w[1]), "{green:?}");
+    }
+}
