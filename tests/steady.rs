@@ -29,6 +29,7 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     rain::{Planes, Shelter},
     scene::{Camera, WorldKind},
+    sea::{SeaPoint, SeaSettings},
     snowpack::LyingSnowModel,
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind},
@@ -502,6 +503,27 @@ fn wind_fields_allocate_nothing() {
     }
 }
 
+/// Queries of a sea at times that follow each other, under a weather that changes.
+fn sea_queries_allocate_nothing() {
+    let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
+    let device = Device::headless(&options).unwrap();
+    let mut context =
+        Context::new(device.clone(), Arc::new(Shared::new(&device).unwrap()), ContextDesc::default()).unwrap();
+    context.set_sea(Some(SeaSettings::default())).unwrap();
+    let blowing = |speed| Weather { wind: Wind::of(speed, 250.0), ..Weather::default() };
+    context.set_weather(&blowing(6.0), 0.0, 0.0).unwrap();
+    context.set_weather(&blowing(12.0), 10.0, 3600.0).unwrap();
+    let (places, mut out) = ([DVec3::ZERO, DVec3::X * 20.0], [SeaPoint::default(); 2]);
+    let mut ask = |time_s: f64| {
+        context.sea_at(&places, time_s, 0.0, &mut out).unwrap();
+        context.sea_statistics(time_s).unwrap();
+    };
+    (0..4).for_each(|i| ask(20.0 + f64::from(i)));
+    let before = CALLS.load(Relaxed);
+    (0..20).for_each(|i| ask(30.0 + f64::from(i)));
+    assert_eq!(CALLS.load(Relaxed) - before, 0);
+}
+
 /// Steps of snow that falls, drifts and slides on four tiles, and of rain that melts it.
 fn snow_on_tiles_allocates_nothing() {
     let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };
@@ -544,6 +566,7 @@ fn recording_allocates_nothing_of_its_own() {
     // SAFETY: nothing else runs in this process yet that reads the environment.
     unsafe { std::env::set_var("RUST_LIB_BACKTRACE", "0") };
     wind_fields_allocate_nothing();
+    sea_queries_allocate_nothing();
     snow_on_tiles_allocates_nothing();
     for (backends, frames) in [(wgpu::Backends::NOOP, 10_000), (wgpu::Backends::VULKAN | wgpu::Backends::GL, 500)] {
         let mut host = RustHost::new(backends);

@@ -26,7 +26,7 @@ impl Context {
         self.held.sea.settings()
     }
 
-    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `out`. Only the
+    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
     /// place on the ground of a position counts, not its height. `shortest_wave_m`, [0, 1e4], leaves out shorter waves,
     /// and tiles that hold no longer ones; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height
     /// may be off.
@@ -36,19 +36,19 @@ impl Context {
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a sea; [`crate::Status::InvalidArgument`] if a position is not a place or
-    /// `out` is of another length; for times as [`Context::conditions_at`]. `out` stays as it was then.
-    pub fn sea_at(&self, positions: &[DVec3], time_s: f64, shortest_wave_m: f64, out: &mut [SeaPoint]) -> Result<()> {
+    /// `points` is of another length; for times as [`Context::conditions_at`]. `points` stays as it was then.
+    pub fn sea_at(&self, positions: &[DVec3], time_s: f64, shortest_wave_m: f64, points: &mut [SeaPoint]) -> Result<()> {
         check_range("shortest_wave_m", shortest_wave_m, 0.0, MOST_SHORTEST_M, "m")?;
-        if out.len() != positions.len() {
+        if points.len() != positions.len() {
             let accepted = format!("as long as positions, {}", positions.len());
-            return Err(crate::Error::range("out", &accepted, out.len()));
+            return Err(crate::Error::range("points", &accepted, points.len()));
         }
         for (i, position) in positions.iter().enumerate() {
             let named = |e: crate::Error| e.renamed("position", &format!("positions[{i}]"));
             self.world.frame.place_at("position", *position).map_err(named)?;
         }
         let surface = self.held.sea.surface(&self.world, time_s)?;
-        for (position, point) in positions.iter().zip(out) {
+        for (position, point) in positions.iter().zip(points) {
             *point = surface.at(self.world.map_at(*position), shortest_wave_m);
         }
         Ok(())

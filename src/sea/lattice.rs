@@ -39,6 +39,9 @@ const ENERGY_SHARE: f64 = 0.9;
 /// Part of a cell over which its wave's place is spread.
 const JITTER: f64 = 0.95;
 
+/// Power by which the energy per octave falls over frequency above the peak (JONSWAP's tail).
+const TAIL_POWER: f64 = 4.0;
+
 /// One wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SeaWave {
@@ -92,11 +95,15 @@ impl LatticeCell {
 
     /// Returns the wave of the cell with an energy.
     fn wave(&self, seed: u64, energy_m2: f64, depth_m: f64) -> SeaWave {
-        let place = (self.bin * BINS + self.bins) * DIRECTIONS * 2 + self.direction;
-        let mut chance = Chance::new(seed, mixed((place * DIRECTIONS * 2 + self.directions) as u64));
-        let mut inside = |whole: f64| whole * (0.5 + JITTER * (chance.even() - 0.5));
-        let w = bin_rad_s(self.bin as f64 + inside(self.bins as f64));
-        let angle = (self.direction as f64 + inside(self.directions as f64)) * TAU / DIRECTIONS as f64;
+        let numbers = [self.bin, self.bins, self.direction, self.directions];
+        let name = numbers.into_iter().fold(0u64, |name, number| (name << 16) | number as u64);
+        let mut chance = Chance::new(seed, mixed(name));
+        let mut inside = || 0.5 + JITTER * (chance.even() - 0.5);
+        // Wide cells lie in the tail, whose energy per octave falls as w^-4: there the place follows the energy.
+        let bin = std::f64::consts::LN_2 / BINS_PER_OCTAVE as f64;
+        let falls = 1.0 - libm::exp(-TAIL_POWER * bin * self.bins as f64);
+        let w = bin_rad_s(self.bin as f64 - libm::log(1.0 - inside() * falls) / (TAIL_POWER * bin));
+        let angle = (self.direction as f64 + inside() * self.directions as f64) * TAU / DIRECTIONS as f64;
         let phase = chance.even();
         let (sin, cos) = libm::sincos(angle);
         let k = wave_number(w, depth_m);

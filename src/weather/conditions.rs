@@ -199,7 +199,7 @@ pub struct SeaState {
     /// Significant height of the wind sea, m.
     pub significant_wave_height_m: f64,
     /// Share of this height that a host or a report gave, 0 to 1. The rest is that of a sea fully developed by the wind.
-    #[serde(default = "whole")]
+    #[serde(default, skip_serializing_if = "is_none")]
     pub given_share: f64,
     /// Significant height of the swell, m; 0 without swell.
     pub swell_height_m: f64,
@@ -228,6 +228,11 @@ pub struct SurfaceCover {
 
 fn whole() -> f64 {
     1.0
+}
+
+/// Whether a share is none at all, as in states saved before it could be another.
+fn is_none(share: &f64) -> bool {
+    *share == 0.0
 }
 
 /// Returns the share of the sky that independently placed layers leave clear (random overlap): the product of 1 -

@@ -93,7 +93,7 @@ fn faults_are_named_and_change_nothing() {
     let invalid = |field: &str| Err((Status::InvalidArgument, Some(field.to_owned())));
     assert_eq!(asked(&context, &mut out, f64::NAN, 0.0), invalid("time_s"));
     assert_eq!(asked(&context, &mut out, 0.0, -1.0), invalid("shortest_wave_m"));
-    assert_eq!(asked(&context, &mut [], 0.0, 0.0), invalid("out"));
+    assert_eq!(asked(&context, &mut [], 0.0, 0.0), invalid("points"));
     let nowhere = [DVec3::ZERO, DVec3::new(f64::NAN, 0.0, 0.0)];
     let e = context.sea_at(&nowhere, 0.0, 0.0, &mut [SeaPoint::default(); 2]).unwrap_err();
     assert!(e.field().is_some_and(|field| field.starts_with("positions[1]")), "{e}");
