@@ -37,7 +37,13 @@ impl Context {
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a sea; [`crate::Status::InvalidArgument`] if a position is not a place or
     /// `points` is of another length; for times as [`Context::conditions_at`]. `points` stays as it was then.
-    pub fn sea_at(&self, positions: &[DVec3], time_s: f64, shortest_wave_m: f64, points: &mut [SeaPoint]) -> Result<()> {
+    pub fn sea_at(
+        &self,
+        positions: &[DVec3],
+        time_s: f64,
+        shortest_wave_m: f64,
+        points: &mut [SeaPoint],
+    ) -> Result<()> {
         check_range("shortest_wave_m", shortest_wave_m, 0.0, MOST_SHORTEST_M, "m")?;
         if points.len() != positions.len() {
             let accepted = format!("as long as positions, {}", positions.len());

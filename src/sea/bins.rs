@@ -65,30 +65,9 @@ impl WaveSystem {
         }
     }
 
-    /// Returns the share of waves that travel between two directions (radians from east to north, `first` below `last`,
-    /// at most a turn apart).
-    pub fn share_between(&self, first: f64, last: f64, beta: f64) -> f64 {
-        let (certain, mean) = self.mean_direction();
-        let even = (last - first) / (2.0 * PI);
-        if certain <= 0.0 || even >= 1.0 {
-            return even;
-        }
-        let low = wrapped(first - mean);
-        let high = low + (last - first);
-        let below = |theta: f64| sech_squared_share(theta, beta);
-        let inside = if high <= PI { below(high) - below(low) } else { 1.0 - below(low) + below(high - 2.0 * PI) };
-        even + certain * (inside - even)
-    }
-
-    /// Returns the density of waves over directions, 1/rad.
-    pub fn density(&self, direction: f64, beta: f64) -> f64 {
-        let (certain, mean) = self.mean_direction();
-        (1.0 - certain) / (2.0 * PI) + certain * sech_squared(wrapped(direction - mean), beta)
-    }
-
-    /// Returns the share that has a direction, and this direction, rad from east to north.
-    pub fn mean_direction(&self) -> (f64, f64) {
-        (self.toward.length().min(1.0), libm::atan2(self.toward.y, self.toward.x))
+    /// Returns the direction of the system.
+    pub fn heading(&self) -> Heading {
+        Heading { certain: self.toward.length().min(1.0), mean: libm::atan2(self.toward.y, self.toward.x) }
     }
 
     /// Returns the density of the variance over frequency but for its level: shape over w / wp, times the depth's
@@ -96,6 +75,34 @@ impl WaveSystem {
     fn shape(&self, w_rad_s: f64, depth_m: f64) -> f64 {
         let deep = jonswap_shape(w_rad_s / self.peak_rad_s, self.gamma);
         if self.is_shaped && deep > 0.0 { deep * depth_share(w_rad_s, depth_m) } else { deep }
+    }
+}
+
+/// Direction of a system: the share of its waves that has one, and this direction, rad from east to north.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Heading {
+    certain: f64,
+    mean: f64,
+}
+
+impl Heading {
+    /// Returns the share of waves that travel between two directions (radians from east to north, `first` below `last`,
+    /// at most a turn apart).
+    pub fn share_between(&self, first: f64, last: f64, beta: f64) -> f64 {
+        let even = (last - first) / (2.0 * PI);
+        if self.certain <= 0.0 || even >= 1.0 {
+            return even;
+        }
+        let low = wrapped(first - self.mean);
+        let high = low + (last - first);
+        let below = |theta: f64| sech_squared_share(theta, beta);
+        let inside = if high <= PI { below(high) - below(low) } else { 1.0 - below(low) + below(high - 2.0 * PI) };
+        even + self.certain * (inside - even)
+    }
+
+    /// Returns the density of waves over directions, 1/rad.
+    pub fn density(&self, direction: f64, beta: f64) -> f64 {
+        (1.0 - self.certain) / (2.0 * PI) + self.certain * sech_squared(wrapped(direction - self.mean), beta)
     }
 }
 
@@ -113,6 +120,7 @@ pub(super) fn bin_rad_s(bin: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     pub systems: Vec<WaveSystem>,
+    pub headings: [Heading; MAX_SYSTEMS],
     /// Variance per bin of each system drawn as single waves, m^2.
     pub waves_m2: Vec<[f64; MAX_SYSTEMS]>,
     /// Variance per bin of each system drawn in tiles, m^2.
@@ -137,6 +145,7 @@ impl Bins {
         let k_per_m = (0..BINS).map(|b| wave_number(bin_rad_s(b as f64 + 0.5), depth_m)).collect();
         Self {
             systems: Vec::with_capacity(MAX_SYSTEMS),
+            headings: [Heading::default(); MAX_SYSTEMS],
             waves_m2: none.clone(),
             tiles_m2: none.clone(),
             beta: none,
@@ -156,6 +165,7 @@ impl Bins {
         }
         self.systems.clear();
         self.systems.extend_from_slice(systems);
+        self.headings.iter_mut().zip(systems).for_each(|(heading, system)| *heading = system.heading());
         self.peak_rad_s = systems[0].peak_rad_s;
         let asked: f64 = (0..systems.len()).map(|s| self.fill_system(s)).sum();
         self.end_per_m = self.end(most_slope);
@@ -291,9 +301,9 @@ mod tests {
                 let (mut sum, mut worst) = (0.0, 0.0f64);
                 for i in 0..n {
                     let from = f64::from(i) * step;
-                    let share = system.share_between(from, from + step, beta);
+                    let share = system.heading().share_between(from, from + step, beta);
                     sum += share;
-                    worst = worst.max((share / step - system.density(from + 0.5 * step, beta)).abs());
+                    worst = worst.max((share / step - system.heading().density(from + 0.5 * step, beta)).abs());
                 }
                 assert!((sum - 1.0).abs() < 1e-12, "{toward} {beta}: {sum}");
                 assert!(worst < 2e-2 * beta, "{toward} {beta}: {worst}");

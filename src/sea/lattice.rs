@@ -6,7 +6,7 @@
 //! Cells are jittered, so the sum never repeats.
 //!
 //! A cell's energy is handed to its halves as far as each half has enough of it: a share that rises smoothly from 0 at
-//! nine tenths of a threshold to all at the threshold. What a half is too weak for goes to the other half if that is
+//! 19/20 of a threshold to all at the threshold. What a half is too weak for goes to the other half if that is
 //! strong enough, and else stays with the cell's own wave. So about as many waves are listed for every sea, all about
 //! equally strong; every amplitude is a continuous function of the spectrum; and the energy of each half octave is kept
 //! exactly.
@@ -31,11 +31,11 @@ const DIRECTIONS: usize = 512;
 /// Depth at which cells begin to be halved in frequency too.
 const FIRST_FREQUENCY_HALVING: usize = 3;
 /// Measure of a wave, as a share of all: about this many are listed.
-const THRESHOLD: f64 = 1.0 / 300.0;
+const THRESHOLD: f64 = 1.0 / 305.0;
 /// Share of the threshold from which a cell begins to take energy.
-const BEGIN: f64 = 0.9;
+const BEGIN: f64 = 0.94;
 /// Share of a cell's measure that counts energy; the rest counts slope, so that short waves are not too few.
-const ENERGY_SHARE: f64 = 0.9;
+const ENERGY_SHARE: f64 = 0.93;
 /// Part of a cell over which its wave's place is spread.
 const JITTER: f64 = 0.95;
 
@@ -135,11 +135,11 @@ impl Lister<'_> {
         let mut amount = CellEnergy::default();
         for b in cell.bin..cell.bin + cell.bins {
             let mut energy_m2 = 0.0;
-            for (s, system) in self.bins.systems.iter().enumerate() {
+            for (s, heading) in self.bins.headings.iter().enumerate().take(self.bins.systems.len()) {
                 let whole = self.bins.waves_m2[b][s];
                 if whole > 0.0 {
                     let is_all = cell.directions == DIRECTIONS;
-                    let share = if is_all { 1.0 } else { system.share_between(from, until, self.bins.beta[b][s]) };
+                    let share = if is_all { 1.0 } else { heading.share_between(from, until, self.bins.beta[b][s]) };
                     energy_m2 += whole * share;
                 }
             }
@@ -304,7 +304,7 @@ mod tests {
                 }
                 for d in 0..96 {
                     let (from, until) = (f64::from(d) * TAU / 96.0, f64::from(d + 1) * TAU / 96.0);
-                    let share = energy * system.share_between(from, until, bins.beta[b][s]);
+                    let share = energy * system.heading().share_between(from, until, bins.beta[b][s]);
                     if share > 1e-7 * bins.variance_m2() {
                         let (sin, cos) = (0.5 * (from + until)).sin_cos();
                         fine.push((share, DVec2::new(cos, sin) * bins.k_per_m[b]));

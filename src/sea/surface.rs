@@ -19,8 +19,10 @@ use crate::numerics::smoothstep;
 
 /// Waves that are summed at a time.
 const LANES: usize = 4;
+/// Most groups of them: a list has at most some 300 waves.
+const MOST_GROUPS: usize = 128;
 /// Largest distance, m, between the place asked for and the one solved for, and most steps towards it.
-const SOLVED_M: f64 = 1e-4;
+const SOLVED_M: f64 = 5e-4;
 const MOST_STEPS: usize = 12;
 /// Standard deviations that a stated bound allows for: 1 place in 16,000 is off by more.
 const BOUND_DEVIATIONS: f64 = 4.0;
@@ -49,59 +51,68 @@ pub struct SeaPoint {
     pub foam: f64,
 }
 
-/// Waves in the form in which they are summed: by property, long waves first.
+/// Properties of [`LANES`] waves, in the form in which they are summed.
+#[derive(Clone, Copy, Debug, Default)]
+struct WaveGroup {
+    /// Wave vector, turns per metre.
+    turns_x: [f64; LANES],
+    turns_y: [f64; LANES],
+    /// Phase at the surface's time, turns.
+    phase: [f64; LANES],
+    /// Amplitude of height and of displacement, m.
+    height: [f64; LANES],
+    shift_x: [f64; LANES],
+    shift_y: [f64; LANES],
+    /// Unit vector times wave number, 1/m.
+    rise_x: [f64; LANES],
+    rise_y: [f64; LANES],
+    /// Frequency, rad/s.
+    w: [f64; LANES],
+}
+
+/// The single waves at the surface's time, long waves first.
 #[derive(Clone, Debug, Default)]
 struct Lanes {
-    /// Wave vector, turns per metre.
-    turns: [Vec<f64>; 2],
-    /// Phase at the surface's time, turns.
-    phase: Vec<f64>,
-    /// Amplitude of height and of displacement, m.
-    height: Vec<f64>,
-    shift: [Vec<f64>; 2],
-    /// Unit vector times wave number, 1/m.
-    rise: [Vec<f64>; 2],
-    /// Frequency, rad/s.
-    w: Vec<f64>,
-    /// Sums over this wave and all longer ones: variance, and lowering of the mean level.
+    groups: Vec<WaveGroup>,
+    /// Sums over a wave and all longer ones: variance, and lowering of the mean level.
     variance_m2: Vec<f64>,
     lowering_m: Vec<f64>,
-    /// Length of the wave, m.
+    /// Lengths of the waves, m.
     length_m: Vec<f64>,
 }
 
 impl Lanes {
-    /// Returns the lists that are summed in groups of [`LANES`].
-    fn grouped(&mut self) -> [&mut Vec<f64>; 9] {
-        let ([tx, ty], [sx, sy], [rx, ry]) = (&mut self.turns, &mut self.shift, &mut self.rise);
-        [tx, ty, sx, sy, rx, ry, &mut self.phase, &mut self.height, &mut self.w]
-    }
-
     fn fill(&mut self, waves: &[SeaWave], time_s: f64) {
-        self.grouped().into_iter().for_each(Vec::clear);
+        self.groups.clear();
         for list in [&mut self.variance_m2, &mut self.lowering_m, &mut self.length_m] {
             list.clear();
         }
         let (mut variance, mut lowering) = (0.0, 0.0);
-        for wave in waves {
-            let k = TAU * wave.turns_per_m;
-            let (a, along) = (wave.amplitude_m, wave.toward);
-            let (turns, shift, rise) = (along * wave.turns_per_m, along * (a * wave.stretch), along * k);
-            let phase = wave.phase - fraction(wave.frequency_hz * time_s);
-            let w = TAU * wave.frequency_hz;
-            let values = [turns.x, turns.y, shift.x, shift.y, rise.x, rise.y, phase, a, w];
-            self.grouped().into_iter().zip(values).for_each(|(list, value)| list.push(value));
-            variance += 0.5 * a * a;
-            lowering += 0.5 * a * a * k * wave.stretch;
-            self.variance_m2.push(variance);
-            self.lowering_m.push(lowering);
-            self.length_m.push(1.0 / wave.turns_per_m);
+        for members in waves.chunks(LANES).take(MOST_GROUPS) {
+            // Waves without amplitude fill the last group.
+            let mut group = WaveGroup::default();
+            for (l, wave) in members.iter().enumerate() {
+                let k = TAU * wave.turns_per_m;
+                let (a, along) = (wave.amplitude_m, wave.toward);
+                (group.turns_x[l], group.turns_y[l]) = (along.x * wave.turns_per_m, along.y * wave.turns_per_m);
+                group.phase[l] = wave.phase - fraction(wave.frequency_hz * time_s);
+                group.height[l] = a;
+                (group.shift_x[l], group.shift_y[l]) = (along.x * a * wave.stretch, along.y * a * wave.stretch);
+                (group.rise_x[l], group.rise_y[l]) = (along.x * k, along.y * k);
+                group.w[l] = TAU * wave.frequency_hz;
+                variance += 0.5 * a * a;
+                lowering += 0.5 * a * a * k * wave.stretch;
+                self.variance_m2.push(variance);
+                self.lowering_m.push(lowering);
+                self.length_m.push(1.0 / wave.turns_per_m);
+            }
+            self.groups.push(group);
         }
-        // Waves without amplitude fill the last group.
-        let whole = waves.len().next_multiple_of(LANES);
-        self.grouped().into_iter().for_each(|list| list.resize(whole, 0.0));
     }
 }
+
+/// Sines and cosines of the waves' phases at a place.
+struct Phases([[[f64; LANES]; 2]; MOST_GROUPS]);
 
 /// Displacement of the particle at rest at a place, and its derivatives.
 #[derive(Clone, Copy, Debug, Default)]
@@ -219,8 +230,9 @@ impl SeaSurface {
     /// tiles that have such waves.
     pub fn at(&self, place_m: DVec2, shortest_m: f64) -> SeaPoint {
         let included = self.included(shortest_m);
-        let SolvedParticle { rest, moved, off, .. } = self.solve(place_m, &included);
-        let motion = self.motion(rest, &included);
+        let mut phases = Phases([[[0.0; LANES]; 2]; MOST_GROUPS]);
+        let SolvedParticle { rest, moved, off, .. } = self.solve(place_m, &included, &mut phases);
+        let motion = self.motion(rest, &included, &phases);
         let slope = transposed_inverse_times(&moved.slopes, motion.slope);
         let height = motion.height + included.raised_m + slope.dot(off);
         let compression = -(moved.slopes[0] + moved.slopes[3]);
@@ -245,18 +257,18 @@ impl SeaSurface {
     /// Returns how far from a place the solution for it is, and the steps that it took.
     #[cfg(test)]
     pub(super) fn solved_off(&self, place_m: DVec2) -> SolvedParticle {
-        self.solve(place_m, &self.included(0.0))
+        self.solve(place_m, &self.included(0.0), &mut Phases([[[0.0; LANES]; 2]; MOST_GROUPS]))
     }
 
-    /// Solves for the particle that is at a place.
-    fn solve(&self, place_m: DVec2, included: &IncludedWaves) -> SolvedParticle {
+    /// Solves for the particle that is at a place, and leaves the phases there.
+    fn solve(&self, place_m: DVec2, included: &IncludedWaves, phases: &mut Phases) -> SolvedParticle {
         let mut rest = place_m;
-        let mut moved = self.displacement(rest, included);
+        let mut moved = self.displacement(rest, included, phases);
         let mut steps = 0;
         let mut off = -moved.shift;
         while off.length_squared() > SOLVED_M * SOLVED_M && steps < MOST_STEPS {
             rest += inverse_times(&moved.slopes, off);
-            moved = self.displacement(rest, included);
+            moved = self.displacement(rest, included, phases);
             off = place_m - rest - moved.shift;
             steps += 1;
         }
@@ -284,22 +296,24 @@ impl SeaSurface {
         IncludedWaves { waves, tiles, raised_m, error_m: BOUND_DEVIATIONS * (left_out + images).sqrt() }
     }
 
-    fn displacement(&self, rest: DVec2, included: &IncludedWaves) -> Displacement {
-        let lanes = &self.lanes;
+    fn displacement(&self, rest: DVec2, included: &IncludedWaves, phases: &mut Phases) -> Displacement {
         let mut sums = [[0.0; LANES]; 5];
-        for group in 0..included.waves.div_ceil(LANES) {
-            let first = group * LANES;
+        let groups = self.lanes.groups.iter().take(included.waves.div_ceil(LANES));
+        for (n, (group, [sines, cosines])) in groups.zip(&mut phases.0).enumerate() {
+            let kept = included.waves - n * LANES;
             for l in 0..LANES {
-                let i = first + l;
-                let is_in = if i < included.waves { 1.0 } else { 0.0 };
-                let (sin, cos) = sin_cos(lanes.turns[0][i] * rest.x + lanes.turns[1][i] * rest.y + lanes.phase[i]);
-                let (sin, cos) = (is_in * sin, is_in * cos);
-                let (sx, sy) = (lanes.shift[0][i], lanes.shift[1][i]);
-                sums[0][l] -= sx * sin;
-                sums[1][l] -= sy * sin;
-                sums[2][l] -= sx * lanes.rise[0][i] * cos;
-                sums[3][l] -= sx * lanes.rise[1][i] * cos;
-                sums[4][l] -= sy * lanes.rise[1][i] * cos;
+                let is_in = if l < kept { 1.0 } else { 0.0 };
+                let (sin, cos) = sin_cos(group.turns_x[l] * rest.x + group.turns_y[l] * rest.y + group.phase[l]);
+                (sines[l], cosines[l]) = (is_in * sin, is_in * cos);
+            }
+            for l in 0..LANES {
+                let (x, y) = (group.shift_x[l], group.shift_y[l]);
+                let (along_x, along_y) = (x * cosines[l], y * cosines[l]);
+                sums[0][l] -= x * sines[l];
+                sums[1][l] -= y * sines[l];
+                sums[2][l] -= along_x * group.rise_x[l];
+                sums[3][l] -= along_x * group.rise_y[l];
+                sums[4][l] -= along_y * group.rise_y[l];
             }
         }
         let [x, y, xx, xy, yy] = sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]));
@@ -318,27 +332,24 @@ impl SeaSurface {
         out
     }
 
-    fn motion(&self, rest: DVec2, included: &IncludedWaves) -> ParticleMotion {
-        let lanes = &self.lanes;
+    /// Returns height and motion of the particle at rest at a place whose phases are known.
+    fn motion(&self, rest: DVec2, included: &IncludedWaves, phases: &Phases) -> ParticleMotion {
         let mut sums = [[0.0; LANES]; 9];
-        for group in 0..included.waves.div_ceil(LANES) {
-            let first = group * LANES;
+        let groups = self.lanes.groups.iter().take(included.waves.div_ceil(LANES));
+        for (group, [sines, cosines]) in groups.zip(&phases.0) {
             for l in 0..LANES {
-                let i = first + l;
-                let is_in = if i < included.waves { 1.0 } else { 0.0 };
-                let (sin, cos) = sin_cos(lanes.turns[0][i] * rest.x + lanes.turns[1][i] * rest.y + lanes.phase[i]);
-                let (sin, cos) = (is_in * sin, is_in * cos);
-                let (a, w) = (lanes.height[i], lanes.w[i]);
-                let (sx, sy) = (lanes.shift[0][i], lanes.shift[1][i]);
-                sums[0][l] += a * cos;
-                sums[1][l] -= a * lanes.rise[0][i] * sin;
-                sums[2][l] -= a * lanes.rise[1][i] * sin;
-                sums[3][l] += a * w * sin;
-                sums[4][l] += sx * w * cos;
-                sums[5][l] += sy * w * cos;
-                sums[6][l] -= a * w * w * cos;
-                sums[7][l] += sx * w * w * sin;
-                sums[8][l] += sy * w * w * sin;
+                let (sin, cos, w) = (sines[l], cosines[l], group.w[l]);
+                let (up_sin, up_cos) = (group.height[l] * sin, group.height[l] * cos);
+                let (w_sin, w_cos) = (w * w * sin, w * cos);
+                sums[0][l] += up_cos;
+                sums[1][l] -= up_sin * group.rise_x[l];
+                sums[2][l] -= up_sin * group.rise_y[l];
+                sums[3][l] += up_sin * w;
+                sums[4][l] += group.shift_x[l] * w_cos;
+                sums[5][l] += group.shift_y[l] * w_cos;
+                sums[6][l] -= up_cos * w * w;
+                sums[7][l] += group.shift_x[l] * w_sin;
+                sums[8][l] += group.shift_y[l] * w_sin;
             }
         }
         let sums = sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]));

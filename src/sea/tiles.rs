@@ -174,7 +174,7 @@ impl WaveTile {
             for (amplitude, direction) in mode.amplitudes_m.iter_mut().zip([mode.direction, mode.direction + PI]) {
                 let of = |s: usize| {
                     let density = ring.densities[s];
-                    if density > 0.0 { density * bins.systems[s].density(direction, ring.betas[s]) } else { 0.0 }
+                    if density > 0.0 { density * bins.headings[s].density(direction, ring.betas[s]) } else { 0.0 }
                 };
                 let variance = cell * (0..bins.systems.len()).map(of).sum::<f64>();
                 sum += variance;
