@@ -35,7 +35,7 @@ const END_RATIO: f64 = 1.5;
 pub(super) enum Spreading {
     /// Donelan and Banner's, by w / wp.
     WindSea,
-    /// The same form with one parameter beta at all frequencies.
+    /// Donelan and Banner's form with one parameter beta at all frequencies.
     Even(f64),
 }
 

@@ -105,7 +105,7 @@ pub fn gamma_of_variance(m0_m2: f64, wind_m_s: f64) -> f64 {
     GROWING_GAMMA + (1.0 - GROWING_GAMMA) * development(m0_m2, wind_m_s)
 }
 
-/// What the weather of a moment does to the sea.
+/// Influence of the weather of a moment on the sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WaveForcing {
     pub wind_m_s: f64,

@@ -31,7 +31,7 @@ const DIRECTIONS: usize = 512;
 /// Depth at which cells begin to be halved in frequency too.
 const FIRST_FREQUENCY_HALVING: usize = 3;
 /// Measure of a wave, as a share of all: about this many are listed.
-const THRESHOLD: f64 = 1.0 / 305.0;
+const THRESHOLD: f64 = 1.0 / 335.0;
 /// Share of the threshold from which a cell begins to take energy.
 const BEGIN: f64 = 0.94;
 /// Share of a cell's measure that counts energy; the rest counts slope, so that short waves are not too few.

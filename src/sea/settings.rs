@@ -1,4 +1,4 @@
-//! What a host says about its sea: level, tide, fetch, depth, waves, water.
+//! Settings by which a host says what its sea is like: level, tide, fetch, depth, waves, water.
 
 use super::{
     dispersion::wave_length_m,

@@ -198,7 +198,8 @@ pub struct WindProfile {
 pub struct SeaState {
     /// Significant height of the wind sea, m.
     pub significant_wave_height_m: f64,
-    /// Share of this height that a host or a report gave, 0 to 1. The rest is that of a sea fully developed by the wind.
+    /// Share of this height that a host or a report gave, 0 to 1. The rest is that of a sea which the wind has fully
+    /// developed.
     #[serde(default, skip_serializing_if = "is_none")]
     pub given_share: f64,
     /// Significant height of the swell, m; 0 without swell.
