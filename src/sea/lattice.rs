@@ -79,7 +79,8 @@ struct CellEnergy {
 impl LatticeCell {
     /// Returns the two halves; `None` for the finest cells.
     fn halves(&self) -> Option<[Self; 2]> {
-        let turns_next = self.depth >= FIRST_FREQUENCY_HALVING && (self.depth - FIRST_FREQUENCY_HALVING) % 2 == 0;
+        let turns_next =
+            self.depth >= FIRST_FREQUENCY_HALVING && (self.depth - FIRST_FREQUENCY_HALVING).is_multiple_of(2);
         let by_frequency = self.bins > 1 && (turns_next || self.directions == 1);
         let next = Self { depth: self.depth + 1, ..*self };
         if by_frequency {
