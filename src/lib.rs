@@ -59,13 +59,9 @@
 //! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
 //!
 //! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`],
-//! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. [`heights`] reads
-//! elevation files for [`terrain`]. The manual is `docs/README.md`. C and C++ hosts use the same types and functions
-//! through `include/welkin.h`, which [`capi`] implements as a thin layer.
-//! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`]. The manual is
-//! [`snow`], [`snowpack`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`], [`sea`]. The manual is
-//! `docs/README.md`. C and C++ hosts use the same types and functions through `include/welkin.h`, which [`capi`]
-//! implements as a thin layer.
+//! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`], [`sea`].
+//! [`heights`] reads elevation files for [`terrain`]. The manual is `docs/README.md`. C and C++ hosts use the same
+//! types and functions through `include/welkin.h`, which [`capi`] implements as a thin layer.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 // Items that only the lab calls are public under its feature; tests and clippy check them with that feature.
 #![cfg_attr(not(feature = "lab"), allow(dead_code, unused_imports, unreachable_pub))]

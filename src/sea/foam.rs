@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn thresholds_cover_the_area_that_was_asked() {
-        let mut chance = crate::chance::Chance::new(7, 1);
+        let mut chance = crate::chance::RandomStream::new(7, 1);
         for (share, variance) in [(0.0017, 0.02), (0.0099, 0.03), (0.105, 0.06)] {
             let c = fold_threshold(share, variance);
             let (n, mut area) = (400_000, 0.0);

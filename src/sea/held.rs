@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status},
     weather::Timeline,
-    world::{HeldEffect, Within, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
 /// Sea of a context.
@@ -232,7 +232,7 @@ impl HeldSea {
 }
 
 impl HeldEffect for HeldSea {
-    fn lead(&mut self, world: &World, _within: Within) -> Result<Status> {
+    fn advance(&mut self, world: &World, _within: UpdateBudget) -> Result<Status> {
         // The timeline is about to forget changes that have ended. Their waves stay.
         if self.sea.is_some() && world.timeline.ends_before(world.time_s).is_some() {
             let known_s = world.timeline.known_from_s();

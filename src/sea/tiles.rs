@@ -17,7 +17,7 @@ use super::{
     turn::{fraction, sin_cos},
 };
 use crate::{
-    chance::{Chance, mixed},
+    chance::{RandomStream, mixed},
     numerics::smoothstep,
 };
 
@@ -125,7 +125,7 @@ impl WaveTile {
                     continue;
                 }
                 let place = (level as u64) << 32 | ((x + 256) as u64) << 16 | y as u64;
-                let mut chance = Chance::new(seed, mixed(place ^ 0x7469_6c65_0000_0000));
+                let mut chance = RandomStream::new(seed, mixed(place ^ 0x7469_6c65_0000_0000));
                 let direction = libm::atan2(f64::from(y), f64::from(x)) + angle;
                 modes.push(WavePair {
                     x,

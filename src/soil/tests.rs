@@ -10,7 +10,7 @@ use super::{
     walls::break_walls,
     *,
 };
-use crate::{chance::Chance, error::Status};
+use crate::{chance::RandomStream, error::Status};
 
 /// Level ground, with an edge beyond which there is none.
 struct Plain {
@@ -188,7 +188,7 @@ fn a_loaded_site_continues_with_the_same_bits() {
 fn random_steps(count: i32) {
     let sand = SoilKind { cohesion_kpa: 0.5, ..BUILT_IN[0] };
     let mut site = site_of(sand, 0.25);
-    let mut chance = Chance::new(7, 45);
+    let mut chance = RandomStream::new(7, 45);
     let mut place = |spread: f64| DVec3::new(spread * (chance.unit() - 0.5), spread * (chance.unit() - 0.5), 0.0);
     let first = bucket_pose(0.0, DVec3::ZERO, 0.0, 0.2);
     let wheel = SoilToolPose { load_n: 2e4, ..first };

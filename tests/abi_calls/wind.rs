@@ -3,8 +3,7 @@
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
-    wind_field::*, wind_grid::*,
+    conditions::*, query::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*, wind_field::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, resealed};

@@ -3,7 +3,7 @@
 use crate::{files, read, root};
 
 /// Rooms in which states are stepped and what they are stepped by is found.
-const SAME_BITS: [&str; 15] = [
+const SAME_BITS: [&str; 17] = [
     "almanac",
     "chance",
     "context",

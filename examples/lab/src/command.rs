@@ -6,7 +6,7 @@ use welkin::{Error, Result, Status};
 
 use crate::candidates::{Candidate, Effect, candidate};
 use crate::{
-    chart, clouds, compare, genera, growth, heights, page, painted_chart, peers, regression, report, stability,
+    chart, clouds, compare, day, genera, growth, heights, page, painted_chart, peers, regression, report, stability,
 };
 
 /// Every command and option.

@@ -566,3 +566,43 @@ fn the_sheet_of_mistakes_with_heights_is_drawn_by_the_lab() {
     let pixels = |path: PathBuf| image::open(path).unwrap().into_rgb8();
     assert!(pixels(dir.0.join("heights.png")) == pixels(committed("heights.png")), "run `lab heights`");
 }
+
+#[test]
+fn a_run_is_charted_and_a_file_without_frames_is_refused() {
+    let dir = Scratch::new("run");
+    std::fs::create_dir_all(&dir.0).unwrap();
+    let (file, out) = (dir.0.join("frames.csv"), dir.0.join("lab"));
+    let head = "frame,segment,time_s,settled,wall_ms,submitted_ms,processor_ms,copy_ms,rest_ms,base_ms,cause";
+    let frame = |i: u32, segment: &str, settled: u8, wall: f64, cause: &str| {
+        format!("{i},{segment},0.1,{settled},{wall},1,1,0.7,8,10,{cause}")
+    };
+    let rows = [
+        frame(0, "clear", 1, 8.0, ""),
+        frame(1, "clear", 1, 12.0, ""),
+        frame(2, "light rain", 0, 40.0, "pipeline + upload"),
+        frame(3, "light rain", 0, 16.0, "gauge"),
+        frame(4, "light rain", 1, 9.0, ""),
+    ];
+    std::fs::write(&file, format!("# run; quick; a driver\n{head}\n{}\n", rows.join("\n"))).unwrap();
+    let run_file = || run(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(run_file().unwrap());
+    let page = std::fs::read_to_string(out.join("README.md")).unwrap();
+    assert!(page.contains("| clear | 8 | 8 | 0.8 | 1.2 | 1 |  |\n"), "{page}");
+    assert!(page.contains("| light rain | 8 | 16 | 1.6 | 4 | 1.1 | 1 pipeline, 1 other |\n"), "{page}");
+    assert!(page.contains("Measured: run; quick; a driver; 2"), "{page}");
+    let chart = std::fs::read_to_string(out.join("run.svg")).unwrap();
+    assert!(chart.contains("light rain") && out.join("run.png").exists());
+
+    for (text, says) in [
+        ("frame,segment\n1,clear\n".to_owned(), "no column settled"),
+        (format!("{head}\n"), "no row"),
+        (format!("{head}\n{}\n", frame(7, "clear", 1, -1.0, "")), "wall_ms of frame 7 is `-1`"),
+        (format!("{head}\n{}\n", frame(7, "clear", 1, f64::NAN, "")), "wall_ms of frame 7 is `NaN`"),
+        (format!("{head}\n{}\n", frame(7, "clear", 1, 8.0, "")), "the first line"),
+    ] {
+        std::fs::write(&file, text).unwrap();
+        let fault = run_file().unwrap_err().to_string();
+        assert!(fault.contains(says), "{fault}");
+        assert_eq!(std::fs::read_to_string(out.join("README.md")).unwrap(), page, "the page is as it was");
+    }
+}

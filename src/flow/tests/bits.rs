@@ -9,7 +9,7 @@ use super::{
     },
     *,
 };
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// The pressure equation in the order of cells.
 struct PlainGrid {
@@ -19,7 +19,7 @@ struct PlainGrid {
 
 impl PlainGrid {
     /// An equation with cells without air, whose axes wrap or not.
-    fn new(n: [usize; 3], wraps: bool, random: &mut Chance) -> Self {
+    fn new(n: [usize; 3], wraps: bool, random: &mut RandomStream) -> Self {
         let count: usize = n.iter().product();
         let solid: Vec<bool> = (0..count).map(|_| random.unit() < 0.2).collect();
         let mut lower = [0, 1, 2].map(|_| vec![0.0; count]);
@@ -74,7 +74,7 @@ impl PlainGrid {
 
 #[test]
 fn sweeps_over_halves_of_rows_are_sweeps_over_cells() {
-    let mut random = Chance::new(7, 1);
+    let mut random = RandomStream::new(7, 1);
     let sizes = [[8, 8, 8], [16, 3, 2], [9, 7, 5], [5, 4, 3], [3, 3, 3], [2, 2, 1], [1, 5, 4], [31, 1, 6], [34, 5, 3]];
     for (n, wraps) in sizes.into_iter().flat_map(|n| [(n, false), (n, true)]) {
         let plain = PlainGrid::new(n, wraps, &mut random);
@@ -145,7 +145,7 @@ fn carried(lattice: &Lattice, wind: &Faces, source: &Faces, c: usize, i: [usize;
 
 #[test]
 fn four_faces_at_once_are_carried_as_each_alone() {
-    let mut random = Chance::new(8, 1);
+    let mut random = RandomStream::new(8, 1);
     // Air that comes from neighbouring places, and air that does not.
     for (n, rough) in [([13, 6, 5], 0.0), ([13, 6, 5], 20.0), ([8, 8, 8], 3.0), ([2, 3, 4], 9.0)] {
         let lattice = Lattice::new(n, dvec3(2.0, 1.5, 1.0)).expect("a lattice");

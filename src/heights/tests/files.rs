@@ -128,7 +128,7 @@ fn written(map: &HeightMap) -> Vec<(&'static str, HeightMap, f64)> {
 
 #[test]
 fn heights_return_within_half_a_step() {
-    let mut chance = Chance::new(1, 0);
+    let mut chance = RandomStream::new(1, 0);
     for i in 0..200 {
         let (columns, rows) = (1 + i % 13, 1 + i % 7);
         let low = 20_000.0 * chance.even() - 10_000.0;
@@ -181,7 +181,7 @@ fn orders(list: &[Vec<u8>]) -> Vec<Vec<Vec<u8>>> {
 
 #[test]
 fn terragen_chunks_are_read_in_any_order_and_written_in_one() {
-    let mut chance = Chance::new(2, 0);
+    let mut chance = RandomStream::new(2, 0);
     for (columns, rows) in [(4, 3), (3, 5), (5, 5), (4, 4), (1, 1), (7, 2)] {
         let map = random(columns, rows, [-50.0, 900.0], 0, &mut chance).with_cell([10.0; 2]).unwrap();
         let ter = map.to_ter().unwrap();

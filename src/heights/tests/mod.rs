@@ -6,10 +6,10 @@ mod relief;
 mod resampling;
 
 use super::{ByteOrder, HeightMap, HeightSettings, RawHeights, RawSample, RowOrder};
-use crate::chance::Chance;
+use crate::chance::RandomStream;
 
 /// Map of random heights between two bounds, with one hole in so many samples; 0 for none.
-fn random(columns: u32, rows: u32, range: [f64; 2], hole_in: u32, chance: &mut Chance) -> HeightMap {
+fn random(columns: u32, rows: u32, range: [f64; 2], hole_in: u32, chance: &mut RandomStream) -> HeightMap {
     let height = |_| {
         let is_hole = hole_in > 0 && chance.even() < 1.0 / f64::from(hole_in);
         if is_hole { f32::NAN } else { (range[0] + (range[1] - range[0]) * chance.even()) as f32 }

@@ -9,7 +9,7 @@ fn of(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> HeightMap {
 
 #[test]
 fn the_mean_stays() {
-    let mut chance = Chance::new(3, 0);
+    let mut chance = RandomStream::new(3, 0);
     let mut side = || 1 + (chance.even() * 40.0) as u32;
     let sizes: Vec<[u32; 4]> = (0..300).map(|_| [side(), side(), side(), side()]).collect();
     for [columns, rows, new_columns, new_rows] in sizes {
@@ -23,7 +23,7 @@ fn the_mean_stays() {
 
 #[test]
 fn blocks_become_their_means_and_come_back() {
-    let mut chance = Chance::new(4, 0);
+    let mut chance = RandomStream::new(4, 0);
     let map = random(12, 18, [0.0, 100.0], 0, &mut chance);
     assert_eq!(difference(&map, &map.resampled(12, 18).unwrap()), 0.0, "its own size");
     let coarse = map.resampled(4, 6).unwrap();
