@@ -4120,6 +4120,34 @@ wk_status wk_view_record(wk_view *view,
                          wk_stage_flags stages);
 
 /**
+ * Draws weathers that may come, into small images of Welkin's own, so that hardly a frame waits for a shader once they
+ * come.
+ * Each weather is drawn while the one before it (the context's own before the first) changes to it, once it lasts, and
+ * under several heights of the sun. Call it behind a loading screen, before the view's first frame: the next frame
+ * begins as a view's first one does. The context is as before afterwards.
+ *
+ * `frame` is one like those to come: with their settings, and with images of their formats, samples and usages. These
+ * are neither drawn into nor waited for. `calls` are the stages of the calls of one frame in order, 1 to 7; NULL with
+ * `call_count` 0 means one call with WK_STAGE_ALL. `weathers` are 0 to 64, `weather_stride` bytes apart, each perhaps
+ * with a wk_weather_overrides in its chain. One call draws for about `most_s`, [0, 3600] s, and at least one moment of
+ * a weather. It returns WK_PENDING, which is no error, while moments remain: call it again with the same weathers.
+ * Others begin anew.
+ * Thread: exclusive on the view and on its context.
+ * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
+ * WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
+ * as before, and the same call goes on with the moment that failed.
+ */
+WK_API
+wk_status wk_view_prepare(wk_view *view,
+                          const wk_frame *frame,
+                          const wk_stage_flags *calls,
+                          uint32_t call_count,
+                          const wk_weather *weathers,
+                          uint32_t weather_count,
+                          uint32_t weather_stride,
+                          double most_s);
+
+/**
  * Gets costs and contents of the view's last frame.
  * Thread: exclusive on the view.
  */
