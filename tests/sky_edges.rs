@@ -211,31 +211,16 @@ fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
     assert!(largest < (after - before).abs() / 12.0, "{values:?}");
 }
 
-/// A camera that climbs by 5 cm a frame: its tables are drawn every 24 frames at most, and what it sees in between is
-/// the sky from its own altitude.
+/// A camera that has climbed by less than a thousandth of a scale height: its tables are those from below, and what it
+/// sees is the sky from its own altitude.
 #[test]
 fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
     let device = device();
     let planet = golden_planet();
-    let mut tables = SkyTables::new(&device, &coarse(SkyModel::Directional)).unwrap();
-    let mut encoder = device.device.create_command_encoder(&Default::default());
-    tables.update(&mut encoder, &planet, 1.0).unwrap();
-    device.submit_and_wait(encoder).unwrap();
-    let mut volume = SkyVolume::new(&tables).unwrap();
     let under = |altitude_m: f64, sun_deg: f64, exact: bool| Observer {
         exact,
         ..Observer::under_sun(&planet, altitude_m, f64::to_radians(sun_deg))
     };
-    for from_m in [0.5, 10.0] {
-        let mut drawn = 0;
-        for i in 0..120 {
-            let mut encoder = device.device.create_command_encoder(&Default::default());
-            let observer = under(from_m + 0.05 * f64::from(i), 60.0, false);
-            drawn += u32::from(volume.prepare(&mut encoder, &tables, &observer).unwrap());
-            device.submit_and_wait(encoder).unwrap();
-        }
-        assert!((4..=6).contains(&drawn), "6 m of climb from {from_m} m: {drawn} times");
-    }
     let probe = || Probe::new(&device, &coarse(SkyModel::Directional), &planet).unwrap();
     let (mut kept, mut exact) = (probe(), probe());
     let mut rays = Vec::new();
@@ -266,8 +251,8 @@ fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
     println!("kept tables are off by {worst:.1e} at most, 1.19 m above where they were drawn");
 }
 
-/// A sun that moves in every frame while the camera climbs: tables are drawn ahead in slices and mixed, and show the sky
-/// of each frame's own sun.
+/// A sun that moves in every frame while the camera climbs: tables are drawn ahead in slices and mixed, and show the
+/// sky of each frame's own sun.
 #[test]
 fn a_moving_sun_is_followed_by_slices_and_seen_where_it_stands() {
     let device = device();

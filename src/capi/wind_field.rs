@@ -54,8 +54,8 @@ pub const WK_WIND_SCHEME_SEMI_LAGRANGIAN: wk_wind_scheme = 2;
 pub type wk_wind_pressure = u32;
 /// Conjugate gradients preconditioned by multigrid V-cycles, until the remaining divergence is small.
 pub const WK_WIND_PRESSURE_MULTIGRID: wk_wind_pressure = 0;
-/// Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With few
-/// iterations air is made and lost behind obstacles.
+/// Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With
+/// few iterations air is made and lost behind obstacles.
 pub const WK_WIND_PRESSURE_RELAXATION: wk_wind_pressure = 1;
 
 /// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and

@@ -1,5 +1,5 @@
-//! Rehearsal of weathers to come: the moments in which views draw them ahead of time, so that nothing has to be compiled
-//! once they come.
+//! Rehearsal of weathers to come: the moments in which views draw them ahead of time, so that nothing has to be
+//! compiled once they come.
 
 use super::shared_world::Context;
 use crate::{

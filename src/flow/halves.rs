@@ -1,8 +1,8 @@
 //! Order of a grid's values for sweeps over one colour of a chessboard: each row has its even cells first, then its odd
 //! ones. All cells of one colour in a row, and each of their neighbours, thus lie side by side.
 //!
-//! The neighbours of a row's first and last cell are each other. Copies of the two lie beyond the other's end, so sweeps
-//! need no special case there. The room that is left in a row holds zeros.
+//! The neighbours of a row's first and last cell are each other. Copies of the two lie beyond the other's end, so
+//! sweeps need no special case there. The room that is left in a row holds zeros.
 
 use glam::{Vec4, vec4};
 

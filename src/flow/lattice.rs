@@ -146,8 +146,8 @@ impl Lattice {
         }
     }
 
-    /// Calls `f` for every row of cells, with its indices north and up, the number of its first cell, and the position of
-    /// that cell's lower faces in the lists.
+    /// Calls `f` for every row of cells, with its indices north and up, the number of its first cell, and the position
+    /// of that cell's lower faces in the lists.
     #[inline]
     pub(super) fn each_cell_row(&self, mut f: impl FnMut(usize, usize, usize, usize)) {
         let [nx, ny, nz] = self.n;

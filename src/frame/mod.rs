@@ -20,6 +20,7 @@ mod picture;
 mod pixels;
 mod planned;
 mod rehearsal;
+mod rehearsed;
 mod unit;
 mod view;
 mod wind_picture;

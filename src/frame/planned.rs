@@ -75,8 +75,8 @@ impl View {
         Ok(plan::write(PARTS, &plan.rungs(), &self.effects.saved_with()))
     }
 
-    /// Pins a plan that [`View::save_plan`] wrote ([`plan::PartWish::rung`]). The rest of the budget stays, and limits that
-    /// the plan breaks are reported. After an error the budget is unchanged.
+    /// Pins a plan that [`View::save_plan`] wrote ([`plan::PartWish::rung`]). The rest of the budget stays, and limits
+    /// that the plan breaks are reported. After an error the budget is unchanged.
     ///
     /// # Errors
     /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;

@@ -1,9 +1,9 @@
-//! Rehearsal of a view: it draws weathers to come into images of its own, so that their pipelines are compiled and their
-//! first tables made before they are needed.
+//! Rehearsal of a view: it draws weathers to come into images of its own, so that their pipelines are compiled and
+//! their first tables made before they are needed.
 
 use std::time::{Duration, Instant};
 
-use super::{history::FrameHistory, view::View};
+use super::{history::FrameHistory, rehearsed::RehearsedView, view::View};
 use crate::{
     context::{Context, Rehearsal},
     error::{Error, Result, Status, check_range},
@@ -12,68 +12,12 @@ use crate::{
     weather::{Conditions, Weather, derive},
 };
 
-/// Side of the rehearsed pictures, pixels: the smallest that is drawn as larger ones are.
-const SIDE: u32 = 64;
 /// Most frames of one moment.
 pub(crate) const MOST_FRAMES: u32 = 12;
 /// Longest time of one call, s.
 const MOST_S: f64 = 3600.0;
 /// Most calls of one frame: one for each stage.
 pub(crate) const MOST_CALLS: usize = 7;
-
-/// State of a view's rehearsal.
-#[derive(Default)]
-pub(super) struct RehearsedView {
-    /// Whether the view draws into its own images now.
-    is_on: bool,
-    /// Number of frames drawn so far.
-    frames: u64,
-    /// Weathers that are rehearsed, and the number of moments drawn.
-    weathers: Vec<Conditions>,
-    done: usize,
-    /// Images in place of the host's: colour, depth, mask, surface classes, normals.
-    images: [Option<wgpu::Texture>; 5],
-}
-
-impl RehearsedView {
-    /// Creates the images in place of those of `frame`, with their formats, numbers of samples and usages.
-    fn hold(&mut self, device: &wgpu::Device, frame: &Frame<'_>) {
-        let given = [frame.color, frame.depth, frame.mask, frame.surface_classes, frame.normals];
-        for (own, given) in self.images.iter_mut().zip(given) {
-            let fits = |own: &wgpu::Texture, given: &wgpu::Texture| {
-                (own.format(), own.sample_count(), own.usage()) == (given.format(), given.sample_count(), given.usage())
-            };
-            let holds = match (&own, given) {
-                (Some(own), Some(given)) => fits(own, given),
-                (None, None) => true,
-                _ => false,
-            };
-            if !holds {
-                *own = given.map(|given| {
-                    device.create_texture(&wgpu::TextureDescriptor {
-                        label: Some("rehearsal"),
-                        size: wgpu::Extent3d {
-                            width: given.width().min(SIDE),
-                            height: given.height().min(SIDE),
-                            depth_or_array_layers: 1,
-                        },
-                        mip_level_count: 1,
-                        sample_count: given.sample_count(),
-                        dimension: wgpu::TextureDimension::D2,
-                        format: given.format(),
-                        usage: given.usage(),
-                        view_formats: &[],
-                    })
-                });
-            }
-        }
-    }
-
-    /// The images, and the number of the rehearsed frame, in place of the host's.
-    fn images(&self) -> ([Option<wgpu::Texture>; 5], u64) {
-        (self.images.clone(), u64::MAX / 2 + self.frames)
-    }
-}
 
 impl View {
     /// Whether the view draws a rehearsal.
@@ -102,12 +46,12 @@ impl View {
         record(self, &own)
     }
 
-    /// Draws weathers that may come, into small images of its own, so that hardly a frame waits for a shader once they come:
-    /// their pipelines are compiled, and the first of their tables are made. Each weather is drawn while the one before
-    /// it changes to it, once it lasts, and under several heights of the sun. `frame` is one like those to come: with
-    /// the formats, samples and usages of their images, which are not drawn into, and their settings. `calls` are the
-    /// stages of the calls of one frame, in order, at most seven. Call it before the first frame or behind a loading
-    /// screen: the next frame begins as a view's first one does. The context is as before afterwards.
+    /// Draws weathers that may come, into small images of its own, so that hardly a frame waits for a shader once they
+    /// come: their pipelines are compiled, and the first of their tables are made. Each weather is drawn while the one
+    /// before it changes to it, once it lasts, and under several heights of the sun. `frame` is one like those to come:
+    /// with the formats, samples and usages of their images, which are not drawn into, and their settings. `calls` are
+    /// the stages of the calls of one frame, in order, at most seven. Call it before the first frame or behind a
+    /// loading screen: the next frame begins as a view's first one does. The context is as before afterwards.
     ///
     /// One call draws for about `most`, at least one moment of a weather. [`Status::Pending`] says that moments remain:
     /// call it again with the same weathers. Other weathers begin anew.
@@ -173,7 +117,9 @@ impl View {
         if done < rehearsal.moments() {
             return Some(done);
         }
-        self.rehearsal = RehearsedView { frames: self.rehearsal.frames, ..RehearsedView::default() };
+        let frames = self.rehearsal.frames;
+        self.rehearsal = RehearsedView::default();
+        self.rehearsal.frames = frames;
         None
     }
 

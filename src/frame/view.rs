@@ -9,7 +9,7 @@ use super::{
     froxels::{FrameTextures, Froxels},
     history::FrameHistory,
     opaque_step::OpaqueStep,
-    rehearsal::RehearsedView,
+    rehearsed::RehearsedView,
 };
 use crate::{
     context::Context,

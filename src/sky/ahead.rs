@@ -2,7 +2,7 @@
 
 use bytemuck::{Zeroable as _, bytes_of};
 
-use super::course::Course;
+use super::course::ObserverCourse;
 use super::kit::Kit;
 use super::observer_tables::{Apart, LAMPS};
 use super::passes::{bind, uniform_buffer};
@@ -56,7 +56,7 @@ impl WayTables {
 /// Course of an observer, and the tables on its way.
 #[derive(Default)]
 pub(super) struct Ahead {
-    pub course: Course,
+    pub course: ObserverCourse,
     /// Id of the planet's tables from which those on the way are drawn.
     pub set: Option<u64>,
     /// Created when the observer moves for the first time.
@@ -66,6 +66,6 @@ pub(super) struct Ahead {
 impl Ahead {
     /// Forgets the course. The textures stay for the next one.
     pub fn stop(&mut self) {
-        (self.course, self.set) = (Course::default(), None);
+        (self.course, self.set) = (ObserverCourse::default(), None);
     }
 }

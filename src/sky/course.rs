@@ -87,7 +87,7 @@ pub(super) struct CourseStep {
 
 /// Course of an observer.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Course {
+pub(super) struct ObserverCourse {
     /// Observer's place in the last frame.
     last: Option<ObserverPlace>,
     /// Mean change of the altitude, m, and of each lamp's sine of elevation, in one frame.
@@ -100,7 +100,7 @@ pub(super) struct Course {
     coming: Option<Coming>,
 }
 
-impl Course {
+impl ObserverCourse {
     /// Follows the observer to `place` in the next frame. `drawn` is the place of the present tables, `rows` the height
     /// of a table.
     pub fn follow(
@@ -205,10 +205,10 @@ impl Course {
 }
 
 impl Coming {
-    /// Plans the tables of the place that an observer reaches from `from` in `frames` frames at `speed`.
-    fn new(from: &ObserverPlace, speed: &[f64; NUMBERS], frames: f64, rows: u32) -> Self {
-        let numbers = from.numbers();
-        let place = from.with(std::array::from_fn(|i| numbers[i] + frames * speed[i]));
+    /// Plans the tables of the place that an observer reaches from `start` in `frames` frames at `speed`.
+    fn new(start: &ObserverPlace, speed: &[f64; NUMBERS], frames: f64, rows: u32) -> Self {
+        let numbers = start.numbers();
+        let place = start.with(std::array::from_fn(|i| numbers[i] + frames * speed[i]));
         // Plans for one frame fewer, because an observer may arrive a little early.
         Self { place, rows: 0, rows_a_frame: (f64::from(rows) / (frames - 1.0).max(1.0)).ceil() as u32 }
     }
@@ -261,7 +261,7 @@ mod tests {
     /// Counts, over `frames` frames of a motion, the rows drawn ahead and the tables drawn whole. A frame draws tables
     /// whole where neither a pair nor the present tables serve the observer.
     fn drawn(frames: u32, motion: impl Fn(f64) -> ObserverPlace) -> (u32, u32) {
-        let (mut course, mut tables, mut rows, mut whole) = (Course::default(), None::<ObserverPlace>, 0, 0);
+        let (mut course, mut tables, mut rows, mut whole) = (ObserverCourse::default(), None::<ObserverPlace>, 0, 0);
         for i in 0..frames {
             let place = motion(f64::from(i));
             let step = course.follow(place, tables, &BOUNDS, ROWS);
@@ -306,7 +306,7 @@ mod tests {
 
     #[test]
     fn a_lamp_that_appears_begins_a_new_course() {
-        let mut course = Course::default();
+        let mut course = ObserverCourse::default();
         let motion = |i: u32| sun(10.0, 0.7 - 8.7e-4 * f64::from(i));
         let at_last = (0..60).map(|i| course.follow(motion(i), Some(motion(i)), &BOUNDS, ROWS)).last();
         assert!(at_last.is_some_and(|step| step.share.is_some()));

@@ -71,7 +71,7 @@ fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
 /// Bounds for following an observer. Light is mixed over a twentieth of a scale height, and over a part of a lamp's way
 /// that is short where its light changes fast: near the horizon and below it.
 fn bounds(air: &AirUniform, place: &ObserverPlace) -> Bounds {
-    let of_lamp = |mu_s: Option<f64>| 6e-4 + 0.3 * mu_s.unwrap_or(0.0).max(0.0).powi(2);
+    let of_lamp = |mu_s: Option<f64>| 6e-4 + 0.15 * mu_s.unwrap_or(0.0).max(0.0).powi(2);
     let [sun, moon] = place.mu_s.map(of_lamp);
     let altitude_m = 0.05 * least_scale_height_m(air) + 0.02 * place.altitude_m.abs();
     Bounds {

@@ -288,8 +288,8 @@ impl SoilField {
         }
     }
 
-    /// Lists the patches in which something may move: those that have changed, and their neighbours. With `keeps`, those
-    /// of the last list too.
+    /// Lists the patches in which something may move: those that have changed, and their neighbours. With `keeps`,
+    /// those of the last list too.
     fn wake(&mut self, keeps: bool, ground: &dyn UndugGround) {
         let mut next = std::mem::take(&mut self.scratch.next);
         next.clear();

@@ -1,10 +1,10 @@
 //! Soil: ground that is dug, carried, heaped and pressed, with its mass kept to the microgram.
 //!
-//! **Columns** (`patch.rs`). The undug ground is the host's. Where it was never touched, nothing is held. A patch of 16 x
-//! 16 cells holds, for each cell, how deep the undisturbed soil (the bank) was cut, and the loose soil on it: its depth
-//! and its mass of each kind. Depths are whole numbers of 2^-20 m, masses whole micrograms. Moves split a mass and add
-//! the two parts to what is there, so dug + brought = lying + held + taken holds exactly ([`SoilBooks`]). Volume is not
-//! kept: bank swells as it is dug, and wheels compact it.
+//! **Columns** (`patch.rs`). The undug ground is the host's. Where it was never touched, nothing is held. A patch of 16
+//! x 16 cells holds, for each cell, how deep the undisturbed soil (the bank) was cut, and the loose soil on it: its
+//! depth and its mass of each kind. Depths are whole numbers of 2^-20 m, masses whole micrograms. Moves split a mass
+//! and add the two parts to what is there, so dug + brought = lying + held + taken holds exactly ([`SoilBooks`]).
+//! Volume is not kept: bank swells as it is dug, and wheels compact it.
 //!
 //! **Tools** (`tool.rs`, `work.rs`). A bucket or blade is its cutting edge, the opposite edge of its opening, the
 //! direction out of the opening, and a volume. Between two poses the edge sweeps a ribbon (`ribbon.rs`), and each cell
@@ -19,8 +19,8 @@
 //! pose at or after its end, so the same timed poses give the same bits at any frame rate. A step does at most eight
 //! sweeps; a site in which nothing moves is skipped.
 //!
-//! Limits: a cell has one column, so a cell that is cut in part gives its upper layers first, and nothing overhangs. Soil
-//! has no moisture and no frost. A context does not hold a site yet: the host keeps the [`SoilSite`], which draws
+//! Limits: a cell has one column, so a cell that is cut in part gives its upper layers first, and nothing overhangs.
+//! Soil has no moisture and no frost. A context does not hold a site yet: the host keeps the [`SoilSite`], which draws
 //! nothing and reads no weather. So there are no `view.rs`, `passes.rs`, `candidates.rs` and `held.rs`; `laws/` is the
 //! physics in f64 in place of `reference.rs`.
 

@@ -24,7 +24,8 @@ pub(super) struct Pressed {
 
 /// Heights of the undug ground.
 pub trait UndugGround {
-    /// Returns the height of a cell of the lattice, counted east and north, m within 1e5; `None` where there is no ground.
+    /// Returns the height of a cell of the lattice, counted east and north, m within 1e5; `None` where there is no
+    /// ground.
     fn height_m(&self, cell: [i32; 2]) -> Option<f64>;
 }
 
@@ -51,8 +52,8 @@ pub(super) struct SoilPatch {
     pub grade: Vec<f64>,
     /// Flows across the eastern and the northern edges.
     pub flows: [Vec<f64>; 2],
-    /// Edges that a blade closes, as twice the cell plus 1 for the northern edge, with the blade's lower and upper height
-    /// there, in units.
+    /// Edges that a blade closes, as twice the cell plus 1 for the northern edge, with the blade's lower and upper
+    /// height there, in units.
     pub barriers: Vec<(u16, [f64; 2])>,
     /// Slots of the neighbours W, E, S, N, SW, SE, NW, NE.
     pub near: [u32; 8],

@@ -72,8 +72,8 @@ impl Polygon {
     }
 }
 
-/// Calls `act` for each cell under a triangle. Corners are in cells; the cell (i, j) reaches from (i, j) to (i + 1, j + 1).
-/// Heights are linear over the triangle.
+/// Calls `act` for each cell under a triangle. Corners are in cells; the cell (i, j) reaches from (i, j) to (i + 1, j +
+/// 1). Heights are linear over the triangle.
 fn each_share_of_triangle(corners: [DVec3; 3], act: &mut impl FnMut(CellShare)) {
     let plan = corners.map(DVec3::truncate);
     let (u, v) = (plan[1] - plan[0], plan[2] - plan[0]);
@@ -108,9 +108,9 @@ fn each_share_of_triangle(corners: [DVec3; 3], act: &mut impl FnMut(CellShare)) 
     }
 }
 
-/// Calls `act` for each cell that an edge passes on its way from `start` to `end`, its corners in cells. A cell can come
-/// several times, with parts that do not overlap. Four triangles around the middle favour no corner, so that the error
-/// in a curve falls with the square of the parts.
+/// Calls `act` for each cell that an edge passes on its way from `start` to `end`, its corners in cells. A cell can
+/// come several times, with parts that do not overlap. Four triangles around the middle favour no corner, so that the
+/// error in a curve falls with the square of the parts.
 pub(super) fn each_share(start: [DVec3; 2], end: [DVec3; 2], mut act: impl FnMut(CellShare)) {
     let ring = [start[0], start[1], end[1], end[0]];
     let middle = 0.25 * ring.iter().sum::<DVec3>();

@@ -87,7 +87,7 @@ pub struct SoilPoint {
     pub revision: u64,
 }
 
-/// What a tool holds and meets.
+/// Load of a tool, and the ground that it meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolReport {
     /// Simulation time that the report is for, s.
@@ -108,8 +108,8 @@ pub struct SoilToolReport {
     pub cut_kind: SoilKindId,
     /// Deepest sinkage of a wheel or track in the last step, m.
     pub sinkage_m: f64,
-    /// Whether the sinkage was limited to half the radius (or half the shorter side of a track's contact), or comes from
-    /// a set that fits a small range only.
+    /// Whether the sinkage was limited to half the radius (or half the shorter side of a track's contact), or comes
+    /// from a set that fits a small range only.
     pub is_sinkage_beyond_range: bool,
 }
 
@@ -239,8 +239,8 @@ impl SoilSite {
     /// Drops loose soil that the host brings onto a place, at once. Returns whether there is ground to take it.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the parameter: a place within 1e7 m, a known kind, a mass in \[0, 1e6\] kg, and
-    /// loose soil at most 1000 m deep.
+    /// [`Status::InvalidArgument`] naming the parameter: a place within 1e7 m, a known kind, a mass in \[0, 1e6\] kg,
+    /// and loose soil at most 1000 m deep.
     pub fn bring(&mut self, place: DVec3, kind: SoilKindId, mass_kg: f64, ground: &dyn UndugGround) -> Result<bool> {
         check_place("place", place)?;
         check_kind("kind", kind, self.field.materials.kinds.len())?;
@@ -261,8 +261,8 @@ impl SoilSite {
         [place.x, place.y].map(|v| (v / self.desc.cell_m).round() as i32)
     }
 
-    /// Advances the ground by whole steps, up to `until_s` and not beyond the last pose of any tool that has not ended: a
-    /// tool that stands still needs poses too. Returns the time that was reached, s.
+    /// Advances the ground by whole steps, up to `until_s` and not beyond the last pose of any tool that has not ended:
+    /// a tool that stands still needs poses too. Returns the time that was reached, s.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a time outside \[0, 1e12\] s.

@@ -195,9 +195,9 @@ impl SoilToolPose {
     }
 
     /// Returns the volume that the tool holds at its tilt, m^3; 0 for one that holds nothing. Soil lies up to the slope
-    /// `grade` from the lower edge. While the opening is flatter than that, a heap lies on it, at most the rated one. On
-    /// a steeper one, a bed is empty, because its tail is open; a bucket keeps what lies behind its lip, with a section
-    /// that counts as a rectangle below the opening.
+    /// `grade` from the lower edge. While the opening is flatter than that, a heap lies on it, at most the rated one.
+    /// On a steeper one, a bed is empty, because its tail is open; a bucket keeps what lies behind its lip, with a
+    /// section that counts as a rectangle below the opening.
     pub(super) fn held_m3(&self, shape: &SoilToolShape, grade: f64) -> f64 {
         let Some(hold) = shape.hold() else { return 0.0 };
         let [across, between] = self.sides_m();

@@ -35,7 +35,7 @@ pub(super) struct PassedCell {
     pub raised: f64,
 }
 
-/// What a tool did in a step.
+/// Work of a tool in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct StepWork {
     /// Volume that was cut, before it swelled, m^3.
@@ -94,8 +94,8 @@ impl Place<'_> {
         }
     }
 
-    /// Puts soil onto the four cells around a point in cells, by their nearness. Returns what no cell could take, all of
-    /// it or nothing.
+    /// Puts soil onto the four cells around a point in cells, by their nearness. Returns what no cell could take, all
+    /// of it or nothing.
     fn scatter(&mut self, parcel: SoilParcel, point: DVec2) -> SoilParcel {
         let corner = point - 0.5;
         let low = corner.floor();

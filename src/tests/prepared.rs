@@ -1,4 +1,4 @@
-//! What a view compiles while weathers come and go, with and without a rehearsal of them.
+//! Pipelines that a view creates while weathers come and go, with and without a rehearsal of them.
 
 use std::{sync::Arc, time::Duration};
 

@@ -45,7 +45,7 @@ fn a_rehearsal_goes_on_until_it_is_done_and_keeps_the_context() {
         calls += 1;
         assert_eq!(hash(world.context), before);
     }
-    assert_eq!(calls, 21, "eleven moments each, one a call, and the last call is done");
+    assert_eq!(calls, 37, "nineteen moments each, one a call, and the last call is done");
     assert_eq!(prepare(&world, &[WK_STAGE_BACKGROUND, WK_STAGE_MEDIUM | WK_STAGE_TONE], &weathers(1), 60.0).0, WK_OK);
     assert_eq!(prepare(&world, &[], &[], 0.0).0, WK_OK, "no weather is no work");
     assert_eq!(hash(world.context), before);

@@ -1,5 +1,5 @@
-//! `lab run FILE`: the frames of a scripted day, as `cargo bench --bench speed -- run` writes them to a file: a chart of
-//! their times over the day, and a part of the page.
+//! `lab run FILE`: the frames of a scripted day, as `cargo bench --bench speed -- run` writes them to a file: a chart
+//! of their times over the day, and a part of the page.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,5 @@
-//! `probe soil-force`, `probe soil-wall`, `probe soil-sinkage`, `probe soil-heap`: the laws of soil, and heaps poured by
-//! the rule of the stepped ground. Gravity is 9.81 m/s^2.
+//! `probe soil-force`, `probe soil-wall`, `probe soil-sinkage`, `probe soil-heap`: the laws of soil, and heaps poured
+//! by the rule of the stepped ground. Gravity is 9.81 m/s^2.
 
 use welkin::{
     Result,
@@ -12,8 +12,8 @@ use welkin::{
 use crate::csv::{Column, Row, Table};
 
 /// Needs the columns `rake_deg` (\[3, 145\]), `soil_metal_deg` and `phi_deg` (\[0, 65\]), `density_kg_m3`
-/// (\[1, 10 000\]), `c_kpa` and `ca_kpa` (\[0, 10 000\]), `width_m` and `depth_m` (\[0, 100\]). Answers with the cutting
-/// force of Reece and McKyes, `force_n`.
+/// (\[1, 10 000\]), `c_kpa` and `ca_kpa` (\[0, 10 000\]), `width_m` and `depth_m` (\[0, 100\]). Answers with the
+/// cutting force of Reece and McKyes, `force_n`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input, and for angles at which no plane of failure exists.
@@ -50,8 +50,8 @@ pub fn forces(text: &str) -> Result<String> {
     Ok(table.answered("force_n", answers.map(answer).collect::<Result<Vec<_>>>()?))
 }
 
-/// Needs the columns `c_kpa` (\[0, 10 000\]), `phi_deg` (\[0, 85\]) and `density_kg_m3` (\[1, 10 000\]). Answers with the
-/// height at which an upright wall fails, `critical_height_m`.
+/// Needs the columns `c_kpa` (\[0, 10 000\]), `phi_deg` (\[0, 85\]) and `density_kg_m3` (\[1, 10 000\]). Answers with
+/// the height at which an upright wall fails, `critical_height_m`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.
@@ -69,9 +69,10 @@ pub fn walls(text: &str) -> Result<String> {
     Ok(table.answered("critical_height_m", answers))
 }
 
-/// Needs the columns `kc` (\[0, 1e6\] kN/m^(n+1)), `kphi` (\[0, 1e8\] kN/m^(n+2)), `n` (\[0.05, 3\]), `b_m` (\[0.001, 100\])
-/// and `p_kpa` (\[0, 1e6\]). Answers with Bekker's sinkage of a plate without an upper limit, `sinkage_m`. Also returns
-/// a warning for each row beyond the range of such sets: n below 0.3, or a plate that sinks by more than its width.
+/// Needs the columns `kc` (\[0, 1e6\] kN/m^(n+1)), `kphi` (\[0, 1e8\] kN/m^(n+2)), `n` (\[0.05, 3\]), `b_m` (\[0.001,
+/// 100\]) and `p_kpa` (\[0, 1e6\]). Answers with Bekker's sinkage of a plate without an upper limit, `sinkage_m`. Also
+/// returns a warning for each row beyond the range of such sets: n below 0.3, or a plate that sinks by more than its
+/// width.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input.

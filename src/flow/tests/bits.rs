@@ -1,4 +1,4 @@
-//! The same bits from groups of values as from one value after another.
+//! Tests that groups of values give the bits of one value after another.
 
 use glam::{DVec2, DVec3, dvec3};
 

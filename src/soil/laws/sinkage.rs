@@ -98,8 +98,8 @@ impl SinkageSet {
     }
 }
 
-/// Reece's description, with moduli without dimension: p = (c kc' + gamma b kphi') (z / b)^n (Reece 1964; Wong and Reece
-/// 1967).
+/// Reece's description, with moduli without dimension: p = (c kc' + gamma b kphi') (z / b)^n (Reece 1964; Wong and
+/// Reece 1967).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReeceSet {
     /// Cohesive modulus kc'.
