@@ -248,6 +248,7 @@ impl Bins {
     }
 
     /// Returns the variance of what is drawn, m^2.
+    #[cfg(test)]
     pub fn variance_m2(&self) -> f64 {
         self.waves_m2.iter().chain(&self.tiles_m2).flatten().sum()
     }

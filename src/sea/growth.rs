@@ -222,7 +222,7 @@ impl GrowthState {
             return kept + (self.m0_m2 - kept) * libm::exp(-dt_s / PEAK_TIME_S);
         }
         // The fetch that would have raised this sea grows as F^0.67 = t U^0.34 g^0.33 / 77.23.
-        let rate = libm::pow(f.wind_m_s, 0.34) * libm::pow(GRAVITY_M_S2, 0.33) / DURATION;
+        let rate = 1.0 / time_of_fetch_s(f.wind_m_s, 1.0);
         let now = libm::pow(fetch_of_variance_m(f.wind_m_s, self.m0_m2), DURATION_POWER);
         let fetch = libm::pow(now + rate * dt_s, 1.0 / DURATION_POWER);
         kept.min(fetch_variance_m2(f.wind_m_s, fetch))

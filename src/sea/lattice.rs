@@ -11,7 +11,7 @@
 //! equally strong; every amplitude is a continuous function of the spectrum; and the energy of each half octave is kept
 //! exactly.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec2;
 
@@ -36,8 +36,6 @@ const THRESHOLD: f64 = 1.0 / 335.0;
 const BEGIN: f64 = 0.94;
 /// Share of a cell's measure that counts energy; the rest counts slope, so that short waves are not too few.
 const ENERGY_SHARE: f64 = 0.93;
-/// Part of a cell over which its wave's place is spread.
-const JITTER: f64 = 0.95;
 
 /// Power by which the energy per octave falls over frequency above the peak (JONSWAP's tail).
 const TAIL_POWER: f64 = 4.0;
@@ -98,13 +96,12 @@ impl LatticeCell {
     fn wave(&self, seed: u64, energy_m2: f64, depth_m: f64) -> SeaWave {
         let numbers = [self.bin, self.bins, self.direction, self.directions];
         let name = numbers.into_iter().fold(0u64, |name, number| (name << 16) | number as u64);
-        let mut chance = RandomStream::new(seed, mixed(name));
-        let mut inside = || 0.5 + JITTER * (chance.even() - 0.5);
+        let mut chance = Chance::new(seed, mixed(name));
         // Wide cells lie in the tail, whose energy per octave falls as w^-4: there the place follows the energy.
         let bin = std::f64::consts::LN_2 / BINS_PER_OCTAVE as f64;
         let falls = 1.0 - libm::exp(-TAIL_POWER * bin * self.bins as f64);
-        let w = bin_rad_s(self.bin as f64 - libm::log(1.0 - inside() * falls) / (TAIL_POWER * bin));
-        let angle = (self.direction as f64 + inside() * self.directions as f64) * TAU / DIRECTIONS as f64;
+        let w = bin_rad_s(self.bin as f64 - libm::log(1.0 - chance.even() * falls) / (TAIL_POWER * bin));
+        let angle = (self.direction as f64 + chance.even() * self.directions as f64) * TAU / DIRECTIONS as f64;
         let phase = chance.even();
         let (sin, cos) = libm::sincos(angle);
         let k = wave_number(w, depth_m);
@@ -202,6 +199,8 @@ pub(super) fn list(bins: &Bins, seed: u64, depth_m: f64, waves: &mut Vec<SeaWave
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::super::bins::{Spreading, WaveSystem};
     use super::super::spreading::beta_of_width;
     use super::*;

@@ -166,16 +166,12 @@ pub(crate) struct SeaSurface {
 }
 
 /// The particle that is at a place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SolvedParticle {
+struct SolvedParticle {
     /// Its place at rest.
     rest: DVec2,
     moved: Displacement,
     /// The place asked for minus that of the particle, m.
     off: DVec2,
-    /// Its length, and the number of steps.
-    pub off_m: f64,
-    pub steps: usize,
 }
 
 /// Waves of a query.
@@ -231,7 +227,7 @@ impl SeaSurface {
     pub fn at(&self, place_m: DVec2, shortest_m: f64) -> SeaPoint {
         let included = self.included(shortest_m);
         let mut phases = Phases([[[0.0; LANES]; 2]; MOST_GROUPS]);
-        let SolvedParticle { rest, moved, off, .. } = self.solve(place_m, &included, &mut phases);
+        let SolvedParticle { rest, moved, off } = self.solve(place_m, &included, &mut phases, MOST_STEPS);
         let motion = self.motion(rest, &included, &phases);
         let slope = transposed_inverse_times(&moved.slopes, motion.slope);
         let height = motion.height + included.raised_m + slope.dot(off);
@@ -254,25 +250,33 @@ impl SeaSurface {
         }
     }
 
-    /// Returns how far from a place the solution for it is, and the steps that it took.
+    /// Returns how far from a place the solution for it is after some steps, m.
     #[cfg(test)]
-    pub(super) fn solved_off(&self, place_m: DVec2) -> SolvedParticle {
-        self.solve(place_m, &self.included(0.0), &mut Phases([[[0.0; LANES]; 2]; MOST_GROUPS]))
+    pub(super) fn solved_off_m(&self, place_m: DVec2, steps: usize) -> f64 {
+        let mut phases = Phases([[[0.0; LANES]; 2]; MOST_GROUPS]);
+        self.solve(place_m, &self.included(0.0), &mut phases, steps).off.length()
     }
 
-    /// Solves for the particle that is at a place, and leaves the phases there.
-    fn solve(&self, place_m: DVec2, included: &IncludedWaves, phases: &mut Phases) -> SolvedParticle {
+    /// Solves for the particle that is at a place in at most so many steps, and leaves the phases there.
+    fn solve(
+        &self,
+        place_m: DVec2,
+        included: &IncludedWaves,
+        phases: &mut Phases,
+        most_steps: usize,
+    ) -> SolvedParticle {
         let mut rest = place_m;
         let mut moved = self.displacement(rest, included, phases);
-        let mut steps = 0;
         let mut off = -moved.shift;
-        while off.length_squared() > SOLVED_M * SOLVED_M && steps < MOST_STEPS {
+        for _ in 0..most_steps {
+            if off.length_squared() <= SOLVED_M * SOLVED_M {
+                break;
+            }
             rest += inverse_times(&moved.slopes, off);
             moved = self.displacement(rest, included, phases);
             off = place_m - rest - moved.shift;
-            steps += 1;
         }
-        SolvedParticle { rest, moved, off_m: off.length(), off, steps }
+        SolvedParticle { rest, moved, off }
     }
 
     /// Returns what a query with this shortest wave sums, and what it leaves out.

@@ -79,7 +79,7 @@ fn heights(surface: &SeaSurface, origin: DVec2, length_m: f64, side: u32) -> (f6
 #[test]
 fn heights_and_mean_level_are_those_asked() {
     let lengths: &[f64] = if accepts() { &[5.0, 10.0, 25.0, 60.0, 120.0, 200.0, 350.0, 600.0] } else { &[5.0, 190.0] };
-    let (seeds, side) = if accepts() { (24, 200) } else { (1, 250) };
+    let (seeds, side) = if accepts() { (24, 230) } else { (1, 250) };
     let (mut worst, mut lowest) = (0.0f64, 0.0f64);
     for &length in lengths {
         let tp = (TAU * length / 9.81f64).sqrt();
@@ -117,16 +117,19 @@ fn swells_and_depths_keep_their_heights_too() {
 #[test]
 fn queries_solve_for_the_place_within_their_bound() {
     let mut sea = TestSea::of(9.0, 11.0, 4000.0, 11);
+    let mut worst = [0.0f64; 4];
     for time in [0.0, 1e5, 1e7] {
         let surface = sea.surface(time);
         for i in 0..400 {
             let place = DVec2::new(1e6 + 13.7 * f64::from(i), -1e6 + 7.3 * f64::from(i * i));
             let point = surface.at(place, 0.0);
-            let found = surface.solved_off(place);
-            assert!(found.off_m < 1e-3 && found.steps <= 6, "{time} {place}: {found:?}");
+            let off = [1, 2, 3, 12].map(|steps| surface.solved_off_m(place, steps));
+            worst.iter_mut().zip(off).for_each(|(worst, off): (&mut f64, f64)| *worst = worst.max(off));
             assert!(point.height_error_m < 0.01 && point.height_m.abs() < 15.0, "{point:?}");
         }
     }
+    println!("off by {worst:.4?} m at most after 1, 2, 3 and 12 steps");
+    assert!(worst[1] < 0.2 && worst[2] < 0.02 && worst[3] < 5.1e-4, "{worst:?}");
 }
 
 #[test]
