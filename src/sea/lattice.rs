@@ -96,7 +96,7 @@ impl LatticeCell {
     fn wave(&self, seed: u64, energy_m2: f64, depth_m: f64) -> SeaWave {
         let numbers = [self.bin, self.bins, self.direction, self.directions];
         let name = numbers.into_iter().fold(0u64, |name, number| (name << 16) | number as u64);
-        let mut chance = Chance::new(seed, mixed(name));
+        let mut chance = RandomStream::new(seed, mixed(name));
         // Wide cells lie in the tail, whose energy per octave falls as w^-4: there the place follows the energy.
         let bin = std::f64::consts::LN_2 / BINS_PER_OCTAVE as f64;
         let falls = 1.0 - libm::exp(-TAIL_POWER * bin * self.bins as f64);
