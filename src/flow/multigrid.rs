@@ -394,9 +394,13 @@ pub(super) struct Levels(pub Vec<GridLevel>);
 impl Levels {
     pub(super) fn new(finest: GridLevel) -> Self {
         let mut levels = vec![finest];
-        while let Some((join, next)) = levels.last().and_then(GridLevel::coarser) {
+        while let Some((join, mut next)) = levels.last().and_then(GridLevel::coarser) {
             if let Some(last) = levels.last_mut() {
                 last.join = join;
+                if join[0] == 2 {
+                    // Cycles allocate nothing.
+                    next.lay_out(last);
+                }
             }
             levels.push(next);
         }
