@@ -241,7 +241,7 @@ fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
                     assert_eq!(seen.transmittance, there.transmittance, "{ray:?}");
                     for (a, b) in seen.radiance.iter().zip(there.radiance) {
                         let off = (a / b.max(1e-9) - 1.0).abs();
-                        assert!(off < 2e-3, "{off} from {from_m} m under {sun_deg}, {question:?}: {ray:?}");
+                        assert!(off < 3e-3, "{off} from {from_m} m under {sun_deg}, {question:?}: {ray:?}");
                         worst = worst.max(off);
                     }
                 }

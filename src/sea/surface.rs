@@ -72,7 +72,7 @@ struct WaveGroup {
 
 /// The single waves at the surface's time, long waves first.
 #[derive(Clone, Debug, Default)]
-struct Lanes {
+struct WaveLanes {
     groups: Vec<WaveGroup>,
     /// Sums over a wave and all longer ones: variance, and lowering of the mean level.
     variance_m2: Vec<f64>,
@@ -81,7 +81,7 @@ struct Lanes {
     length_m: Vec<f64>,
 }
 
-impl Lanes {
+impl WaveLanes {
     fn fill(&mut self, waves: &[SeaWave], time_s: f64) {
         self.groups.clear();
         for list in [&mut self.variance_m2, &mut self.lowering_m, &mut self.length_m] {
@@ -158,7 +158,7 @@ pub(super) struct StillSea {
 /// The surface at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct SeaSurface {
-    lanes: Lanes,
+    lanes: WaveLanes,
     tiles: Vec<TileFields>,
     still: StillSea,
     /// Variance of all that is drawn, m^2.
@@ -196,7 +196,7 @@ impl SeaSurface {
             longest_m: 1.0,
         };
         let tiles = (0..TILES).map(|_| none()).collect();
-        Self { lanes: Lanes::default(), tiles, still: StillSea::default(), variance_m2: 0.0 }
+        Self { lanes: WaveLanes::default(), tiles, still: StillSea::default(), variance_m2: 0.0 }
     }
 
     /// Takes over waves, which must be sorted from long to short, and tiles at a time.

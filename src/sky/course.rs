@@ -284,6 +284,9 @@ mod tests {
             let (rows, whole) = drawn(400, motion);
             assert!(whole <= 20, "{whole} of 400 frames draw whole tables");
             assert!((30 * ROWS..56 * ROWS).contains(&rows), "{rows} rows: one table in about eleven frames");
+            // A camera that climbs by 5 cm in each frame draws the 40 rows of a table within 400 frames.
+            let (rows, whole) = drawn(2400, |i| sun(10.0 + 0.05 * i, 0.7));
+            assert!(whole <= 4 && (5 * ROWS..8 * ROWS).contains(&rows), "{rows} rows, {whole} whole");
         }
         // The real sun, at 60 frames/s: 20 times the near bound of 2e-5 takes 333 frames, which draw 40 rows.
         let (rows, whole) = drawn(4000, |i| sun(10.0, 0.7 - 1.2e-6 * i));

@@ -142,7 +142,7 @@ pub struct Observer {
     pub refraction: f64,
     /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while a lamp
     /// moves by less than 2e-5 rad and the altitude changes by less than 0.2 %, or by less than a thousandth of the
-    /// air's smallest scale height (1.2 m in clear air). Kept tables are off by at most 0.2 %.
+    /// air's smallest scale height (1.2 m in clear air). Kept tables are off by at most 0.3 %.
     pub exact: bool,
 }
 

@@ -33,12 +33,12 @@ pub(super) struct SoilField {
     sweeps: u64,
     /// Incremented with each step in which something changed.
     pub revision: u64,
-    scratch: Scratch,
+    scratch: SlideBuffers,
 }
 
 /// Heights and grades of a patch with its margin, and lists that are filled anew in each sweep.
 #[derive(Clone, Debug, Default)]
-struct Scratch {
+struct SlideBuffers {
     heights: Vec<f64>,
     grades: Vec<f64>,
     next: Vec<u32>,
@@ -47,10 +47,10 @@ struct Scratch {
 
 impl SoilField {
     pub fn new(materials: SoilMaterials) -> Self {
-        let margin = Scratch {
+        let margin = SlideBuffers {
             heights: vec![f64::NAN; WIDE * WIDE],
             grades: vec![f64::INFINITY; WIDE * WIDE],
-            ..Scratch::default()
+            ..SlideBuffers::default()
         };
         Self {
             materials,
@@ -205,7 +205,7 @@ impl SoilField {
     /// Copies the heights and grades of a patch and of the cells around it.
     fn gather(&mut self, slot: u32) {
         let patch = &self.patches[slot as usize];
-        let Scratch { heights, grades, .. } = &mut self.scratch;
+        let SlideBuffers { heights, grades, .. } = &mut self.scratch;
         for row in 0..SIDE {
             let (from, first) = (row * SIDE, wide(row * SIDE));
             heights[first..first + SIDE].copy_from_slice(&patch.surface[from..from + SIDE]);

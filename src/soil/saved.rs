@@ -10,7 +10,7 @@ use super::{
     patch::{CELLS, Pressed, SoilPatch, UndugGround},
     site::{SoilSite, SoilSiteDesc},
     tool::{SoilToolPose, SoilToolShape},
-    work::{PassedCell, SoilTool, StepWork},
+    work::{PassedCell, SoilTool, ToolWork},
 };
 use crate::{
     error::{Error, Result, Status, toml_fault},
@@ -192,7 +192,7 @@ impl SavedTool {
             is_ended: self.is_ended,
             content: SoilParcel { depth: self.depth, masses },
             passed,
-            work: StepWork { cut_m3, area_m2, way_m, kind: usize::from(kind), sinkage_m, is_clamped },
+            work: ToolWork { cut_m3, area_m2, way_m, kind: usize::from(kind), sinkage_m, is_clamped },
         })
     }
 }

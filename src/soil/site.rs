@@ -9,7 +9,7 @@ use super::{
     patch::UndugGround,
     tool::{MAX_SOIL_TOOLS, SoilToolId, SoilToolPose, SoilToolShape},
     walls::break_walls,
-    work::{Place, SoilTool, StepWork, pour},
+    work::{Place, SoilTool, ToolWork, pour},
 };
 use crate::error::{Error, Result, Status, check_range};
 
@@ -193,7 +193,7 @@ impl SoilSite {
             is_ended: false,
             content: SoilParcel::default(),
             passed: Vec::new(),
-            work: StepWork::default(),
+            work: ToolWork::default(),
         });
         self.idle = 0;
         Ok(SoilToolId(id))
@@ -330,7 +330,7 @@ impl SoilSite {
         // The others stay where they are: what is poured may land in them.
         let mut tool = self.tools.remove(index);
         let mut place = Place { field: &mut self.field, ground };
-        tool.work = StepWork::default();
+        tool.work = ToolWork::default();
         let moves = !tool.poses.is_empty();
         while let Some(next) = tool.poses.first().copied() {
             if next.time_s > end_s {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{
     field::{SoilCell, SoilField},
     kind::BUILT_IN,
-    laws::{SinkageSet, WallLaw, WheelLoad},
+    laws::{SinkageSet, WheelLoad},
     material::{DEPTH_UNITS, SoilMaterials, depth_units},
     walls::break_walls,
     *,

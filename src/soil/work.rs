@@ -37,7 +37,7 @@ pub(super) struct PassedCell {
 
 /// Work of a tool in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct StepWork {
+pub(super) struct ToolWork {
     /// Volume that was cut, before it swelled, m^3.
     pub cut_m3: f64,
     /// Area that the edge passed in the ground, m^2.
@@ -66,7 +66,7 @@ pub(super) struct SoilTool {
     pub content: SoilParcel,
     /// Cells of the present pass, in the order of their places.
     pub passed: Vec<PassedCell>,
-    pub work: StepWork,
+    pub work: ToolWork,
 }
 
 /// Site as tools find it.

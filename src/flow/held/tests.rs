@@ -191,7 +191,7 @@ fn led_by(scheme: Scheme, pressure: PressureMethod) -> (DVec3, toml::Table) {
     let mut loaded = HeldFlow::read(&other.world, &mut state.clone()).expect("a field");
     other.flow.swap_in(&mut other.world, &mut loaded);
     assert_eq!(other.flow.live.as_ref().map(|live| live.desc), Some(desc));
-    [&mut bench, &mut other].map(|bench| bench.to(4.0));
+    [&mut bench, &mut other].into_iter().for_each(|bench| bench.to(4.0));
     assert!(other.saved() == bench.saved(), "{scheme:?} {pressure:?}");
     (bench.wind(dvec3(2.0, 0.0, 3.0)), state)
 }
