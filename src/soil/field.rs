@@ -31,14 +31,16 @@ pub(super) struct SoilField {
     barred: Vec<u32>,
     /// Number of the sweep.
     sweeps: u64,
+    /// Whether any bank has lost its hold.
+    pub has_broken: bool,
     /// Incremented with each step in which something changed.
     pub revision: u64,
-    scratch: SlideBuffers,
+    scratch: SweepScratch,
 }
 
 /// Heights and grades of a patch with its margin, and lists that are filled anew in each sweep.
 #[derive(Clone, Debug, Default)]
-struct SlideBuffers {
+struct SweepScratch {
     heights: Vec<f64>,
     grades: Vec<f64>,
     next: Vec<u32>,
@@ -47,10 +49,10 @@ struct SlideBuffers {
 
 impl SoilField {
     pub fn new(materials: SoilMaterials) -> Self {
-        let margin = SlideBuffers {
+        let margin = SweepScratch {
             heights: vec![f64::NAN; WIDE * WIDE],
             grades: vec![f64::INFINITY; WIDE * WIDE],
-            ..SlideBuffers::default()
+            ..SweepScratch::default()
         };
         Self {
             materials,
@@ -60,6 +62,7 @@ impl SoilField {
             changed: Vec::new(),
             barred: Vec::new(),
             sweeps: 1,
+            has_broken: false,
             revision: 0,
             scratch: margin,
         }
@@ -205,7 +208,7 @@ impl SoilField {
     /// Copies the heights and grades of a patch and of the cells around it.
     fn gather(&mut self, slot: u32) {
         let patch = &self.patches[slot as usize];
-        let SlideBuffers { heights, grades, .. } = &mut self.scratch;
+        let SweepScratch { heights, grades, .. } = &mut self.scratch;
         for row in 0..SIDE {
             let (from, first) = (row * SIDE, wide(row * SIDE));
             heights[first..first + SIDE].copy_from_slice(&patch.surface[from..from + SIDE]);
@@ -361,6 +364,7 @@ impl SoilField {
             self.changed.push(slot);
         }
         patch.is_unchecked = is_unchecked;
+        self.has_broken |= patch.broken.contains(&true);
         if is_awake {
             self.awake.push(slot);
         }
@@ -395,6 +399,9 @@ impl SoilField {
 
     /// Forgets which banks had lost their hold, once nothing moves.
     pub fn rest(&mut self) {
+        if !std::mem::take(&mut self.has_broken) {
+            return;
+        }
         for patch in self.patches.iter_mut().filter(|patch| patch.broken.contains(&true)) {
             for cell in 0..CELLS {
                 if std::mem::take(&mut patch.broken[cell]) {

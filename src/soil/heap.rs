@@ -20,9 +20,9 @@ pub const HEAP_AZIMUTHS_DEG: [f64; 5] = [0.0, 11.25, 22.5, 33.75, 45.0];
 /// Radius of a heap, in cells.
 const RADIUS_CELLS: [f64; 2] = [3.0, 160.0];
 
-struct HeapLevel;
+struct LevelGround;
 
-impl UndugGround for HeapLevel {
+impl UndugGround for LevelGround {
     fn height_m(&self, _cell: [i32; 2]) -> Option<f64> {
         Some(0.0)
     }
@@ -53,12 +53,12 @@ pub fn heap_radii_m(volume_m3: f64, repose_deg: f64, cell_m: f64) -> Result<[f64
     for part in 0..PARTS {
         let poured = mass * (part + 1) / PARTS - mass * part / PARTS;
         let parcel = field.materials.loose(0, poured);
-        if let Some(cell) = field.find_or_add([0, 0], &HeapLevel) {
+        if let Some(cell) = field.find_or_add([0, 0], &LevelGround) {
             field.put(cell, &parcel);
         }
-        field.settle(between, &HeapLevel);
+        field.settle(between, &LevelGround);
     }
-    field.settle(last, &HeapLevel);
+    field.settle(last, &LevelGround);
     Ok(HEAP_AZIMUTHS_DEG.map(|azimuth| radius_at(&field, azimuth.to_radians())))
 }
 

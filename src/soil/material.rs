@@ -34,8 +34,8 @@ pub(super) struct SoilParcel {
 }
 
 impl SoilParcel {
-    pub fn mass(&self) -> i64 {
-        self.masses.iter().sum()
+    pub fn mass(&self) -> i128 {
+        self.masses.iter().map(|mass| i128::from(*mass)).sum()
     }
 
     pub fn add(&mut self, other: &Self) {

@@ -197,7 +197,7 @@ impl SoilPatch {
 
     /// Mass of the bank that was taken.
     pub fn dug(&self, materials: &SoilMaterials) -> i128 {
-        self.cut.iter().map(|cut| i128::from(materials.dug(0, *cut).mass())).sum()
+        self.cut.iter().map(|cut| materials.dug(0, *cut).mass()).sum()
     }
 }
 

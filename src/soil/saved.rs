@@ -1,5 +1,7 @@
 //! Saved form of a site as text. Depths and masses are whole numbers; a run of equal ones is written as "bits*times".
 
+use std::collections::VecDeque;
+
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -19,6 +21,10 @@ use crate::{
 
 /// Largest number of patches of a saved site.
 const MOST_PATCHES: usize = 1 << 20;
+/// Largest cut, loose depth and mass of a kind on a cell: far more than a site can reach, and safe to add.
+const MOST_CUT: i64 = 1 << 28;
+const MOST_LOOSE: i64 = 1 << 40;
+const MOST_MASS: i64 = 1 << 58;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,8 +67,8 @@ struct SavedTool {
     /// Time, edge, upper edge, facing and load of the present pose and of those that wait.
     poses: Vec<[f64; 17]>,
     passed: Vec<([i32; 2], [f64; 2])>,
-    /// Cut volume, area, way and sinkage of the last step; its kind, and whether its sinkage was limited.
-    work: ([f64; 4], u8, bool),
+    /// Cut volume, area and sinkage of the last step; its kind, and whether its sinkage was limited.
+    work: ([f64; 3], u8, bool),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -127,10 +133,10 @@ fn text(numbers: impl Iterator<Item = i64>) -> String {
     words(numbers.map(|number| number as u64))
 }
 
-/// Returns the numbers of a text, none of them negative.
-fn numbers(text: &str, count: usize) -> Option<Vec<i64>> {
+/// Returns the numbers of a text, none of them negative or more than `most`.
+fn numbers(text: &str, count: usize, most: i64) -> Option<Vec<i64>> {
     let found: Vec<i64> = values(text, count)?.into_iter().map(|number| number as i64).collect();
-    found.iter().all(|number| *number >= 0).then_some(found)
+    found.iter().all(|number| (0..=most).contains(number)).then_some(found)
 }
 
 impl SavedKind {
@@ -162,24 +168,24 @@ impl SavedTool {
             masses: text(tool.content.masses.into_iter()),
             poses: std::iter::once(&tool.pose).chain(&tool.poses).map(pose_numbers).collect(),
             passed: tool.passed.iter().map(|passed| (passed.place, [passed.share, passed.raised])).collect(),
-            work: ([work.cut_m3, work.area_m2, work.way_m, work.sinkage_m], work.kind as u8, work.is_clamped),
+            work: ([work.cut_m3, work.area_m2, work.sinkage_m], work.kind as u8, work.is_clamped),
         }
     }
 
     fn tool(&self, kinds: usize) -> Option<SoilTool> {
         let shape = shape_of(&self.shape, self.sizes).filter(|shape| shape.validate().is_ok())?;
-        let mut poses: Vec<SoilToolPose> = self.poses.iter().map(pose_of).collect();
+        let mut poses: VecDeque<SoilToolPose> = self.poses.iter().map(pose_of).collect();
         poses.iter().all(|pose| pose.validate(&shape).is_ok()).then_some(())?;
-        poses.is_sorted_by(|a, b| b.validate_after(a).is_ok()).then_some(())?;
-        let pose = if poses.is_empty() { return None } else { poses.remove(0) };
-        let masses: [i64; MAX_SOIL_KINDS] = numbers(&self.masses, MAX_SOIL_KINDS)?.try_into().ok()?;
+        poses.iter().is_sorted_by(|a, b| b.validate_after(a).is_ok()).then_some(())?;
+        let pose = poses.pop_front()?;
+        let masses: [i64; MAX_SOIL_KINDS] = numbers(&self.masses, MAX_SOIL_KINDS, MOST_MASS)?.try_into().ok()?;
         let passed: Vec<PassedCell> = self
             .passed
             .iter()
             .map(|(place, [share, raised])| PassedCell { place: *place, share: *share, raised: *raised })
             .collect();
-        let ([cut_m3, area_m2, way_m, sinkage_m], kind, is_clamped) = self.work;
-        let is_sound = self.depth >= 0
+        let ([cut_m3, area_m2, sinkage_m], kind, is_clamped) = self.work;
+        let is_sound = (0..=MOST_LOOSE).contains(&self.depth)
             && usize::from(kind) < kinds
             && masses[kinds..].iter().all(|mass| *mass == 0)
             && passed.is_sorted_by_key(|passed| [passed.place[1], passed.place[0]])
@@ -192,7 +198,7 @@ impl SavedTool {
             is_ended: self.is_ended,
             content: SoilParcel { depth: self.depth, masses },
             passed,
-            work: ToolWork { cut_m3, area_m2, way_m, kind: usize::from(kind), sinkage_m, is_clamped },
+            work: ToolWork { cut_m3, area_m2, kind: usize::from(kind), sinkage_m, is_clamped },
         })
     }
 }
@@ -218,20 +224,21 @@ impl SavedPatch {
         let key = self.key;
         key.iter().all(|k| k.abs() < 1 << 26).then_some(())?;
         let mut patch = SoilPatch::new(key, ground)?;
-        (patch.cut, patch.loose) = (numbers(&self.cut, CELLS)?, numbers(&self.loose, CELLS)?);
+        (patch.cut, patch.loose) = (numbers(&self.cut, CELLS, MOST_CUT)?, numbers(&self.loose, CELLS, MOST_LOOSE)?);
         for (kind, masses) in &self.masses {
             (usize::from(*kind) < kinds).then_some(())?;
-            patch.masses.push((*kind, numbers(masses, CELLS)?));
+            patch.masses.push((*kind, numbers(masses, CELLS, MOST_MASS)?));
         }
         patch.masses.is_sorted_by(|a, b| a.0 < b.0).then_some(())?;
         if let Some([packed, sunk, reached]) = &self.pressed {
-            let lists = [numbers(packed, CELLS)?, numbers(sunk, CELLS)?, numbers(reached, CELLS)?];
+            let list = |text: &str| numbers(text, CELLS, MOST_LOOSE);
+            let lists = [list(packed)?, list(sunk)?, list(reached)?];
             let press = |i: usize| Pressed { packed: lists[0][i], sunk: lists[1][i], reached: lists[2][i] };
             patch.pressed = (0..CELLS).map(press).collect();
             patch.pressed.iter().all(|press| press.sunk <= press.packed).then_some(())?;
         }
         if let Some(broken) = &self.broken {
-            patch.broken = numbers(broken, CELLS)?.into_iter().map(|broken| broken != 0).collect();
+            patch.broken = numbers(broken, CELLS, 1)?.into_iter().map(|broken| broken != 0).collect();
         }
         (patch.revision, patch.is_unchecked) = (self.revision, self.flags[2]);
         Some(patch)

@@ -1,5 +1,7 @@
 //! Site: ground that is dug, tools that dig it, and the steps in which both are advanced.
 
+use std::collections::VecDeque;
+
 use glam::DVec3;
 
 use super::{
@@ -9,7 +11,7 @@ use super::{
     patch::UndugGround,
     tool::{MAX_SOIL_TOOLS, SoilToolId, SoilToolPose, SoilToolShape},
     walls::break_walls,
-    work::{Place, SoilTool, ToolWork, pour},
+    work::{SoilTool, ToolWork, WorkedGround, pour},
 };
 use crate::error::{Error, Result, Status, check_range};
 
@@ -87,7 +89,7 @@ pub struct SoilPoint {
     pub revision: u64,
 }
 
-/// Load of a tool, and the ground that it meets.
+/// Content of a tool, and what it met in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolReport {
     /// Simulation time that the report is for, s.
@@ -189,7 +191,7 @@ impl SoilSite {
             id,
             shape,
             pose: known_pose(&shape, pose),
-            poses: Vec::new(),
+            poses: VecDeque::new(),
             is_ended: false,
             content: SoilParcel::default(),
             passed: Vec::new(),
@@ -208,11 +210,11 @@ impl SoilSite {
         let tool = self.live_tool(tool)?;
         pose.validate(&tool.shape)?;
         let pose = known_pose(&tool.shape, pose);
-        pose.validate_after(tool.poses.last().unwrap_or(&tool.pose))?;
+        pose.validate_after(tool.poses.back().unwrap_or(&tool.pose))?;
         if tool.poses.len() >= MOST_POSES {
             return Err(Error::range("poses.len", &format!("at most {MOST_POSES} that wait"), tool.poses.len() + 1));
         }
-        tool.poses.push(pose);
+        tool.poses.push_back(pose);
         self.idle = 0;
         Ok(())
     }
@@ -252,7 +254,7 @@ impl SoilSite {
             return Err(Error::range("mass_kg", &accepted, mass_kg));
         }
         self.field.put(cell, &parcel);
-        self.brought += i128::from(parcel.mass());
+        self.brought += parcel.mass();
         self.idle = 0;
         Ok(true)
     }
@@ -268,7 +270,7 @@ impl SoilSite {
     /// [`Status::InvalidArgument`] for a time outside \[0, 1e12\] s.
     pub fn advance(&mut self, until_s: f64, ground: &dyn UndugGround) -> Result<f64> {
         check_range("until_s", until_s, 0.0, 1e12, "s")?;
-        let last_s = |tool: &SoilTool| tool.poses.last().unwrap_or(&tool.pose).time_s;
+        let last_s = |tool: &SoilTool| tool.poses.back().unwrap_or(&tool.pose).time_s;
         let posed_s = self.tools.iter().filter(|tool| !tool.is_ended).map(last_s).fold(until_s, f64::min);
         let due = (posed_s / SOIL_STEP_S).floor() as i64;
         while self.steps < due {
@@ -296,7 +298,7 @@ impl SoilSite {
         for tool in
             self.tools.extract_if(.., |tool| tool.is_ended && tool.poses.is_empty() && tool.pose.time_s <= end_s)
         {
-            self.taken += i128::from(tool.content.mass());
+            self.taken += tool.content.mass();
             works = true;
         }
         self.field.clear_barriers(works);
@@ -329,17 +331,17 @@ impl SoilSite {
         }
         // The others stay where they are: what is poured may land in them.
         let mut tool = self.tools.remove(index);
-        let mut place = Place { field: &mut self.field, ground };
+        let mut place = WorkedGround { field: &mut self.field, ground };
         tool.work = ToolWork::default();
         let moves = !tool.poses.is_empty();
-        while let Some(next) = tool.poses.first().copied() {
+        while let Some(next) = tool.poses.front().copied() {
             if next.time_s > end_s {
                 let part = tool.pose.toward(&next, end_s);
                 tool.work_to(&part, &mut place);
                 break;
             }
             tool.work_to(&next, &mut place);
-            tool.poses.remove(0);
+            tool.poses.pop_front();
         }
         let spilled = tool.spilled(&place);
         let spills = spilled != SoilParcel::default();
@@ -357,7 +359,7 @@ impl SoilSite {
             dug: self.field.dug(),
             brought: self.brought,
             lying: self.field.lying(),
-            held: self.tools.iter().map(|tool| i128::from(tool.content.mass())).sum(),
+            held: self.tools.iter().map(|tool| tool.content.mass()).sum(),
             taken: self.taken,
         }
     }

@@ -7,6 +7,8 @@ use crate::error::{Error, Result, Status, check_range};
 
 /// Largest number of tools of a site.
 pub const MAX_SOIL_TOOLS: usize = 64;
+/// Longest time between two poses, s.
+const LONGEST_TIME_S: f64 = 600.0;
 /// Longest way of a point of a tool between two poses, m.
 const LONGEST_WAY_M: f64 = 20.0;
 
@@ -163,6 +165,10 @@ impl SoilToolPose {
         if self.time_s <= last.time_s {
             let rest = format!("must be more than {} s, that of the pose before, got {}", last.time_s, self.time_s);
             return Err(Error::about(Status::WrongOrder, "pose.time_s", rest));
+        }
+        if self.time_s > last.time_s + LONGEST_TIME_S {
+            let accepted = format!("at most {LONGEST_TIME_S} s after the pose before");
+            return Err(Error::range("pose.time_s", &accepted, self.time_s));
         }
         for (name, new, old) in [("pose.edge", &self.edge, &last.edge), ("pose.upper", &self.upper, &last.upper)] {
             for i in [0, 1] {

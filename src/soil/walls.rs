@@ -25,6 +25,9 @@ struct Fall {
 
 /// Lets walls fall that are higher than they stand, among the patches that have changed. Returns whether any falls.
 pub(super) fn break_walls(field: &mut SoilField, ground: &dyn UndugGround) -> bool {
+    if !field.patches.iter().any(|patch| patch.is_unchecked) {
+        return false;
+    }
     let lowest = field.patches.iter().flat_map(|patch| &patch.surface).fold(f64::INFINITY, |low, v| low.min(*v));
     let mut falls = Vec::new();
     for slot in field.slots.values() {
@@ -108,5 +111,6 @@ fn break_behind(field: &mut SoilField, fall: &Fall, ground: &dyn UndugGround) {
             patch.broken[cell] = true;
             patch.refresh(cell, materials);
         });
+        field.has_broken = true;
     }
 }

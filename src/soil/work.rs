@@ -1,5 +1,7 @@
 //! Work of tools on the ground: an edge cuts or presses what it passes, buckets fill, blades push, full ones spill.
 
+use std::collections::VecDeque;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -42,8 +44,6 @@ pub(super) struct ToolWork {
     pub cut_m3: f64,
     /// Area that the edge passed in the ground, m^2.
     pub area_m2: f64,
-    /// Way of the middle of the edge, m.
-    pub way_m: f64,
     /// Kind that most of the cut soil is of.
     pub kind: usize,
     /// Deepest sinkage of a wheel or track, m.
@@ -60,7 +60,7 @@ pub(super) struct SoilTool {
     /// Pose up to which the ground was worked.
     pub pose: SoilToolPose,
     /// Later poses.
-    pub poses: Vec<SoilToolPose>,
+    pub poses: VecDeque<SoilToolPose>,
     /// Whether the host has sent the last pose.
     pub is_ended: bool,
     pub content: SoilParcel,
@@ -70,12 +70,12 @@ pub(super) struct SoilTool {
 }
 
 /// Site as tools find it.
-pub(super) struct Place<'a> {
+pub(super) struct WorkedGround<'a> {
     pub field: &'a mut SoilField,
     pub ground: &'a dyn UndugGround,
 }
 
-impl Place<'_> {
+impl WorkedGround<'_> {
     fn cell_m(&self) -> f64 {
         self.field.materials.cell_m
     }
@@ -154,11 +154,10 @@ impl SoilTool {
     }
 
     /// Works the ground from the present pose to another, in parts of at most a cell.
-    pub fn work_to(&mut self, end: &SoilToolPose, place: &mut Place<'_>) {
+    pub fn work_to(&mut self, end: &SoilToolPose, place: &mut WorkedGround<'_>) {
         let start = self.pose;
         let ways = [0, 1].map(|i| (end.edge[i] - start.edge[i]).truncate().length());
         let parts = (ways[0].max(ways[1]) / place.cell_m()).ceil().clamp(1.0, 1e5) as u32;
-        self.work.way_m += 0.5 * (ways[0] + ways[1]);
         for part in 1..=parts {
             let t = f64::from(part) / f64::from(parts);
             let time_s = start.time_s + (end.time_s - start.time_s) * t;
@@ -176,7 +175,7 @@ impl SoilTool {
 
     /// Cuts what the edge passes. Soil in front of the opening goes into the bucket while it has room; the rest is
     /// pushed ahead.
-    fn cut(&mut self, edges: [[DVec3; 2]; 2], next: &SoilToolPose, place: &mut Place<'_>) {
+    fn cut(&mut self, edges: [[DVec3; 2]; 2], next: &SoilToolPose, place: &mut WorkedGround<'_>) {
         let [start, end] = edges;
         let motion = (0.5 * (end[0] + end[1] - start[0] - start[1])).truncate();
         let is_loading = next.ahead().dot(motion) > 0.0;
@@ -206,7 +205,7 @@ impl SoilTool {
     }
 
     /// Returns the depth, in units over the whole cell, that an edge takes from its part of a cell.
-    fn cut_depth(&mut self, part: &CellShare, place: &mut Place<'_>) -> Option<(SoilCell, i64)> {
+    fn cut_depth(&mut self, part: &CellShare, place: &mut WorkedGround<'_>) -> Option<(SoilCell, i64)> {
         let index = self.passed_at(part.place);
         let top = place.surface(part.place)?;
         let passed = &mut self.passed[index];
@@ -242,7 +241,7 @@ impl SoilTool {
     }
 
     /// Presses what the line of contact passes, by the sinkage of each cell's soil.
-    fn press(&mut self, [start, end]: [[DVec3; 2]; 2], next: &SoilToolPose, place: &mut Place<'_>) {
+    fn press(&mut self, [start, end]: [[DVec3; 2]; 2], next: &SoilToolPose, place: &mut WorkedGround<'_>) {
         if next.load_n <= 0.0 {
             return;
         }
@@ -306,7 +305,7 @@ impl SoilTool {
     }
 
     /// Whether the ground in front of the opening is higher than the cutting edge.
-    fn is_in_ground(&self, place: &Place<'_>) -> bool {
+    fn is_in_ground(&self, place: &WorkedGround<'_>) -> bool {
         let pose = &self.pose;
         let ahead = pose.ahead() * AHEAD_CELLS;
         let sum: f64 = [0.25, 0.5, 0.75]
@@ -321,7 +320,7 @@ impl SoilTool {
     }
 
     /// Soil that the tool cannot hold at its tilt.
-    pub fn spilled(&mut self, place: &Place<'_>) -> SoilParcel {
+    pub fn spilled(&mut self, place: &WorkedGround<'_>) -> SoilParcel {
         let materials = &place.field.materials;
         let Some(hold) = self.shape.hold().filter(|_| self.content != SoilParcel::default()) else {
             return SoilParcel::default();
@@ -362,7 +361,7 @@ pub(super) fn pour(
     parcel: SoilParcel,
     pose: &SoilToolPose,
     catchers: &mut [SoilTool],
-    place: &mut Place<'_>,
+    place: &mut WorkedGround<'_>,
 ) -> SoilParcel {
     let edge = pose.pouring_edge();
     let points = (2.0 * (edge[1] - edge[0]).length() / place.cell_m()).ceil().clamp(1.0, 4096.0) as i64;

@@ -11,9 +11,9 @@ use welkin::{
 
 use crate::csv::{Column, Row, Table};
 
-/// Needs the columns `rake_deg` (\[3, 145\]), `soil_metal_deg` and `phi_deg` (\[0, 65\]), `density_kg_m3`
-/// (\[1, 10 000\]), `c_kpa` and `ca_kpa` (\[0, 10 000\]), `width_m` and `depth_m` (\[0, 100\]). Answers with the
-/// cutting force of Reece and McKyes, `force_n`.
+/// Needs the columns `rake_deg` (\[3, 145\]), `soil_metal_deg` and `phi_deg` (\[0, 65\]), `density_kg_m3` (\[1, 10
+/// 000\]), `c_kpa` and `ca_kpa` (\[0, 10 000\]), `width_m` and `depth_m` (\[0, 100\]). Answers with the cutting force
+/// of Reece and McKyes, `force_n`.
 ///
 /// # Errors
 /// [`welkin::Status::Parse`] with line and column for wrong input, and for angles at which no plane of failure exists.
