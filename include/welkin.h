@@ -5207,8 +5207,8 @@ typedef uint32_t wk_wind_pressure;
 /** Conjugate gradients preconditioned by multigrid V-cycles, until the remaining divergence is small. */
 #define WK_WIND_PRESSURE_MULTIGRID 0
 /**
- * Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With few
- * iterations air is made and lost behind obstacles.
+ * Red-black successive over-relaxation, until the remaining divergence is small or most_iterations is reached. With
+ * few iterations air is made and lost behind obstacles.
  */
 #define WK_WIND_PRESSURE_RELAXATION 1
 
