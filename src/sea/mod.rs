@@ -6,13 +6,13 @@
 //!
 //! # Model
 //! * [`spectrum`]: JONSWAP with the depth function of TMA. The height comes from the host, from the weather, or from
-//!   one law of growth ([`growth`](self): Kahma and Calkoen 1992 by fetch and duration, capped by Pierson and Moskowitz
-//!   1964); the level of the spectrum is solved for it. [`spreading`] is Donelan and Banner's, for swells narrowed by
-//!   Horvath's (2015) parameter.
+//!   one law of growth (Kahma and Calkoen 1992 by fetch and duration, capped by Pierson and Moskowitz 1964); the level
+//!   of the spectrum is solved for it. [`spreading`] is Donelan and Banner's, for swells narrowed by Horvath's (2015)
+//!   parameter.
 //! * Waves longer than about a tenth of those at the peak are single waves on a fixed lattice of frequencies and
 //!   directions, 160 to 256 at a time. They do not repeat.
-//! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about 0.6
-//!   % of the variance, and half of the slopes. They end where the slopes of all drawn waves reach Cox and Munk's
+//! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about
+//!   0.6 % of the variance, and half of the slopes. They end where the slopes of all drawn waves reach Cox and Munk's
 //!   (1954) for the wind, at the latest at 45 times the wave number where they begin; the rest is known by its
 //!   variance.
 //! * Every wave has a fixed frequency, direction and phase and an amplitude that follows the spectrum: no random
@@ -34,8 +34,9 @@
 //!
 //! # Error
 //! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
-//! exact; the place of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Waves are linear: crests of
-//! steep seas are some percent too low, and the surface's heights are hardly skewed.
+//! of frequency exact, but for the strengthening by less than 1 % that narrow crests need to keep the height; the place
+//! of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Waves are linear: crests of steep seas are
+//! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
 //! No drawing, no shore, hulls, wakes or ice on the surface, no outlines of lakes, no memory of foam: their laws are
