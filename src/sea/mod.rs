@@ -10,7 +10,7 @@
 //!   of the spectrum is solved for it. [`spreading`] is Donelan and Banner's, for swells narrowed by Horvath's (2015)
 //!   parameter.
 //! * Waves longer than about a tenth of those at the peak are single waves on a fixed lattice of frequencies and
-//!   directions, 160 to 256 at a time. They do not repeat.
+//!   directions, 250 to 310 at a time. They do not repeat.
 //! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about
 //!   0.6 % of the variance, and half of the slopes. They end where the slopes of all drawn waves reach Cox and Munk's
 //!   (1954) for the wind, at the latest at 45 times the wave number where they begin; the rest is known by its
