@@ -35,7 +35,8 @@
 //! # Error
 //! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
 //! of frequency exact, but for the strengthening by less than 1 % that narrow crests need to keep the height; the place
-//! of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Waves are linear: crests of steep seas are
+//! of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Heights 300 m to 5 km
+//! apart correlate by at most 0.26 more than the spectrum's own do. Waves are linear: crests of steep seas are
 //! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
