@@ -12,7 +12,7 @@
 //! its rated heap (SAE J296), or is pushed ahead. What a tilted bucket cannot hold pours from the lowest edge of its
 //! opening. Wheels and tracks sink by Bekker's law. `laws/` has all laws in f64, each with its source.
 //!
-//! **Slides** (`field.rs`, [`crate::slides`]). Loose soil lies up to its angle of repose. Bank stands as a wall up to
+//! **Slides** (`field.rs`, `src/slides.rs`). Loose soil lies up to its angle of repose. Bank stands as a wall up to
 //! the height of Culmann's law (`walls.rs`). A higher one breaks, and what lies above the slope of repose slides.
 //!
 //! **Time** (`site.rs`). Steps of [`SOIL_STEP_S`] end at whole multiples of it. A step runs once every live tool has a
