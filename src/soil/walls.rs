@@ -3,7 +3,7 @@
 //! A wall between two cells fails where the bank's top lies higher above a cell than the law's highest face with its
 //! toe there ([`super::laws::WallLaw::height_over_m`]), and the face is steeper than the bank's friction angle and the
 //! angle of repose. What lies above the slope of repose through the toe then counts as broken: it slides like loose
-//! soil ([`crate::slides`]), swells as it moves, and comes to rest at its angle of repose.
+//! soil (`src/slides.rs`), swells as it moves, and comes to rest at its angle of repose.
 
 use super::{
     field::{SoilCell, SoilField},
