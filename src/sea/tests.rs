@@ -81,10 +81,11 @@ fn heights_and_mean_level_are_those_asked() {
     let lengths: &[f64] = if accepts() { &[5.0, 10.0, 25.0, 60.0, 120.0, 200.0, 350.0, 600.0] } else { &[5.0, 190.0] };
     let (seeds, side) = if accepts() { (24, 230) } else { (1, 250) };
     let (mut worst, mut lowest) = (0.0f64, 0.0f64);
-    for &length in lengths {
+    for (i, &length) in lengths.iter().enumerate() {
         let tp = (TAU * length / 9.81f64).sqrt();
         let hs = (length / 22.0).min(9.0);
-        for seed in 0..seeds {
+        // Each seed takes its turn at a quarter of the lengths: a case takes five seconds.
+        for seed in (0..seeds).filter(|seed| seeds == 1 || (i as u64 + seed).is_multiple_of(4)) {
             let mut sea = TestSea::of(hs, tp, 4000.0, seed);
             let surface = sea.surface(1000.0 * f64::from(seed as u32));
             let (mean, found) = heights(&surface, DVec2::new(-3e4, 7e4), 100.0 * length, side);

@@ -889,6 +889,15 @@ pub const CALLS: &[(&str, Call)] = &[
         };
         unsafe { wk_view_record(view, frame.ptr().cast(), stages) }.into()
     }),
+    ("wk_view_prepare", |d, w| {
+        let (mut frame, view) = (frame(d, w), handle(d, &w.views));
+        let (mut weathers, count) = Struct::random_list(d, "wk_weather", 2);
+        let (calls, call_count) = ([WK_STAGE_ALL, d.whole() as u32], d.below(3) as u32);
+        let most_s = if d.one_in(6) { d.float() } else { 0.0 };
+        let (first, stride) = (weathers.ptr().cast(), weathers.stride());
+        let frame = frame.ptr().cast();
+        unsafe { wk_view_prepare(view, frame, calls.as_ptr(), call_count, first, count, stride, most_s) }.into()
+    }),
     ("wk_view_get_environment", |d, w| {
         let view = handle(d, &w.views);
         get("wk_environment", |p| unsafe { wk_view_get_environment(view, p.cast()) })
