@@ -893,7 +893,7 @@ pub const CALLS: &[(&str, Call)] = &[
         let (mut frame, view) = (frame(d, w), handle(d, &w.views));
         let (mut weathers, count) = Struct::random_list(d, "wk_weather", 2);
         let (calls, call_count) = ([WK_STAGE_ALL, d.whole() as u32], d.below(3) as u32);
-        let most_s = if d.one_in(6) { d.float() } else { 0.0 };
+        let most_s = if d.one_in(6) { -1.0 - d.float().abs() } else { 0.0 };
         let (first, stride) = (weathers.ptr().cast(), weathers.stride());
         let frame = frame.ptr().cast();
         unsafe { wk_view_prepare(view, frame, calls.as_ptr(), call_count, first, count, stride, most_s) }.into()
