@@ -62,8 +62,9 @@ fn least_scale_height_m(air: &AirUniform) -> f64 {
 }
 
 /// Change of altitude after which the tables follow it, m: 0.2 % of the altitude, or a thousandth of the smallest scale
-/// height of the air, over which its light changes by as much; near the ground, where the horizon moves fastest, at most
-/// 5 cm and 30 %. Directions are looked up from the observer's own altitude meanwhile, so the horizon follows at once.
+/// height of the air, over which its light changes by as much; near the ground, where the horizon moves fastest, at
+/// most 5 cm and 30 %. Directions are looked up from the observer's own altitude meanwhile, so the horizon follows at
+/// once.
 fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
     (2e-3 * altitude_m.abs() + 1e-2).max((1e-3 * least_scale_height_m(air)).min(0.05 + 0.3 * altitude_m.abs()))
 }
