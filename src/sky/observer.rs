@@ -143,8 +143,7 @@ pub struct Observer {
     /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while a lamp
     /// moves by less than 2e-5 rad and the altitude changes by less than 0.2 %, or by less than a thousandth of the
     /// air's smallest scale height (1.2 m in clear air) and 30 % of the altitude and 5 cm. Kept tables are off by at
-    /// most
-    /// 0.4 % by day, and 0.9 % at dusk near the horizon.
+    /// most 0.4 % by day, and 0.9 % at dusk near the horizon.
     pub exact: bool,
 }
 
