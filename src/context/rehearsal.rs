@@ -30,7 +30,7 @@ impl Rehearsal {
     /// Creates the rehearsal of weathers that follow each other. Nothing changes yet.
     ///
     /// # Errors
-    /// Those of [`Context::save`].
+    /// As [`Context::save`].
     pub fn new(context: &Context, weathers: Vec<Conditions>) -> Result<Self> {
         Ok(Self { weathers, saved: context.save()? })
     }
@@ -48,7 +48,7 @@ impl Rehearsal {
     /// Brings the context to one of the moments.
     ///
     /// # Errors
-    /// Those of [`Context::update`]; call [`Self::leave`] then too.
+    /// As [`Context::update`]; call [`Self::leave`] then too.
     pub fn enter(&self, context: &mut Context, moment: usize) -> Result<()> {
         let (i, moment) = (moment / MOMENTS, moment % MOMENTS);
         // The weathers before it leave their water and snow.
@@ -73,7 +73,7 @@ impl Rehearsal {
     /// Returns the context to where it was.
     ///
     /// # Errors
-    /// Those of [`Context::load`].
+    /// As [`Context::load`].
     pub fn leave(&self, context: &mut Context) -> Result<()> {
         context.load(&self.saved)
     }

@@ -99,7 +99,7 @@ const FULL: Pace = Pace {
     fast_sun: 60.0,
 };
 
-/// The same day five times as fast: 1,680 frames.
+/// Day at five times the pace: 1,680 frames.
 const QUICK: Pace = Pace {
     name: "quick",
     segment: 6 * TICKS_PER_S,

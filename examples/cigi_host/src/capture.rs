@@ -67,7 +67,7 @@ pub struct Form {
 pub struct Decoded {
     /// The JSON.
     pub json: String,
-    /// What was refused.
+    /// Number of refused packets.
     pub refused: usize,
 }
 

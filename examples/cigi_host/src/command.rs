@@ -30,7 +30,7 @@ usage: cigi_host --decode FILE.bin [--all] [--strict-ids]
   --cigi 3.3|4.0     version until the host's first message; default 3.3
   --frames N         end after so many frames";
 
-/// What a command line asks for.
+/// Request of a command line.
 #[derive(Debug, Default)]
 struct Options {
     decode: Option<String>,

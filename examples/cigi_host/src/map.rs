@@ -159,7 +159,7 @@ pub struct RegionValues {
     pub id: u16,
     /// Shape.
     pub shape: Shape,
-    /// What is merged with regions before it.
+    /// Quantities that are merged with regions before it.
     pub merge: MergeFlags,
     /// Weather.
     pub weather: WeatherValues,
@@ -168,7 +168,7 @@ pub struct RegionValues {
 /// A command to a wiper or a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
-    /// What is commanded.
+    /// Meaning of the commanded component.
     pub means: ComponentMeaning,
     /// Class of the object that it belongs to.
     pub class: u8,
@@ -182,7 +182,7 @@ pub struct Command {
     pub value: f32,
 }
 
-/// What Welkin takes.
+/// Values that Welkin takes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mapped {
     /// Time as the host last set it, s since 1970-01-01 UTC; and how often it has.
@@ -199,7 +199,7 @@ pub struct Mapped {
     pub regions: Vec<RegionValues>,
     /// Wipers and lamps.
     pub commands: Vec<Command>,
-    /// What the host has said and no value here carries, with the reason.
+    /// Words of the host that no value here carries, each with its reason.
     pub left_out: BTreeSet<Note>,
 }
 

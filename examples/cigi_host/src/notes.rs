@@ -12,7 +12,7 @@ pub struct Note {
     pub subject: &'static str,
     /// Field of the packet, or empty.
     pub field: &'static str,
-    /// What was done, and why.
+    /// Act, and its reason.
     pub reason: &'static str,
 }
 

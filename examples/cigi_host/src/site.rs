@@ -13,7 +13,7 @@ pub enum Altitudes {
     Ellipsoid,
 }
 
-/// What severities mean. Each list has a value for each severity from 0 to 5. No source gives such figures: these are
+/// Meaning of severities. Each list has a value for each severity from 0 to 5. No source gives such figures: these are
 /// our own choice.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -39,7 +39,7 @@ impl Default for Severities {
     }
 }
 
-/// What a layer is.
+/// Kind of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LayerMeaning {
@@ -153,7 +153,7 @@ pub struct SurfaceRow {
     pub snow_depth_m: f64,
 }
 
-/// What a component is.
+/// Meaning of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ComponentMeaning {
@@ -191,7 +191,7 @@ pub struct Site {
     pub reads_early_ids: bool,
     /// Databases that may be asked for, 1 to 127.
     pub databases: Vec<u8>,
-    /// What severities mean.
+    /// Meaning of severities.
     pub severities: Severities,
     /// Meanings of layers; those of 0 to 9 are as CIGI says if no row says otherwise.
     pub layers: Vec<LayerRow>,

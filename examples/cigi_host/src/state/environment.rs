@@ -347,7 +347,7 @@ pub struct Shape {
     pub perimeter_m: f64,
 }
 
-/// Which quantities of overlapping regions are merged; else the last one wins.
+/// Quantities of overlapping regions that are merged; else the last one wins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MergeFlags {
     /// Weather.
@@ -367,7 +367,7 @@ pub struct Region {
     pub shape: Option<Shape>,
     /// Whether its environment shows.
     pub is_active: bool,
-    /// What is merged.
+    /// Quantities that are merged.
     pub merge: MergeFlags,
     /// Its environment.
     pub scope: Scope,

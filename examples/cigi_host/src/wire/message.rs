@@ -124,7 +124,7 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-/// Which side sent a message.
+/// Side that sent a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Host to image generator: begins with IG Control.
@@ -140,7 +140,7 @@ pub struct Message<'a> {
     pub version: Version,
     /// Byte order of the sender.
     pub order: Order,
-    /// Which side sent it.
+    /// Side that sent it.
     pub direction: Direction,
     bytes: &'a [u8],
 }
