@@ -9,6 +9,7 @@ mod rayleigh;
 mod spectra;
 pub mod spectral;
 
+pub(crate) use model::FIELDS;
 pub use model::{Absorption, Mie, Planet, Rayleigh};
 pub use rayleigh::{
     AIR_DENSITY_15C_PER_M3, DOBSON_UNIT_PER_M2, EARTH_RAYLEIGH_SCALE_HEIGHT_M, rayleigh_optical_depth,
@@ -17,7 +18,7 @@ pub use rayleigh::{
 
 #[cfg(test)]
 mod tests {
-    use super::{model::FIELDS, *};
+    use super::*;
 
     #[test]
     fn every_field_is_in_the_list_and_changes_the_hash() {

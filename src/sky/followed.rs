@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{LightTable, Planet, SkyLibrary, SkySettings, SkyTables};
+use super::{AirChange, LightTable, Planet, SkyLibrary, SkySettings, SkyTables};
 use crate::{error::Result, gpu::Device};
 
 /// Tables that follow the weather's air.
@@ -77,14 +77,14 @@ impl FollowedSky {
         }
     }
 
-    /// Continues building the tables of `planet`. `share` is the work to do, as a share of a build with the default
+    /// Continues building the tables of the changing air. `share` is the work to do, as a share of a build with the default
     /// settings. The first frame gets a draft. A share of 1 builds the tables whole, for pictures that may not depend
     /// on earlier ones. Returns whether anything was built.
     pub fn build_toward(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        planet: &Planet,
+        change: AirChange<'_>,
         frame_id: u64,
         share: f32,
     ) -> Result<bool> {
@@ -92,9 +92,9 @@ impl FollowedSky {
             return Ok(false);
         }
         self.frame_id = Some(frame_id);
-        self.begin(planet)?;
+        self.begin(change.now)?;
         let share = if share < 1.0 { self.tables.paced(share) } else { share };
-        let progress = self.tables.update(encoder, planet, share)?;
+        let progress = self.tables.update_along(encoder, change, share)?;
         self.keep_first();
         device.check()?;
         Ok(progress.work > 0.0)

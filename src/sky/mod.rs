@@ -83,6 +83,7 @@ pub mod tables;
 mod uniforms;
 mod view;
 pub mod volume;
+mod way;
 
 pub use crate::almanac::{celestial, moon, sun};
 pub use crate::planet::{self, Planet, spectral};
@@ -98,4 +99,5 @@ pub use volume::SkyVolume;
 
 pub(crate) use followed::FollowedSky;
 pub(crate) use solved::{Sightline, SolvedSkies, SolvedSky};
+pub(crate) use tables::AirChange;
 pub(crate) use view::SkyView;

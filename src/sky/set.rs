@@ -18,6 +18,9 @@ pub(crate) struct TableSet {
     pub detail: Detail,
     /// Number that is unique to each set.
     pub id: u64,
+    /// Ids of the two sets that this one mixes, and the share of the second, where it was made by
+    /// [`Kit::mixed`](super::kit::Kit::mixed).
+    pub mixes: Option<(u64, (u64, f32))>,
     /// Air at each triple of wavelengths.
     pub airs: Vec<wgpu::Buffer>,
     /// Group 0 of the observers' passes.

@@ -13,16 +13,47 @@ use super::recipe::Name;
 use super::set::TableSet;
 use super::settings::{SkyModel, SkySettings};
 use super::uniforms::AirUniform;
+use super::way::{LightWay, is_far, place_on_way};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
+
+/// Change of the weather's air that tables follow.
+#[derive(Clone, Copy)]
+pub(crate) struct AirChange<'a> {
+    /// Planet under the present weather.
+    pub now: &'a Planet,
+    /// Planet under the weather to which the present one is changing; `now` where none is known to come.
+    pub ahead: &'a Planet,
+}
+
+impl AirChange<'_> {
+    /// Whether the air is changing to one that is known.
+    fn goes_on(&self) -> bool {
+        self.now != self.ahead
+    }
+
+    /// Whether the change leads past `set`, or ends there, on its way from `shown`.
+    fn leads_past(&self, shown: &TableSet, set: &TableSet) -> bool {
+        !self.goes_on() || place_on_way(&shown.planet, self.ahead, &set.planet).is_near
+    }
+}
+
+/// Share at which a fade ends.
+#[derive(Clone, Copy)]
+enum FadeTo {
+    /// All of the tables to show next.
+    End,
+    /// The place of the present air between both tables.
+    Air,
+}
 
 enum State {
     Idle,
     /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
-    /// Tables to show next, and their share in what is shown. The share is 0 in the call in which observers draw them
-    /// for the first time.
-    Fading(Arc<TableSet>, f32),
+    /// Tables to show next, and their weight in what is shown. The weight is 0 in the call in which observers draw them
+    /// for the first time, and while the air has not yet left that of the shown tables.
+    Fading(Arc<TableSet>, f32, FadeTo),
     /// Tables that the last call has finished.
     Built(Arc<TableSet>),
 }
@@ -32,12 +63,14 @@ enum State {
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
-/// Relative change of optical depth above which a draft is built before the whole tables. The draft's own error is
-/// smaller.
-const FAR: f64 = 0.03;
-
-/// Change of the ground's albedo above which a draft is built before the whole tables.
-const FAR_ALBEDO: f64 = 0.1;
+/// Largest step of the share while tables fade in along a change of the air that goes on: it spreads what a long build
+/// has missed.
+const ALONG: f32 = 1.0 / 64.0;
+/// Share of a call's work that a build for a known change does.
+const AHEAD_SHARE: f32 = 0.5;
+/// Share of a build from which it is never given up, and change of a share that is too small to draw.
+const KEPT_FROM: f64 = 0.5;
+const UNSEEN_SHARE: f32 = 1e-4;
 
 /// Progress made by [`SkyTables::update`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,6 +166,22 @@ impl SkyTables {
         planet: &Planet,
         fraction: f32,
     ) -> Result<TablesProgress> {
+        self.update_along(encoder, AirChange { now: planet, ahead: planet }, fraction)
+    }
+
+    /// Follows a change whose end is known, as [`SkyTables::update`] follows a planet. The tables of the end are built
+    /// while the change goes on, once, and are then mixed with the shown ones by the place of the present air between
+    /// both. So nothing is left to build when the change ends.
+    ///
+    /// # Errors
+    /// As [`SkyTables::update`].
+    pub(crate) fn update_along(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        change: AirChange<'_>,
+        fraction: f32,
+    ) -> Result<TablesProgress> {
+        let planet = change.now;
         if !(fraction > 0.0 && fraction <= 1.0) {
             return Err(Error::range("fraction", "in (0, 1]", fraction));
         }
@@ -145,8 +194,8 @@ impl SkyTables {
             let work = self.show_at_once(encoder, planet, Detail::Draft)?;
             return Ok(TablesProgress { work, done: self.done(planet) });
         }
-        self.choose(planet)?;
-        let work = self.step(encoder, fraction)?;
+        self.choose(change)?;
+        let work = self.step(encoder, change, fraction)?;
         Ok(TablesProgress { work, done: self.done(planet) })
     }
 
@@ -172,19 +221,26 @@ impl SkyTables {
     }
 
     /// Chooses the tables to show next, unless a build or a fade towards them is in progress.
-    fn choose(&mut self, planet: &Planet) -> Result<()> {
+    fn choose(&mut self, change: AirChange<'_>) -> Result<()> {
         let Some(shown) = &self.shown else { return Ok(()) };
+        let serves = |to: &Planet| place_on_way(&shown.planet, to, change.now).is_near;
+        let target = if serves(change.ahead) { change.ahead } else { change.now };
         let free = match &self.state {
             State::Idle => true,
-            State::Building(ticket, _) => ticket.detail() == Detail::Whole && is_far(ticket.planet(), planet),
+            State::Building(ticket, _) => {
+                ticket.detail() == Detail::Whole
+                    && !serves(ticket.planet())
+                    && is_far(ticket.planet(), target)
+                    && self.kit.done(ticket) < KEPT_FROM
+            }
             State::Built(_) | State::Fading(..) => false,
         };
-        if !free || (shown.planet == *planet && shown.detail == Detail::Whole) {
+        if !free || (shown.planet == *target && shown.detail == Detail::Whole) {
             return Ok(());
         }
-        planet.check()?;
-        let detail = if is_far(&shown.planet, planet) { Detail::Draft } else { Detail::Whole };
-        self.state = match self.kit.claim(planet, detail)? {
+        target.check()?;
+        let detail = if is_far(&shown.planet, change.now) { Detail::Draft } else { Detail::Whole };
+        self.state = match self.kit.claim(target, detail)? {
             Claim::Finished(set) => State::Built(set),
             Claim::Building(ticket) => State::Building(ticket, 0),
         };
@@ -192,7 +248,7 @@ impl SkyTables {
     }
 
     /// Continues a build or a fade. Returns the work.
-    fn step(&mut self, encoder: &mut wgpu::CommandEncoder, share: f32) -> Result<f32> {
+    fn step(&mut self, encoder: &mut wgpu::CommandEncoder, change: AirChange<'_>, share: f32) -> Result<f32> {
         match &mut self.state {
             State::Idle => Ok(0.0),
             State::Building(ticket, calls) => {
@@ -200,6 +256,8 @@ impl SkyTables {
                 if calls.is_multiple_of(REST) {
                     return Ok(0.0);
                 }
+                // What is known ahead has time.
+                let share = if change.goes_on() { AHEAD_SHARE * share } else { share };
                 let (step, set) = self.kit.advance(ticket, f64::from(share))?;
                 self.busy = true;
                 if let Some(set) = set {
@@ -208,22 +266,70 @@ impl SkyTables {
                 Ok(step.work as f32)
             }
             State::Built(set) => {
-                self.state = State::Fading(set.clone(), 0.0);
+                let set = set.clone();
+                self.begin_fade(set, change);
                 Ok(0.0)
             }
-            State::Fading(set, t) => {
-                self.busy = true;
-                *t += share.max(FADE);
-                let (set, t) = (set.clone(), *t);
-                if t >= 1.0 - 1e-4 {
-                    self.show(encoder, Some(set));
-                } else {
-                    self.revision += 1;
-                    self.draw_light(encoder);
-                }
+            State::Fading(set, t, to) => {
+                let fade = (set.clone(), *t, *to);
+                self.fade(encoder, fade, change, share)?;
                 Ok(0.0)
             }
         }
+    }
+
+    /// Begins the fade to finished tables, or drops them where the present air has turned away from them.
+    fn begin_fade(&mut self, set: Arc<TableSet>, change: AirChange<'_>) {
+        let Some(shown) = &self.shown else { return };
+        let place = place_on_way(&shown.planet, &set.planet, change.now);
+        self.state = if !change.goes_on() {
+            State::Fading(set, 0.0, FadeTo::End)
+        } else if change.leads_past(shown, &set) && place.is_near {
+            State::Fading(set, 0.0, FadeTo::Air)
+        } else if place.share >= 0.5 {
+            State::Fading(set, 0.0, FadeTo::End)
+        } else {
+            State::Idle
+        };
+    }
+
+    /// Continues a fade. One that follows the air ends where the air turns away, and the mix is shown from then on.
+    fn fade(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        (set, before, to): (Arc<TableSet>, f32, FadeTo),
+        change: AirChange<'_>,
+        share: f32,
+    ) -> Result<()> {
+        let Some(shown) = self.shown.clone() else { return Ok(()) };
+        let place = place_on_way(&shown.planet, &set.planet, change.now);
+        let follows = matches!(to, FadeTo::Air);
+        let wanted = if follows { LightWay::new(&shown.planet, &set.planet).weight(place.share) as f32 } else { 1.0 };
+        let most = if follows && change.goes_on() { ALONG } else { share.max(FADE) };
+        let rests = (wanted - before).abs() <= UNSEEN_SHARE && wanted < 1.0 && !change.goes_on();
+        if follows && (rests || !place.is_near || !change.leads_past(&shown, &set)) {
+            let are_whole = [&shown, &set].iter().all(|s| s.detail == Detail::Whole);
+            if before <= UNSEEN_SHARE {
+                self.show(encoder, None);
+            } else if are_whole {
+                let mixed = self.kit.mixed(encoder, [&shown, &set], before)?;
+                self.show(encoder, Some(mixed));
+            } else {
+                self.state = State::Fading(set, before, FadeTo::End);
+            }
+            return Ok(());
+        }
+        let t = before + (wanted - before).clamp(-most, most);
+        if t >= 1.0 - UNSEEN_SHARE {
+            self.busy = true;
+            self.show(encoder, Some(set));
+        } else if (t - before).abs() > UNSEEN_SHARE {
+            self.busy = true;
+            self.state = State::Fading(set, t, to);
+            self.revision += 1;
+            self.draw_light(encoder);
+        }
+        Ok(())
     }
 
     /// Progress towards the whole tables of `planet`, 0 to 1.
@@ -235,7 +341,7 @@ impl SkyTables {
                 0.5 * self.kit.done(ticket) as f32
             }
             State::Built(set) if leads(set) => 0.5,
-            State::Fading(set, t) if leads(set) => 0.5 + 0.5 * t,
+            State::Fading(set, t, _) if leads(set) => 0.5 + 0.5 * t,
             _ => 0.0,
         }
     }
@@ -252,7 +358,7 @@ impl SkyTables {
         };
         let shown = shown.read_light(&self.device, self.settings())?;
         Ok(match &self.state {
-            State::Fading(next, t) => shown.mix(&*next.read_light(&self.device, self.settings())?, *t),
+            State::Fading(next, t, _) => shown.mix(&*next.read_light(&self.device, self.settings())?, *t),
             _ => LightTable::clone(&shown),
         })
     }
@@ -325,7 +431,7 @@ impl SkyTables {
     /// Returns the tables that fade in, with their share. The share is 0 in the call before the first step.
     pub(crate) fn fading(&self) -> Option<(&Arc<TableSet>, f32)> {
         match &self.state {
-            State::Fading(set, t) => Some((set, *t)),
+            State::Fading(set, t, _) => Some((set, *t)),
             _ => None,
         }
     }
@@ -338,7 +444,9 @@ impl SkyTables {
     /// Air that look-ups use; during a fade, the mix of two.
     pub(crate) fn air(&self) -> AirUniform {
         let shown = AirUniform::of(self.planet().unwrap_or(&Planet::earth()));
-        self.fading().map_or(shown, |(set, t)| shown.mix(&AirUniform::of(&set.planet), t))
+        let (Some(from), Some((set, weight))) = (&self.shown, self.fading()) else { return shown };
+        let share = LightWay::new(&from.planet, &set.planet).share(f64::from(weight));
+        shown.mix(&AirUniform::of(&set.planet), share as f32)
     }
 
     fn show(&mut self, encoder: &mut wgpu::CommandEncoder, set: Option<Arc<TableSet>>) {
@@ -360,29 +468,4 @@ impl SkyTables {
             }
         }
     }
-}
-
-/// Whether two planets differ so much that a draft for one has a smaller error than the whole tables of the other.
-fn is_far(a: &Planet, b: &Planet) -> bool {
-    // Optical depth straight up of gas, haze and ozone at a wavelength.
-    let depths = |p: &Planet, i: usize| {
-        [
-            p.rayleigh.scattering_per_m[i] * p.rayleigh.scale_height_m,
-            p.mie.extinction_per_m[i] * p.mie.scale_height_m,
-            p.absorption.extinction_per_m[i] * p.absorption.half_width_m,
-        ]
-    };
-    let apart = |i: usize| {
-        let (a, b) = (depths(a, i), depths(b, i));
-        let change: f64 = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).sum();
-        change > FAR * a.iter().sum::<f64>().max(b.iter().sum())
-    };
-    let taller = |x: f64, y: f64| (x - y).abs() > 2.0 * FAR * x.max(y);
-    let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
-    body(a) != body(b)
-        || (0..3).any(|i| (a.ground_albedo[i] - b.ground_albedo[i]).abs() > FAR_ALBEDO)
-        || (a.mie.asymmetry_g - b.mie.asymmetry_g).abs() > FAR
-        || taller(a.mie.scale_height_m, b.mie.scale_height_m)
-        || taller(a.rayleigh.scale_height_m, b.rayleigh.scale_height_m)
-        || (0..3).any(apart)
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use glam::DVec3;
 
-use super::{Disc, FollowedSky, Lamp, Observer, SkyModel, SkySettings, SkyVolume, candidates};
+use super::{AirChange, Disc, FollowedSky, Lamp, Observer, SkyModel, SkySettings, SkyVolume, candidates};
 use crate::{
     error::{Error, Result, Status},
     gpu::counts::DeviceWork,
@@ -72,9 +72,10 @@ impl DrawnEffect for SkyView {
             self.rebuild_work = rebuild_work(self.volume.settings());
         }
         let keeps = context.keeps_tables && tables.planet().is_some();
-        let planet = &context.now.scene.planet;
+        let now = &context.now.scene.planet;
+        let change = AirChange { now, ahead: context.planet_ahead.as_ref().unwrap_or(now) };
         let (frame_id, share) = (context.frame.frame_id, context.table_share);
-        let work = !keeps && tables.build_toward(recording.device, recording.encoder, planet, frame_id, share)?;
+        let work = !keeps && tables.build_toward(recording.device, recording.encoder, change, frame_id, share)?;
         recording.ends(CostItem::SkyTables, work)?;
         let drawn = self.volume.prepare(
             recording.encoder,

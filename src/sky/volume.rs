@@ -254,6 +254,13 @@ impl SkyVolume {
         } else {
             drawn = self.follow(encoder, tables, shown, &ObserverPlace { altitude_m, mu_s })?;
         }
+        for drawn in &mut self.drawn {
+            // A mix of two sets is what these tables already show.
+            *drawn = drawn.map(|d| match d.over.is_some() && shown.mixes == d.over.map(|over| (d.set, over)) {
+                true => DrawnFor { set: shown.id, over: None, ..d },
+                false => d,
+            });
+        }
         // If one lamp's tables are out of date all are drawn, because they share the altitude.
         let moved = lamps().any(|(i, mu_s)| serves(&self.drawn[i], mu_s).is_none());
         for (i, mu_s) in lamps() {

@@ -13,6 +13,7 @@ use crate::{
     light::ToneCurve,
     moment::SceneMoment,
     plan::parts::{MOST_PARTS, MOST_RUNGS, Part},
+    planet::Planet,
     scene::ViewRays,
     world::{HeldEffects, World},
 };
@@ -28,6 +29,8 @@ pub(crate) struct FrameContext<'a> {
     pub held: HeldEffects<'a>,
     /// Stages that the call asks for.
     pub asked: Stages,
+    /// Planet under the weather to which the present one is changing; `None` while it rests.
+    pub planet_ahead: Option<Planet>,
     /// Work on tables in this frame, as a share of the work of building them all.
     pub table_share: f32,
     /// Whether tables over the planet that are there are drawn with, even if they are those of another weather.

@@ -1,5 +1,6 @@
 //! Tests of several rooms together that look at what no host can see.
 
+mod changing_air;
 mod counted;
 mod detour;
 mod even;

@@ -11,6 +11,7 @@
 //! | `RUN_CSV=FILE` | writes every frame to a file, which `lab run FILE` charts |
 //! | `RUN_SLOW=1` | prints every slow frame with all that was counted in it |
 //! | `RUN_BACKEND=gl` | OpenGL instead of Vulkan |
+//! | `RUN_UNPREPARED=1` | does not prepare the view for the day's weathers |
 //! | `RUN_TOLERANCE=0.01` | plans by this tolerance, with the gauge |
 //! | `RUN_PART=..` | plays one part in this process: `clear` or `rain`, a first picture, or `day` |
 //! | `RUN_TURNS=1` | waits for a line on standard input before every 20 frames; `scripts/compare-speed` sends them |
@@ -65,14 +66,14 @@ fn part(name: &str) -> Fallible<()> {
     }
     causes::listen();
     let (pace, mut host) = (Pace::asked(), played::Host::new()?);
-    let (frames, settled) = played::day(&mut host, pace)?;
+    let played = played::day(&mut host, pace)?;
     let rest = (0..SEGMENTS.len()).map(|segment| played::at_rest(&mut host, pace, segment));
     let rest = rest.collect::<Fallible<Vec<_>>>()?;
-    let day = report::Day { pace, frames, rest, settled };
+    let day = report::Day { pace, played, rest };
     let caps = host.device.caps();
     println!(
         "run: a day of {} frames of {} x {}, {}",
-        day.frames.len(),
+        day.played.frames.len(),
         played::SIZE.0,
         played::SIZE.1,
         caps.adapter_name

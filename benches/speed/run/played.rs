@@ -1,8 +1,13 @@
 //! Playing the day frame by frame, and each of its weathers at rest.
 
-use std::{io::BufRead as _, sync::Arc, time::Instant};
+use std::{
+    io::BufRead as _,
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use welkin::{
+    Status,
     context::{Context, ContextDesc},
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
@@ -26,6 +31,8 @@ const FRAMES_PER_COPY: usize = 40;
 /// Frames without work on tables after which the tables are complete, and most frames to wait for that.
 const SETTLED: u32 = 12;
 const MOST_SETTLING: u32 = 1000;
+/// Time of one call that prepares a view.
+const PREPARING: Duration = Duration::from_millis(500);
 /// Frames between two turns of a run that is played by turns with another.
 const FRAMES_PER_TURN: u32 = 20;
 
@@ -118,6 +125,16 @@ impl<'a> Player<'a> {
         Ok(Self { host, pace, context, view, rig, frame_id: 0, time_s: 0.0 })
     }
 
+    /// Prepares the view for weathers to come.
+    fn prepare(&mut self, weathers: &[Weather]) -> Fallible<()> {
+        let frame = Frame::new(0, self.rig.camera(), &self.host.color, Some(&self.host.depth));
+        let calls = [Stages::ALL.without(Stages::TONE)];
+        while self.view.prepare(&mut self.context, &frame, &calls, weathers, PREPARING)? == Status::Pending {
+            self.host.turns.wait()?;
+        }
+        Ok(())
+    }
+
     /// Draws a frame at the player's time.
     pub fn draw(&mut self) -> Fallible<(Times, f64, FrameWork)> {
         let (counts, wall, processor) = (CountsBefore::new(&self.host.device), Instant::now(), processor_ns());
@@ -180,12 +197,43 @@ impl<'a> Player<'a> {
     }
 }
 
-/// Plays the day. Returns its frames, and how many frames its first weather took to settle before.
-pub fn day(host: &mut Host, pace: Pace) -> Fallible<(Vec<PlayedFrame>, u32)> {
+/// Stands in for [`View::prepare`] in a build that lacks it, so that this benchmark runs with it too.
+#[allow(dead_code)]
+trait PreparesNothing {
+    fn prepare(
+        &mut self,
+        _context: &mut Context,
+        _frame: &Frame<'_>,
+        _calls: &[Stages],
+        _weathers: &[Weather],
+        _most: Duration,
+    ) -> welkin::Result<Status> {
+        Ok(Status::Ok)
+    }
+}
+
+impl PreparesNothing for View {}
+
+/// A day that was played.
+pub struct PlayedDay {
+    pub frames: Vec<PlayedFrame>,
+    /// Time in which the view prepared the day's weathers, s.
+    pub prepared_s: f64,
+    /// Number of frames in which the first weather settled.
+    pub settled: u32,
+}
+
+/// Plays the day. Its weathers are prepared as behind a loading screen, unless `RUN_UNPREPARED=1`.
+pub fn day(host: &mut Host, pace: Pace) -> Fallible<PlayedDay> {
     let weathers: Result<Vec<Weather>, _> =
         SEGMENTS.iter().map(|segment| Weather::from_metar(segment.report).map(|read| read.weather)).collect();
     let (weathers, copying) = (weathers?, Copying::new(&host.device, SIZE)?);
     let mut player = Player::new(host, pace, 0, 0)?;
+    let begun = Instant::now();
+    if std::env::var_os("RUN_UNPREPARED").is_none() {
+        player.prepare(&weathers)?;
+    }
+    let prepared_s = begun.elapsed().as_secs_f64();
     let settled = player.settle()?;
     let (mut frames, mut copy, mut last) = (Vec::new(), Times::default(), None);
     for (i, tick) in pace.ticks().into_iter().enumerate() {
@@ -200,7 +248,7 @@ pub fn day(host: &mut Host, pace: Pace) -> Fallible<(Vec<PlayedFrame>, u32)> {
         frames.push(PlayedFrame { tick, times, submitted_ms, copy, work });
         last = Some(tick);
     }
-    Ok((frames, settled))
+    Ok(PlayedDay { frames, prepared_s, settled })
 }
 
 /// Draws the weather of a segment at rest: camera and sun stand as they do at the segment's end, and time runs. Returns

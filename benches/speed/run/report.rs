@@ -7,7 +7,7 @@ use welkin::gpu::Caps;
 
 use super::{
     day::{Pace, SEGMENTS, TICKS_PER_S},
-    played::{PlayedFrame, Times},
+    played::{PlayedDay, PlayedFrame, Times},
 };
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
@@ -26,11 +26,9 @@ const CLOCKS: [(&str, Clock); 2] = [("wall", |t| t.wall_ms), ("processor", |t| t
 /// All that was measured.
 pub struct Day {
     pub pace: Pace,
-    pub frames: Vec<PlayedFrame>,
+    pub played: PlayedDay,
     /// Medians of each segment's weather at rest.
     pub rest: Vec<Times>,
-    /// Frames before the day in which the first weather settled.
-    pub settled: u32,
 }
 
 /// Median, 95th and 99th percentile, and the largest.
@@ -52,7 +50,7 @@ impl Day {
     }
 
     fn frames_of(&self, segment: usize) -> impl Iterator<Item = (usize, &PlayedFrame)> {
-        self.frames.iter().enumerate().filter(move |(_, frame)| self.segment_of(frame) == segment)
+        self.played.frames.iter().enumerate().filter(move |(_, frame)| self.segment_of(frame) == segment)
     }
 
     fn is_slow(&self, frame: &PlayedFrame) -> bool {
@@ -62,8 +60,8 @@ impl Day {
     /// Prints the report.
     pub fn print(&self) {
         println!(
-            "  each weather at rest in the median of {} frames; the day began when its first weather was complete, after {} frames",
-            self.pace.rest_frames, self.settled
+            "  each weather at rest in the median of {} frames; the day began after {:.0} s of preparing and {} frames in which its first weather settled",
+            self.pace.rest_frames, self.played.prepared_s, self.played.settled
         );
         println!(
             "  median, 95th and 99th percentile and slowest frame of every segment, with the wait for the driver:"
@@ -75,7 +73,7 @@ impl Day {
         for segment in 0..SEGMENTS.len() {
             self.print_segment(segment);
         }
-        let slow = self.frames.iter().filter(|frame| self.is_slow(frame)).count();
+        let slow = self.played.frames.iter().filter(|frame| self.is_slow(frame)).count();
         let (mut worst, mut p99) = (0.0f64, 0.0f64);
         for segment in 0..SEGMENTS.len() {
             let base = self.base(segment, CLOCKS[0].1);
@@ -141,7 +139,7 @@ impl Day {
         let clean = |text: &str| text.replace(',', ";");
         let mut out = format!("# run; {}; {}; {}\n", self.pace.name, clean(&caps.adapter_name), clean(&caps.driver));
         out.push_str("frame,segment,time_s,settled,wall_ms,submitted_ms,processor_ms,copy_ms,rest_ms,base_ms,cause\n");
-        for (i, frame) in self.frames.iter().enumerate() {
+        for (i, frame) in self.played.frames.iter().enumerate() {
             let (segment, wall) = (self.segment_of(frame), CLOCKS[0].1);
             writeln!(
                 out,

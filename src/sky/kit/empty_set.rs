@@ -1,7 +1,7 @@
-//! Creation of the empty tables for a planet.
+//! Creation of a planet's tables that no build draws: empty ones, and mixes of two sets.
 
 use std::sync::{
-    OnceLock,
+    Arc, OnceLock,
     atomic::{AtomicU64, Ordering},
 };
 
@@ -16,6 +16,7 @@ use crate::sky::recipe::Name;
 use crate::sky::set::{TableSet, find};
 use crate::sky::settings::MOST_WAVELENGTHS;
 use crate::sky::uniforms::AirUniform;
+use crate::sky::way::{LightWay, between};
 
 impl Kit {
     /// Creates the tables of a planet, empty.
@@ -42,6 +43,7 @@ impl Kit {
             planet: *planet,
             detail,
             id: SETS.fetch_add(1, Ordering::Relaxed),
+            mixes: None,
             observer_group: self.observer_layouts.planet_group(
                 device,
                 [&air, &level.blocks.dims, &all],
@@ -53,5 +55,26 @@ impl Kit {
             results,
             light: OnceLock::new(),
         })
+    }
+
+    /// Returns whole tables that mix two whole sets, with the weight of the second. They stand for the air between both.
+    ///
+    /// # Errors
+    /// As [`Kit::empty_set`].
+    pub fn mixed(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        [first, second]: [&TableSet; 2],
+        weight: f32,
+    ) -> Result<Arc<TableSet>> {
+        let share = LightWay::new(&first.planet, &second.planet).share(f64::from(weight));
+        let planet = between(&first.planet, &second.planet, share);
+        let mut set = self.empty_set(&planet, Detail::Whole)?;
+        for name in Name::RESULTS {
+            let group = |from: &TableSet| self.fades.group(&self.device, &from.result(name).view);
+            self.fades.between(encoder, &set.result(name).view, [&group(first), &group(second)], weight);
+        }
+        set.mixes = Some((first.id, (second.id, weight)));
+        Ok(Arc::new(set))
     }
 }

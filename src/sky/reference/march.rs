@@ -99,14 +99,16 @@ impl RayWalk<'_> {
             *point = [density[0] * ds, density[1] * ds, density[2] * ds, ds, u];
             (0..MEDIA).for_each(|k| total[k] += rule.weights[i] * point[k]);
         }
-        let thickest = self.medium.optical_depth(&total).into_iter().fold(0.0, f64::max);
-        let before = self.medium.optical_depth(&self.columns).into_iter().fold(f64::INFINITY, f64::min);
-        if thickest > self.cutting.panel_depth && halvings < MAX_HALVINGS && before < BLACK {
+        let (depths, before) = (self.medium.optical_depth(&total), self.medium.optical_depth(&self.columns));
+        // A wavelength that nothing is seen at any more asks for no finer panels.
+        let seen = || depths.iter().zip(&before).filter(|(_, before)| **before < BLACK).map(|(depth, _)| *depth);
+        let thickest = seen().fold(0.0, f64::max);
+        if thickest > self.cutting.panel_depth && halvings < MAX_HALVINGS {
             self.panel(side, a, middle, halvings + 1);
             self.panel(side, middle, b, halvings + 1);
             return;
         }
-        if before < BLACK {
+        if seen().next().is_some() {
             self.emit(side, points);
         }
         (0..MEDIA).for_each(|k| self.columns[k] += total[k]);
@@ -145,6 +147,29 @@ impl RayWalk<'_> {
 mod tests {
     use super::*;
     use crate::planet::Planet;
+
+    /// A ray that is black in one colour and clear in another needs as many panels as the black depth has.
+    #[test]
+    fn air_that_is_black_in_one_colour_needs_few_panels() {
+        let mut planet = Planet::earth();
+        planet.mie.extinction_per_m = [0.0, 0.0, 1e3];
+        planet.mie.scattering_per_m = [0.0, 0.0, 1e2];
+        planet.absorption.extinction_per_m = [0.0; 3];
+        let medium = Medium::of(&planet);
+        let (marks, rule) = (medium.panel_altitudes(), Gauss::new(8));
+        let cutting = Cutting { altitudes_m: &marks, rule: &rule, panel_depth: 1.0 };
+        let mut samples = Vec::new();
+        for mu in [1.0, 0.0] {
+            let ray = Ray::new(&medium, 1.0, mu);
+            let (start, end, _) = ray.in_air(&medium).unwrap();
+            let columns = march(&ray, &medium, &cutting, (start, end), &[], &mut samples);
+            assert!(samples.len() < 8 * 250, "{mu}: {} samples", samples.len());
+            let exact = ray.columns(&medium, start, end);
+            assert!((columns[0] / exact[0] - 1.0).abs() < 1e-7);
+            let sum: f64 = samples.iter().map(|s| s.gas[0]).sum();
+            assert!((sum + medium.transmittance(&columns)[0] - 1.0).abs() < 1e-7);
+        }
+    }
 
     /// Gas absorbs nothing, so the sum of the weights is exactly 1 - transmittance.
     #[test]
