@@ -2234,8 +2234,9 @@ typedef uint32_t wk_world_kind;
 /** East-north-up at the origin's place, with the curved planet below. */
 #define WK_WORLD_TANGENT 1
 /**
- * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect; the origin only affects the sunlight that
- * dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+ * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin is the zero point of maps (of
+ * local cloud cover, fog patches, waves and lightning), and the place of the sunlight that dries a simulated ground
+ * (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
  */
 #define WK_WORLD_ECEF 2
 

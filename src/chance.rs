@@ -17,7 +17,7 @@ impl RandomStream {
         Self(seed)
     }
 
-    /// Creates one stream of a seed: each number `what`, which names the use, gives another stream.
+    /// Creates one of the streams of a seed: each number `what`, which stands for a use, gives another stream.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
         let first = one.bits();

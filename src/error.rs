@@ -155,7 +155,7 @@ impl Error {
         Self { status, ..self }
     }
 
-    /// Joins a list of errors into one about the first one's field; `Ok` if there are none.
+    /// Joins a list of errors into one error about the first one's field; returns `Ok` for an empty list.
     ///
     /// # Errors
     /// The first error. Its sentence is followed by those of the others, or by their number where these would make it

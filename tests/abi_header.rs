@@ -1,5 +1,5 @@
-//! The committed header: it is the one that the sources give, every C and C++ standard takes it, and C sees the same
-//! structs and the same defaults as Rust. `WELKIN_BLESS=1` writes the committed header and lists anew.
+//! The committed header: it equals the one generated from the sources, it compiles in every C and C++ standard, and C
+//! sees the same structs and defaults as Rust. `WELKIN_BLESS=1` writes the committed header and lists anew.
 
 use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path, path::PathBuf, process::Command};
 
@@ -16,7 +16,7 @@ fn scratch(name: &str) -> PathBuf {
     dir
 }
 
-/// Holds `now` against a committed file, or writes it when blessing.
+/// Compares `now` with a committed file, or writes the file when blessing.
 fn compare(file: &str, now: &str) {
     let path = root().join(file);
     if std::env::var_os("WELKIN_BLESS").is_some() {
@@ -161,7 +161,8 @@ fn compile_after_words(dir: &Path, file: &str, compiler: &[&str], words: &str, t
     }
 }
 
-/// Welkin's headers come after those of a toolkit, a window system or an operating system, and read the same.
+/// Welkin's headers mean the same if they are included after those of a toolkit, a window system or an operating
+/// system.
 #[test]
 fn header_reads_the_same_after_the_macros_of_other_headers() {
     let dir = scratch("foreign_words");
@@ -179,7 +180,7 @@ fn header_reads_the_same_after_the_macros_of_other_headers() {
             }
         }
     }
-    // Each word that is a macro is found by the same way.
+    // Compiling fails if a word of the header is a macro; `signals` shows it.
     let signals = "#define signals @\nstruct x { int signals; };\n";
     assert!(compile_after_words(&dir, "caught.c", &["gcc", "-std=c11"], "", signals).is_err());
 }

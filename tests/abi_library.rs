@@ -1,5 +1,5 @@
-//! The shared library as C programs meet it: what it exports, loading at run time, a C host, and the same under
-//! valgrind. `WELKIN_LIB` names a ready library; without it the tests build one.
+//! The shared library as C programs use it: its exports, loading at run time, a C host, and the same under valgrind.
+//! `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -99,9 +99,9 @@ fn valgrind_finds_no_error_and_no_leak() {
     tidy(&noop);
 }
 
-/// Runs a program under valgrind, which must find no error and nothing that was lost.
+/// Runs a program under valgrind, which must find no error and no lost memory.
 fn watched(program: &Path, arguments: &[&str]) -> String {
-    // A driver is unloaded before leaks are told: its name is kept.
+    // A driver is unloaded before leaks are reported; this option keeps its name.
     let options = [
         "--quiet",
         "--error-exitcode=9",

@@ -1,6 +1,6 @@
 //! Every program and script keeps the conventions of a command line: help and version on standard output with status 0,
-//! what is wrong by its name on standard error with status 2, no dump of Rust's insides, and no half of a file under
-//! its name. `WELKIN_LIB` names a ready library; without it the tests build one.
+//! errors by name on standard error with status 2, no panic message of Rust, and no incomplete file. `WELKIN_LIB` names
+//! a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -71,8 +71,8 @@ fn example_in_c(folder: &Path, name: &str, libraries: &[&str]) -> PathBuf {
     c_program(folder, name, &sources, libraries)
 }
 
-/// Holds a program to the conventions; `wrong` are further command lines that it must refuse, each with what it must
-/// name.
+/// Checks that a program keeps the conventions; `wrong` are further command lines that it must refuse, each with the
+/// text that its error must contain.
 fn assert_conventions(program: &Path, wrong: &[(&[&str], &str)]) {
     let name = program.file_name().expect("a name").to_string_lossy().into_owned();
     let ask = |arguments: &[&str]| {
@@ -126,7 +126,7 @@ fn examples_in_rust_keep_the_conventions() {
     );
     assert_conventions(&built().join("lab"), &[(&["chart", "soup"], "soup"), (&["--scene"], "--scene")]);
     assert_conventions(&native, &[(&["a.png", "METAR", "more"], "more")]);
-    // What goes wrong later is a sentence too.
+    // Later errors are sentences too.
     let bad = output(Command::new(&native).current_dir(root()).args(["/nowhere/a.png", "METAR KTRI"]));
     let errors = String::from_utf8_lossy(&bad.stderr);
     assert!(bad.status.code() == Some(1) && errors.starts_with("native: "), "{}: {errors}", bad.status);
@@ -170,7 +170,7 @@ fn scripts_keep_the_conventions() {
     scripts.iter().for_each(|script| assert_conventions(script, &[]));
 }
 
-/// A picture that is being written when Ctrl-C comes: what was there stays, and nothing lies beside it.
+/// Ctrl-C while a picture is being written: the previous file stays, and no other file is left.
 #[test]
 fn an_interrupted_c_program_leaves_no_half_of_a_file() {
     let folder = scratch("interrupted");

@@ -1,6 +1,6 @@
-//! What `make dist` packs, used as its receivers would: the archive is unpacked and built against; the Debian package
-//! is installed into a root of its own, used and removed. The Conan recipe is tried in the long suite, where conan can
-//! be had from PyPI.
+//! The packages of `make dist`, used as their receivers would: the archive is unpacked and built against; the Debian
+//! package is installed into a root of its own, used and removed. The Conan recipe is tried in the long suite, where
+//! conan can be had from PyPI.
 #![cfg(target_os = "linux")]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! The documents that a user reads: the README's programs are the files that the tests run, its figures are the lab's,
-//! every article is in the manual's contents, says where to go next, and names files that exist.
+//! The documents for users: the README's programs are the files that the tests run, its figures are the lab's, and
+//! every article is in the manual's contents, ends with where to go next, and names files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -28,7 +28,7 @@ fn documents(folder: &str) -> Vec<String> {
     names
 }
 
-/// Where the links of a document lead, without those to other sites, from the repository's root.
+/// Returns the targets of a document's links from the repository's root, without links to other sites.
 fn links(path: &str) -> Vec<PathBuf> {
     let text = read(path);
     let text: String = text.split("```").step_by(2).collect(); // Code has no links, though a lambda looks like one.
@@ -109,7 +109,7 @@ fn links_lead_somewhere() {
     assert!(dead.is_empty(), "{dead:?}");
 }
 
-/// Words of an article without where it sends its reader next.
+/// Largest number of words of an article, without its section on where to go next.
 const MOST_WORDS: usize = 900;
 
 #[test]

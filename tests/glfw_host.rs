@@ -1,5 +1,6 @@
-//! The C OpenGL host as its users meet it: compiled without a warning, run without a display, its pictures looked at;
-//! and its window on an X server without a screen. `WELKIN_LIB` names a ready library; without it the tests build one.
+//! The C OpenGL host as users build and run it: compiled without a warning, run without a display, its pictures
+//! checked; and its window on an X server without a screen. `WELKIN_LIB` names a ready library; without it the tests
+//! build one.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -83,7 +84,7 @@ fn mean(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> [f64; 3] {
     sum.map(|s| s / f64::from((x1 - x0) * (y1 - y0)))
 }
 
-/// Largest difference of green along a row: what can still be told apart there.
+/// Returns the largest difference of green along a row: the contrast there.
 fn contrast(picture: &image::RgbImage, y: u32) -> u8 {
     let row = (0..picture.width()).map(|x| picture.get_pixel(x, y)[1]);
     let (lo, hi) = row.fold((255, 0), |(lo, hi): (u8, u8), v| (lo.min(v), hi.max(v)));
@@ -107,10 +108,11 @@ fn clear_weather_is_blue_at_noon_red_at_sunset_and_dark_by_the_moon() {
     assert!(sky[2] > sky[0] + 20.0 && sky[2] > 120.0, "a blue sky, got {sky:?}");
     assert!(low[0] > low[2] + 20.0, "a red horizon, got {low:?}");
     assert!(dark[2] > 1.0 && dark[2] < 0.5 * sky[2], "a night that is dark and not black, got {dark:?}");
-    // The host's own ground is lit by what Welkin answered: darker at sunset than at noon, in shape all the same.
+    // The host's own ground is lit by the light that Welkin's query returns: darker at sunset than at noon, but still
+    // with visible relief.
     let (day, evening) = (mean(&noon, MEADOW), mean(&sunset, MEADOW));
     assert!(day[1] > 60.0 && day[1] > day[2] && evening[1] > 5.0 && evening[1] < 0.8 * day[1], "{day:?} {evening:?}");
-    // Hills some ten kilometres off are paler than the meadow, and are seen.
+    // Hills about ten kilometres away are paler than the meadow, and visible.
     assert!(mean(&noon, [0, 172, 200, 186])[2] > day[2] + 20.0);
 }
 
@@ -157,7 +159,7 @@ fn the_gallery_has_smooth_edges_lamps_and_a_bridge() {
     let edge = (45..60).flat_map(|y| (0..320).map(move |x| (x, y)));
     let between = edge.filter(|(x, y)| (80..170).contains(&bridge.get_pixel(*x, *y)[0])).count();
     assert!(between > 120, "one sample a pixel leaves a score of them, four some hundred: {between}");
-    // What the lamps shine on is lit, what is behind it is night.
+    // The ground in the lamps' beams is lit; the top of the picture is dark.
     let (work, night) = (mean(&lamps, [70, 100, 100, 112]), mean(&lamps, [0, 0, 320, 10]));
     assert!(work[1] > 120.0 && night[1] < 60.0, "{work:?} before {night:?}");
     let mut unknown = host.command();

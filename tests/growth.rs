@@ -56,7 +56,8 @@ impl Channel {
     }
 }
 
-/// Medians over frames of what each group of channels takes, ns, drawn by turns; before each turn the sun moves on.
+/// Returns the median time of a frame of each group of channels, ns. The groups are drawn in turn, and the sun moves
+/// before each turn.
 fn nanoseconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel>], sun_step_deg: f64) -> Vec<f64> {
     let mut spent = vec![Vec::new(); groups.len()];
     let mut sun = GivenDirection { azimuth_deg: 180.0, elevation_deg: 50.0 };
@@ -74,7 +75,7 @@ fn nanoseconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel
     spent.iter_mut().map(|spent| median(spent)).collect()
 }
 
-/// Returns whether this run is the long one, on a machine with nothing else to do, which the narrow bounds are for.
+/// Returns whether this is the long run on an idle machine, for which the narrow bounds hold.
 fn is_quiet() -> bool {
     std::env::var_os("WELKIN_ACCEPT").is_some()
 }

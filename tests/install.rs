@@ -1,4 +1,4 @@
-//! `make install` as a C project meets it: the tree is installed, moved, and a small consumer is built against it by
+//! `make install` as a C project uses it: the tree is installed, moved, and a small consumer is built against it by
 //! pkg-config and by find_package(welkin), linked to the shared and to the static library, and run.
 #![cfg(unix)]
 
@@ -30,7 +30,8 @@ fn scratch(name: &str) -> PathBuf {
     dir
 }
 
-/// Installs below a staging directory, as a package builder does, then moves the tree to where nobody told it about.
+/// Installs below a staging directory, as a package builder does, then moves the tree to a folder that it does not
+/// know.
 fn installed(name: &str) -> PathBuf {
     let (dir, profile) = (scratch(name), if cfg!(debug_assertions) { "dev" } else { "release" });
     let mut make = Command::new("make");

@@ -1,4 +1,4 @@
-//! What the night sky costs beside an even one, in processor time of the whole process on a software driver: alone in
+//! Cost of the night sky relative to an even one, in processor time of the whole process on a software driver: alone in
 //! its binary.
 
 use std::sync::Arc;
@@ -38,8 +38,8 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_little_more() {
     let toward = direction(165.0, 15.0);
     let camera = Camera::look_to(DVec3::new(0.0, 0.0, 10.0), toward, DVec3::Z, 1.0, 16.0 / 9.0, 0.1);
     let mut frame_id = 0;
-    // Of a frame with stars over the one after it without, so that what slows the machine falls on both; the median of
-    // views made anew, since some have textures that lie badly in its caches.
+    // Ratio of a frame with stars to the next one without, so that other load slows both. It is the median over new
+    // views, because the textures of some views lie badly in the processor's caches.
     let mut ratio = |turn_rad: f64| {
         let trial = |_| {
             let (mut views, mut camera) = ([view(0), view(1)], camera);
@@ -62,7 +62,7 @@ fn a_picture_of_nothing_but_a_starry_sky_costs_little_more() {
         median(&mut (0..5).map(trial).collect::<Vec<_>>())
     };
     // Processors and runs differ: ten took 1.04 to 1.10 with the camera still, and 1.13 to 1.18 while it turns. The
-    // narrow bounds are for a machine with nothing else to do; the wide ones still refuse stars of twice the cost.
+    // narrow bounds hold on an idle machine; the wide ones still refuse stars of twice the cost.
     let most = if std::env::var_os("WELKIN_ACCEPT").is_some() { [1.12, 1.2] } else { [1.17, 1.26] };
     // While the camera stands still, and while it turns.
     holds("processor time over that without stars", &most, || vec![ratio(0.0), ratio(1e-3)]);

@@ -1,5 +1,5 @@
-//! The OpenSceneGraph host as its users meet it: installed Welkin, CMake, a display without a screen. It checks its own
-//! pictures and OpenGL state; here they are asked for in every way in which it draws, and looked at.
+//! The OpenSceneGraph host as users build and run it: installed Welkin, CMake, a display without a screen. The host
+//! checks its own pictures and OpenGL state. These tests run every way in which it draws, and check the pictures.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -17,7 +17,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Runs a command to its end; what it said on both streams if it succeeds.
+/// Runs a command to its end. Returns its output on both streams if it succeeds.
 fn run(command: &mut Command) -> String {
     let shown = format!("{command:?}");
     let output = command.env_remove("MAKEFLAGS").env_remove("MAKELEVEL").env_remove("MFLAGS").output();
@@ -27,17 +27,17 @@ fn run(command: &mut Command) -> String {
     said
 }
 
-/// The tests' folder, kept from run to run: what is up to date in it is not made again.
+/// Returns the tests' folder, which is kept from run to run, so that files that are up to date are not built again.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("osg_host")
 }
 
-/// Where Welkin is installed for them.
+/// Returns the folder in which Welkin is installed for the tests.
 fn tree() -> PathBuf {
     folder().join("tree")
 }
 
-/// Welkin installed, and the host built against it, by the first test that asks.
+/// Installs Welkin and builds the host against it, once for all tests.
 fn built() -> PathBuf {
     fs::create_dir_all(folder()).expect("the target directory is writable");
     let lock = fs::File::create(folder().join("lock")).expect("the folder is ours");
@@ -72,8 +72,8 @@ impl Host {
         Self { program: built(), server: Server::start(), folder }
     }
 
-    /// What the host says with these arguments, of which only METAR reports have spaces; Welkin and OSG have nothing to
-    /// complain of.
+    /// Runs the host with these arguments, of which only METAR reports have spaces. Returns its output, in which Welkin
+    /// and OSG report no fault.
     fn run(&self, arguments: &str, metar: Option<&str>) -> String {
         let mut host = Command::new(&self.program);
         host.env("DISPLAY", &self.server.display).arg("--data").arg(root().join("examples/data"));
@@ -152,7 +152,7 @@ fn samples_of_textures_and_windows_make_edges_smooth() {
     ];
     for (i, (plain, sampled)) in ways.iter().enumerate() {
         let draw = |way: &str, name: &str| {
-            // Before a sky without clouds, whose edges are steps too.
+            // In front of a sky without clouds, because the edges of clouds are steps too.
             let metar = Some("METAR KTRI 121800Z 24012KT 10SM CLR 12/11 A2978");
             host.picture_of(metar, &format!("{i}-{name}.png"), &format!("{way} --frames 2 --size 640 360"))
         };
@@ -193,7 +193,8 @@ fn scenes_without_units_are_lit_as_those_in_luminance() {
     }
 }
 
-/// After a leap of hours a simulated ground needs more updates than one: the glue says so and the host draws on.
+/// After a leap of hours a simulated ground needs more updates than one: the host's code reports that and continues to
+/// draw.
 #[test]
 fn a_picture_waits_for_the_simulated_ground() {
     let host = Host::new("leap");
@@ -245,7 +246,7 @@ fn windows_are_resized_and_closed() {
     }
 }
 
-/// Four panes at 40, 160, 640 and 2560 m, each as large in the picture: what differs is the veil before them.
+/// Four panes at 40, 160, 640 and 2560 m, equally large in the picture, so that only the veil in front of them differs.
 #[test]
 fn glass_fades_into_the_air_before_it() {
     let host = Host::new("glass");
@@ -319,7 +320,7 @@ fn the_tutorial_compiles_and_runs() {
     assert!(host.folder.join("weather-cache").is_dir(), "the sky's tables are kept for the next start");
 }
 
-/// Who has no OpenSceneGraph reads why there is no host, and the build goes on.
+/// Without OpenSceneGraph the build says why the host is skipped, and continues.
 #[test]
 fn without_openscenegraph_the_host_is_skipped_with_a_line() {
     built();

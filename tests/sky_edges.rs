@@ -1,4 +1,5 @@
-//! Where skies fail: odd air, the horizon, twilight, the mirror plane, heights, teleports, changing air.
+//! Cases in which sky models fail: unusual air, the horizon, twilight, the mirror plane, altitudes, teleports, changing
+//! air.
 
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ fn device() -> Arc<Device> {
     Device::headless(&DeviceOptions::default()).unwrap()
 }
 
-/// Coarse tables: these tests ask for shape, not for percents.
+/// Coarse tables: these tests check the shape of the sky, not its exact values.
 fn coarse(model: SkyModel) -> SkySettings {
     let base = SkySettings::with_model(model);
     SkySettings { suns: 40, altitudes: 12, zeniths: 9, azimuths: 6, rule_azimuths: 6, orders: 4, ..base }
@@ -90,7 +91,7 @@ fn odd_media_give_neither_nan_nor_infinity_nor_less_than_nothing() {
 fn horizon_twilight_mirror_and_height_are_smooth() {
     let planet = golden_planet();
     let mut probe = Probe::new(&device(), &coarse(SkyModel::Directional), &planet).unwrap();
-    // Sky and ground together hardly jump at the horizon: 0.1 degrees beside it, in steps of 0.002.
+    // Sky and ground together hardly jump within 0.1 degrees of the horizon, checked in steps of 0.002.
     for altitude in [1.7f64, 2000.0, 12_000.0] {
         let horizon = 90.0 + (6.36e6 / (6.36e6 + altitude)).acos().to_degrees();
         let scan = |q, probe: &mut Probe| {
@@ -103,8 +104,8 @@ fn horizon_twilight_mirror_and_height_are_smooth() {
         let sum: Vec<f32> = sky.iter().zip(&ground).map(|(a, b)| a.radiance[1] + b.radiance[1]).collect();
         let whole = sum.iter().fold(0.0f32, |m, v| m.max(*v));
         for (i, pair) in sum.windows(2).enumerate() {
-            // At the edge the whole air's light gives way to that of ground 5 km off from 1.7 m (a dark line, as it is
-            // in nature), of ground in haze from aloft.
+            // At the edge the light of the whole air is followed by that of the ground: from 1.7 m this is ground 5 km
+            // away (a dark line, as in nature), from high up ground in haze.
             let edge = (49..=51).contains(&i);
             let limit = match (edge, altitude < 10.0) {
                 (true, true) => 0.85,
@@ -115,7 +116,7 @@ fn horizon_twilight_mirror_and_height_are_smooth() {
             assert!((pair[1] - pair[0]).abs() < limit * whole, "h {altitude} at {i}: {pair:?}");
         }
     }
-    // Zenith light falls without a step from sun 85 to 105.
+    // Zenith light falls without a step for zenith angles of the sun from 85 to 105 degrees.
     let up = [Ray::at(0.0, 0.0, 0.0)];
     let mut last = f32::MAX;
     for tenth in 850..=1050 {
@@ -211,8 +212,8 @@ fn a_changing_air_is_followed_by_parts_and_nothing_is_drawn_without_need() {
     assert!(largest < (after - before).abs() / 12.0, "{values:?}");
 }
 
-/// A camera that has climbed by less than a thousandth of a scale height: its tables are those from below, and what it
-/// sees is the sky from its own altitude.
+/// A camera that has climbed by less than a thousandth of a scale height keeps the tables of its earlier altitude, and
+/// draws the sky of its new one.
 #[test]
 fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
     let device = device();
@@ -253,8 +254,8 @@ fn a_climbing_observer_keeps_its_tables_and_sees_the_sky_of_its_altitude() {
     println!("kept tables are off by {worst:.1e} at most");
 }
 
-/// A sun that moves in every frame while the camera climbs: tables are drawn ahead in slices and mixed, and show the
-/// sky of each frame's own sun.
+/// The sun moves in every frame while the camera climbs: tables are drawn ahead in slices and mixed, and the sky is
+/// that of each frame's own sun.
 #[test]
 fn a_moving_sun_is_followed_by_slices_and_seen_where_it_stands() {
     let device = device();
@@ -287,7 +288,7 @@ fn a_moving_sun_is_followed_by_slices_and_seen_where_it_stands() {
     }
 }
 
-/// Frames until the whole tables are shown.
+/// Runs frames until the finished tables are shown.
 fn run(
     tables: &mut SkyTables,
     planet: &Planet,
@@ -301,7 +302,7 @@ fn run(
     all
 }
 
-/// The work of every frame, counted: the tables of the default settings, on a device that draws nothing.
+/// Counts the work of every frame on the tables of the default settings, on a device that draws nothing.
 #[test]
 fn a_frame_pays_a_slice_of_the_work_and_every_eighth_none() {
     let device = Device::headless(&DeviceOptions { backends: wgpu::Backends::NOOP, ..Default::default() }).unwrap();
@@ -328,7 +329,8 @@ fn a_frame_pays_a_slice_of_the_work_and_every_eighth_none() {
     assert!(refined[..built].iter().all(|(_, drawn)| !drawn) && refined[built].1);
     assert_eq!(refined.len(), built + 1 + 16);
     assert!(refined.windows(2).all(|w| w[0].0.done <= w[1].0.done));
-    // Another air begins with a draft of it, which costs as much a frame; a little of one does without.
+    // A large change of air begins with a draft of its tables, which costs as much a frame; a small change needs no
+    // draft.
     let far = run(&mut tables, &planet.with_air_scaled(1.3), &mut follow);
     assert!(far.iter().all(|(p, _)| p.work <= share + 1e-6) && far[0].0.done == 0.0);
     assert!(far.len() > refined.len() + 16, "{} after {}", far.len(), refined.len());
@@ -397,7 +399,7 @@ fn who_shows_the_same_planet_shares_its_tables() {
     let (mut a, mut b) = (make(), make());
     assert!(follow(&mut a, &planet, 0.1).work > 0.9 && follow(&mut b, &planet, 0.1).work == 0.0);
     assert_eq!((a.builds(), light(&a)), (1, light(&b)));
-    // A change that both follow is built once, by the parts of both.
+    // A change that both observers follow is built once, and both do parts of the work.
     let mut shares = [0.0f32; 2];
     for _ in 0..40 {
         shares[0] += follow(&mut a, &hazy, 0.1).work;
@@ -407,7 +409,7 @@ fn who_shows_the_same_planet_shares_its_tables() {
     let mut alone = SkyTables::new(&device, &settings).unwrap();
     follow(&mut alone, &hazy, 1.0);
     assert_eq!((a.builds(), light(&a), light(&b)), (2, light(&alone), light(&alone)));
-    // One who gives up a build leaves it to the other; the last one ends it.
+    // If one observer gives up a build, the other continues it; if the last one gives it up, it ends.
     let thin = golden_planet().with_air_scaled(0.5);
     follow(&mut a, &thin, 0.1);
     follow(&mut b, &thin, 0.1);
@@ -424,7 +426,7 @@ fn threads_that_want_one_planet_build_it_once() {
     let (device, settings) = (device(), coarse(SkyModel::Directional));
     let library = SkyLibrary::default();
     let planet = golden_planet();
-    // Held, so that what one thread has built is not gone before the next one looks.
+    // Keeps the shared tables alive after one thread has finished, until the next one asks the library for them.
     let keeper = SkyTables::of_library(&library, &device, &settings).unwrap();
     let all: Vec<SkyTables> = std::thread::scope(|scope| {
         let one = || {

@@ -47,7 +47,7 @@ fn default_model_meets_the_golden_table() {
     assert!(day < 0.03 && twilight < 0.1, "{day} {twilight}");
 }
 
-/// Places and directions that no table of the model has a node at: altitude, then view zenith angles in degrees.
+/// Altitudes and directions at which no table of the model has a node: altitude, then view zenith angles in degrees.
 const PLACES: [(f64, &[f64]); 4] = [
     (1.0, &[3.0, 47.0, 76.0, 86.0, 89.6]),
     (2000.0, &[12.0, 84.0, 90.4, 96.0, 150.0]),
@@ -112,7 +112,7 @@ fn holds_against_the_reference(name: &str, planet: &Planet, documented: [f64; 4]
     println!("{name}: median, p95, worst, transmittance {found:.5?}; worst {place}");
     for (found, documented) in found.iter().zip(documented) {
         assert!(*found < documented, "{name}: {found} is above the documented {documented}; worst {place}");
-        // A figure that has become much better is to be written anew.
+        // A documented error that has become much smaller must be updated.
         assert!(*found > 0.7 * documented, "{name}: {found} is far below the documented {documented}");
     }
 }
@@ -139,7 +139,7 @@ fn default_model_follows_the_reference_in_haze() {
     holds_against_the_reference("haze", &hazy_planet(), [0.0035, 0.024, 0.8, 7e-4]);
 }
 
-/// Every number of [`SkySettings`] at its least.
+/// Least value of every number of [`SkySettings`].
 const LEAST: SkySettings = SkySettings {
     model: SkyModel::Directional,
     wavelengths: 3,
@@ -264,7 +264,7 @@ fn drawn_light_is_the_hosts(planet: &Planet, settings: &SkySettings) {
         let known = light.irradiance(altitude, sun.cos());
         let sh = light.sh9(altitude, [sun.sin(), 0.0, sun.cos()]);
         let turned = light.sh9(altitude, [0.0, sun.sin(), sun.cos()]);
-        // The same by adding up the sky and the ground that are drawn.
+        // The same sum over the drawn sky and ground.
         let sky = probe.under_sun(Question::Sky, altitude, sun, &rays).unwrap();
         let ground = probe.under_sun(Question::Ground, altitude, sun, &rays).unwrap();
         for (c, known) in known.iter().enumerate() {
@@ -291,7 +291,7 @@ fn drawn_light_is_the_hosts(planet: &Planet, settings: &SkySettings) {
     }
 }
 
-/// Largest channel's error over the luminance of skies that `settings` draw, rms, against `exact`.
+/// Error of the worst channel over the luminance, rms over the skies that `settings` draw, against `exact`.
 fn colour_error(planet: &Planet, wavelengths: u32, exact: &[[f64; 3]]) -> f64 {
     let device = Device::headless(&DeviceOptions::default()).unwrap();
     let settings = SkySettings { wavelengths, ..SkySettings::default() };
@@ -319,7 +319,7 @@ fn colour_views() -> Vec<(f64, f64)> {
 #[test]
 fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
     let planet = Planet::earth();
-    // The whole comparison is for acceptance: every three wavelengths are a planet of their own.
+    // The whole comparison runs only with WELKIN_ACCEPT: it needs a planet for every three wavelengths.
     let long = std::env::var_os("WELKIN_ACCEPT").is_some();
     let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.024) };
     let set = SpectralSet::new(many).unwrap();

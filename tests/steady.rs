@@ -1,8 +1,8 @@
-//! Steady state: after the first frames, recording allocates nothing of its own and keeps nothing.
+//! Steady state: after the first frames, Welkin allocates no memory of its own while recording and keeps none.
 //!
-//! wgpu allocates in every encoder and pass. So allocations are counted against the same wgpu calls made by hand, and,
-//! where there are line tables, some frames' allocations are asked who made them: the innermost caller that is wgpu's
-//! or Welkin's.
+//! wgpu allocates in every encoder and pass. So the number of allocations is compared with that of the same wgpu calls
+//! without Welkin. Where the binary has line tables, a backtrace of each allocation in some frames also shows its
+//! maker: the innermost caller that is wgpu's or Welkin's.
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -47,7 +47,8 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-// SAFETY: every call goes to the system's allocator unchanged; what counts and asks allocates outside of itself only.
+// SAFETY: every call goes to the system's allocator unchanged; counting and taking backtraces never enter themselves
+// again.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         CALLS.fetch_add(1, Relaxed);
@@ -73,7 +74,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Welkin's line that allocated, unless it was wgpu: the innermost caller that is either's.
+/// Welkin's source line that allocated, from the innermost caller that is Welkin's or wgpu's; `None` for wgpu.
 fn own_allocation(trace: &str) -> Option<&str> {
     // " 12: <wgpu_core::Type as Trait>::function" and below it, where there is a line table, " at
     // ./src/frame/view.rs:159".
@@ -88,7 +89,7 @@ fn own_allocation(trace: &str) -> Option<&str> {
     trace.lines().map(str::trim_start).find(|l| ours(l) || theirs(l)).filter(|l| ours(l))
 }
 
-/// Clouds, rain and fog.
+/// Weather with clouds, rain and fog.
 fn rainy() -> Weather {
     let precipitation = Precipitation { kind: PrecipitationKind::Rain, rate_mm_h: 2.0, ..Default::default() };
     let clouds = [(0.4, 500.0), (0.8, 1200.0), (0.3, 7000.0)].map(|(cover, base)| CloudLayer::new(cover, base));
@@ -101,7 +102,7 @@ fn rainy() -> Weather {
     }
 }
 
-/// A camera that drives and turns.
+/// Camera of frame `id`, which drives and turns.
 fn camera(id: u64) -> Camera {
     let angle = id as f64 * 0.01;
     let place = DVec3::new(0.2 * id as f64, 0.1 * id as f64, 50.0);
@@ -110,11 +111,11 @@ fn camera(id: u64) -> Camera {
 
 /// A host that records frames.
 trait Host {
-    /// Records frame `id` at `id` sixtieths of a second, waits, and says whether tables were rebuilt.
+    /// Records frame `id` at `id` sixtieths of a second, waits for it, and returns whether tables were rebuilt.
     fn record(&mut self, id: u64) -> bool;
 }
 
-/// A Rust host under that weather, with the same wgpu calls by hand beside it.
+/// A Rust host under such a weather, which can also make the same wgpu calls without Welkin.
 struct RustHost {
     device: Arc<Device>,
     context: Context,
@@ -124,9 +125,9 @@ struct RustHost {
     copy: wgpu::Texture,
     uniform: wgpu::Buffer,
     target: wgpu::TextureView,
-    /// The depth that a software driver's composition tests against.
+    /// The depth with the pixels' kinds, which a software driver's composition tests against.
     kinds: Option<wgpu::TextureView>,
-    /// A shader that does nothing, to what, and how often.
+    /// A compute shader that does nothing, used for the bare calls.
     idle: wgpu::ComputePipeline,
     held: wgpu::BindGroup,
     list: wgpu::Buffer,
@@ -191,7 +192,7 @@ impl RustHost {
         desc.world.kind = WorldKind::Tangent;
         let mut context = Context::new(device.clone(), shared, desc).unwrap();
         context.set_weather(weather, 0.0, 0.0).unwrap();
-        // A volume has passes that the bare calls do not know.
+        // A volume of clouds has passes that the bare calls do not have.
         context.set_cloud_model(CloudModel::Deck);
         let view = View::new(&context).unwrap();
         let uniform = device.device.create_buffer(&wgpu::BufferDescriptor {
@@ -229,15 +230,15 @@ impl RustHost {
         }
     }
 
-    /// Under clouds that are a volume.
+    /// A host under clouds that are drawn as a volume.
     fn under_a_volume(backends: wgpu::Backends) -> Self {
         let mut host = Self::new(backends);
         host.context.set_cloud_model(CloudModel::Volume);
         host
     }
 
-    /// The same wgpu calls without Welkin: uploads, a copy, a pass that finds drops, one that draws them, and those of
-    /// the composition.
+    /// Makes the same wgpu calls without Welkin: uploads, a copy, a pass that lists drops, one that draws them, and
+    /// those of the composition.
     fn bare(&self) {
         let device = &self.device.device;
         for _ in 0..6 {
@@ -253,7 +254,7 @@ impl RustHost {
         }
         pass.dispatch_workgroups_indirect(&self.times, 0);
         drop(pass);
-        // A software driver's composition begins with a grid of the weather.
+        // A software driver's composition begins with passes for a grid of the weather.
         let grid = ["grid", "cells"].into_iter().filter(|_| self.kinds.is_some());
         for label in grid.chain(["drops", "composite"]) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -290,7 +291,7 @@ impl Host for RustHost {
     }
 }
 
-/// The same through the C functions.
+/// The same host through the C functions.
 struct CHost {
     device: *mut wk_device,
     context: *mut wk_context,
@@ -302,7 +303,7 @@ struct CHost {
     report: wk_report,
 }
 
-/// Every field at its default.
+/// A struct with every field at its default.
 fn init<T>(name: &str) -> T {
     let mut bytes = vec![0_u64; size_of::<T>().div_ceil(8)];
     assert_eq!(abi::init(name, &mut bytes, size_of::<T>() as u32), WK_OK);
@@ -385,7 +386,8 @@ impl Drop for CHost {
     }
 }
 
-/// Allocations of a frame, as the mean of those that built no table; bytes that stayed; how many frames built tables.
+/// Mean number of allocations of the frames that built no table, bytes that were not freed, and number of frames that
+/// built tables.
 struct Count {
     calls: f64,
     kept: i64,
@@ -405,8 +407,8 @@ fn count(frames: std::ops::Range<u64>, mut frame: impl FnMut(u64) -> bool) -> Co
     Count { calls: calls as f64 / (number - rebuilt) as f64, kept: LIVE.load(Relaxed) - live, rebuilt }
 }
 
-/// Behind a windscreen with a wiper: the same host, which must allocate nothing of Welkin's either. How many passes a
-/// frame takes goes with the time it stands for, so wgpu's own are not compared.
+/// The same host behind a windscreen with a wiper, where Welkin may not allocate either. The number of passes depends
+/// on the time between frames, so wgpu's allocations are not compared.
 struct Behind(RustHost);
 
 impl Host for Behind {
@@ -424,7 +426,7 @@ impl Host for Behind {
     }
 }
 
-/// Frames of a host that must allocate nothing of Welkin's and keep nothing, however many passes wgpu is asked for.
+/// Checks frames in which Welkin may neither allocate nor keep memory, whatever number of passes they have.
 fn quiet(name: &str, host: &mut dyn Host, warm: u64, frames: u64) {
     for id in 0..warm {
         host.record(id);
@@ -438,7 +440,7 @@ fn quiet(name: &str, host: &mut dyn Host, warm: u64, frames: u64) {
     }
 }
 
-/// Who in Welkin allocates in `frames`, tables rebuilt or not.
+/// Welkin's source lines that allocate in `frames`, whether tables were rebuilt or not.
 fn own_allocations(host: &mut dyn Host, frames: std::ops::Range<u64>) -> Vec<String> {
     for id in frames {
         ASKING.store(true, Relaxed);
@@ -460,8 +462,8 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
         "{name}: {calls:.2} allocations a frame, the same wgpu calls alone {bare:.2}; {rebuilt} of {frames} frames rebuilt \
          tables; kept {kept} bytes"
     );
-    // The bare pass binds nothing; wgpu's lists for our pipelines and bind groups make some allocations more, 7 on
-    // lavapipe.
+    // The bare pass binds nothing; wgpu's lists for Welkin's pipelines and bind groups need a few more allocations, 7
+    // on lavapipe.
     assert!(calls <= bare + 8.0, "{name}: recording allocates {calls} times a frame, wgpu alone {bare}");
     assert!(kept < 64 * 1024, "{name}: {frames} frames kept {kept} bytes");
     assert!(rebuilt > 0 && rebuilt < frames / 2, "{name}: the sun moves: {rebuilt}");
@@ -546,7 +548,7 @@ fn snow_on_tiles_allocates_nothing() {
     let mut hour = 0.0;
     for (temperature_c, kind) in [(-5.0, PrecipitationKind::Snow), (4.0, PrecipitationKind::Rain)] {
         context.set_weather(&weather(temperature_c, kind), hour * 3600.0, 0.0).unwrap();
-        // What the weather was before is forgotten by then.
+        // By then the change of the weather has ended and its start is dropped.
         hour += 2.0;
         context.update(hour * 3600.0).unwrap();
         OWN.lock().unwrap().clear();
@@ -562,7 +564,7 @@ fn snow_on_tiles_allocates_nothing() {
 
 #[test]
 fn recording_allocates_nothing_of_its_own() {
-    // What wgpu does for backtraces of its own is not counted, and must not hold the lock that asking needs.
+    // wgpu's own backtraces are off: they would be counted, and would hold the lock that the test's backtraces need.
     // SAFETY: nothing else runs in this process yet that reads the environment.
     unsafe { std::env::set_var("RUST_LIB_BACKTRACE", "0") };
     wind_fields_allocate_nothing();
@@ -585,7 +587,7 @@ fn recording_allocates_nothing_of_its_own() {
             quiet("under clouds of a volume", &mut RustHost::under_a_volume(backends), WARM, 1000);
             let night = Utc(1_768_773_600.0);
             quiet("a clear night", &mut RustHost::under(backends, &clear(), night), WARM, 1000);
-            // Flashes come and go meanwhile, 3 a minute; the first makes what all of them draw with.
+            // Three flashes a minute come and go meanwhile; the first one creates the pipelines of all.
             quiet("a storm", &mut RustHost::under(backends, &storm(), night), 3600, 3600);
             // The long soak of the acceptance suite: most of an hour at 60 frames a second.
             let frames = if std::env::var_os("WELKIN_ACCEPT").is_some() { 200_000 } else { frames };

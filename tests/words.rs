@@ -1,5 +1,5 @@
-//! How the code reads: a doc block begins with a noun or a verb, no line of a comment is wider than 120 columns, one
-//! name of a type has one meaning, what sets something is not named as a question, and the glossary is short.
+//! Rules for the words of the code: a doc block begins with a noun or a verb, no line of a comment is wider than 120
+//! columns, a type name has one meaning, a setter is not named like a question, and the glossary is short.
 
 use std::{
     collections::BTreeMap,
@@ -9,7 +9,7 @@ use std::{
 
 /// Most columns of a line of a comment. Tables are as wide as they are.
 const COLUMNS: usize = 120;
-/// Openings that say neither what a thing is nor what it does.
+/// First words of doc blocks that tell neither what a thing is nor what it does.
 const OPENINGS: [&str; 6] = ["Of", "The same", "Likewise", "Those", "Which", "What"];
 
 fn files(folders: &[&str]) -> Vec<(PathBuf, String)> {
@@ -88,7 +88,7 @@ fn comments_are_at_most_120_columns_wide() {
     assert!(all.is_empty(), "{} lines:\n{}", all.len(), all.join("\n"));
 }
 
-/// Types of users' own whose names two public modules share.
+/// Names of public types that two public modules share.
 const SHARED_NAMES: [&str; 8] = ["Moment", "Place", "Ray", "Span", "Surface", "Table", "View", "Wind"];
 
 /// Names of the types that a file defines outside of its tests and of text in quotes.

@@ -34,7 +34,7 @@ fn median(mut times: Vec<f64>) -> f64 {
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let shared = Arc::new(Shared::new(&device)?);
-    // Sky above, a plain below.
+    // Sky in the upper half of the picture, a plain in the lower half.
     let half = (SIZE.0 * SIZE.1 / 2) as usize;
     let depths: Vec<f32> = (0..2 * half).map(|i| if i < half { 0.0 } else { 1e-3 }).collect();
     for name in ["clear", "fog"] {

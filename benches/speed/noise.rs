@@ -22,7 +22,7 @@ pub fn run() -> welkin::Result<()> {
         ("a volume of their edges", NoiseKind::Cellular, 3, 4, [32; 3]),
     ] {
         let settings = NoiseSettings { kind, octaves, frequency: [frequency; 3], ..Default::default() };
-        // The driver compiles in the first round.
+        // The driver compiles in the first round, which does not count.
         let mut best = [Duration::MAX; 3];
         for _ in 0..3 {
             let start = Instant::now();

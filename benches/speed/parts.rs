@@ -87,7 +87,7 @@ impl Bench {
     /// Time of a frame with parts at these rungs, relative to the frame with none before it. The median of many is
     /// taken, so that other load on the machine affects both.
     fn ratio(&mut self, rungs: Rungs) -> Fallible<f64> {
-        // The first frame of each compiles.
+        // The first frame of each choice compiles its pipelines.
         let mut ratios = Vec::new();
         for _ in 0..42 {
             let none = self.frame_with(NONE)?;

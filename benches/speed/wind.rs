@@ -5,8 +5,7 @@ use std::time::Instant;
 use glam::{DVec3, dvec3};
 use welkin::flow::{FlowBox, FlowField, FlowObstacles, FlowSettings};
 
-/// Cells of fields, each twice as many as those of the one before. The last has as many as that of the snow simulator
-/// among the sources.
+/// Numbers of cells of the fields; each field has twice as many as the one before.
 const SIZES: [[u32; 3]; 4] = [[64, 64, 16], [64, 64, 32], [128, 64, 32], [128, 128, 32]];
 /// Length of a step, s: as in a running simulation.
 const STEP_S: f64 = 0.5;

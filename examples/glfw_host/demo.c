@@ -8,7 +8,7 @@
 
 #include "objects.h"
 
-/* Light for frames without weather, which have no sky to light the scene: a made-up afternoon. */
+/* Light for frames without weather, which have no sky to light the scene: fixed values for an afternoon. */
 static light bare_light(void)
 {
     light l = {.sun_direction = direction(200.0, 40.0), .illuminance = {92e3f, 86e3f, 78e3f}, .cd_m2_per_unit = 3e4};

@@ -79,7 +79,7 @@ GL_FUNCTIONS(GL_DECLARE)
 /* From OpenGL 4.5; NULL on older contexts. It allows reversed depth, which stays precise up to the horizon. */
 extern PFNGLCLIPCONTROLPROC glClipControl;
 
-/* Loads all of them. If a required function is missing, returns false and prints its name on stderr. */
+/* Loads all functions. If a required one is missing, returns false and prints its name on stderr. */
 bool gl_load(const platform *p);
 
 /* Compiles and links a program. If the program's own GLSL is wrong, prints the driver's message and exits. */

@@ -1,4 +1,4 @@
-/* The light on the host's own objects. Welkin computes it (weather_link.c); without weather it is made up. */
+/* The light on the host's own objects: by Welkin (weather_link.c), or fixed values without weather. */
 #ifndef LIGHT_H
 #define LIGHT_H
 

@@ -48,7 +48,7 @@ struct FrameUniform {
     pixel_angle: f32,
     // 1 if the result is encoded by the sRGB curve: for a plain 8- or 10-bit target that holds display values.
     encode: u32,
-    // Share of the clear sky's light that scatters towards the camera below clouds.
+    // Mean share of sunlight, direct and diffuse, that the clouds let through to the air below them.
     medium_share: f32,
     // Share of the direct light of sun or moon that clouds let through.
     direct_share: f32,

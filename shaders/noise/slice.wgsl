@@ -2,8 +2,8 @@
 //!include "common/fullscreen.wgsl"
 //!include "noise/lattice.wgsl"
 
-// Not in the block: a software driver compiles another shader for each value of a loop's bound in a block, at every
-// draw.
+// This constant is not in the block: a software driver compiles another shader for each value of a loop's bound in a
+// block, at every draw.
 override OCTAVES: u32 = 1u;
 
 struct Slice {

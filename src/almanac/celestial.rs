@@ -1,7 +1,7 @@
 //! Orientation of the starry sky over a place: sidereal time, precession, nutation.
 //!
-//! Angles use the platform's sine and cosine, so directions agree between machines to 1e-14, not bit for bit. No
-//! simulated state depends on them.
+//! Sines and cosines come from `libm`, which gives the same bits on every machine. The sun's series
+//! ([`super::ephemeris`]) uses the platform's, so its directions agree between machines to 1e-14 only.
 
 use glam::{DMat3, DVec3};
 
@@ -35,7 +35,8 @@ fn mean_obliquity_deg(t: f64) -> f64 {
 pub fn mean_sidereal_time(utc: Utc) -> f64 {
     let days = utc.julian_date() - 2_451_545.0;
     let t = days / 36_525.0;
-    // Whole turns of the days are removed first: multiplying them by 360 degrees would cost ten bits by now.
+    // Each whole day is a whole turn and is dropped: with it the angle would grow to millions of degrees and lose ten
+    // bits.
     let turns = 360.0 * days.rem_euclid(1.0) + 0.985_647_366_29 * days;
     (280.460_618_37 + turns + t * t * (0.000_387_933 - t / 38_710_000.0)).rem_euclid(360.0).to_radians()
 }

@@ -56,8 +56,9 @@ impl Geocentric {
     }
 }
 
-/// Distance of the knots, s. The remainder of a cubic is 9/384 h^4 f''''. For the moon, whose fastest large term has a
-/// period of 9.6 days and whose mean motion has one of 27.3, it is below 1e-8 degrees (tested).
+/// Spacing h of the knots, s. Between the middle two of four knots a cubic differs from f by at most 9/384 h^4 f''''.
+/// For the moon, whose fastest large term has a period of 9.6 days and whose mean motion has one of 27.3, that is below
+/// 1e-8 degrees (tested).
 const STEP_S: f64 = 1800.0;
 
 /// Interpolated [`Geocentric`] as a function of time; keeps the knots of the last call.
@@ -66,7 +67,7 @@ const STEP_S: f64 = 1800.0;
 /// thread.
 #[derive(Debug, Default)]
 pub struct Ephemeris {
-    /// Number of the first knot, and the four knots from there on.
+    /// Number of the first knot, counted from 1970, and four knots from that one on.
     knots: Mutex<Option<(f64, [Geocentric; 4])>>,
 }
 
@@ -79,7 +80,7 @@ impl Ephemeris {
         if !(UTC_RANGE_S[0]..=UTC_RANGE_S[1]).contains(&utc.0) {
             return Err(utc.out_of_range());
         }
-        // Near the ends of the range the knots stay inside it.
+        // Near an end of the range the time lies outside the middle interval, because all knots stay in the range.
         let (lowest, highest) = ((UTC_RANGE_S[0] / STEP_S).ceil(), (UTC_RANGE_S[1] / STEP_S).floor() - 3.0);
         let first = ((utc.0 / STEP_S).floor() - 1.0).clamp(lowest, highest);
         let x = utc.0 / STEP_S - first;

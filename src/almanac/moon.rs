@@ -44,7 +44,7 @@ pub fn moon_position(utc: Utc, place: &Place) -> Result<MoonPosition> {
     Ok(lit(&Topocentric::new(&Geocentric::at(utc)?, utc, place)))
 }
 
-/// Returns the position of the moon over a place, with the light that it gets from the sun.
+/// Returns the position, phase and illuminance of the moon over a place.
 pub(crate) fn lit(turned: &Topocentric) -> MoonPosition {
     let seen = turned.moon_m;
     let direction = seen.normalize();
@@ -68,7 +68,7 @@ pub(crate) fn lit(turned: &Topocentric) -> MoonPosition {
 
 /// Returns the illuminance by the moon above the air, lux. The magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the
 /// phase angle a in degrees (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon), at the mean
-/// distance. A lux is -14.18 magnitudes.
+/// distance. One lux is magnitude -14.18.
 pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
     let a = phase_angle.abs().to_degrees();
     let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);

@@ -26,8 +26,8 @@ pub struct SunPosition {
     pub distance_au: f64,
 }
 
-/// Position of the sun over `place` at `utc`, seen from the place itself (topocentric), within 0.0005 degrees: NREL's
-/// solar position algorithm (Reda & Andreas 2004).
+/// Returns the position of the sun over `place` at `utc`, seen from the place itself (topocentric), within 0.0005
+/// degrees: NREL's solar position algorithm (Reda & Andreas 2004).
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -64,8 +64,8 @@ impl Topocentric {
     }
 }
 
-/// Ratio of the vertical to the horizontal diameter of a small disc, as refraction flattens it at a true elevation: 1 +
-/// d(refraction)/d(elevation).
+/// Returns the ratio of the vertical to the horizontal diameter of a small disc at a true elevation. Refraction
+/// flattens it to 1 + d(refraction)/d(elevation).
 pub fn disc_flattening(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = 0.13;
     let rise = refraction_deg(elevation_deg + h, pressure_hpa, temperature_c)

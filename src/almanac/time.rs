@@ -11,8 +11,8 @@ const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
-/// Range of the years -2000 to 6000 in seconds since 1970, as the sun's series has it. It ends 16 hours early, to leave
-/// room for the difference between terrestrial and universal time, which is 57,245 s then.
+/// Range of the sun's series, the years -2000 to 6000, in seconds since 1970. It ends 16 hours before the year 6000
+/// does, because terrestrial time, in which the series counts, is then 57,245 s ahead of universal time.
 pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_057_600.0];
 
 /// Years between which the difference between terrestrial and universal time is fitted to observations and simulations.
@@ -34,8 +34,8 @@ fn days_of(year: i32, month: u32) -> u32 {
     }
 }
 
-/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar. Years begin in March, so that the leap day is
-/// the last of a year (Richards 2013, Explanatory Supplement, section 15.11).
+/// Returns the number of days from 1970-01-01 to a date of the proleptic Gregorian calendar. Years begin in March, so
+/// that the leap day is the last of a year (Richards 2013, Explanatory Supplement, section 15.11).
 fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
     let (month, day) = (i64::from(month), i64::from(day));
     let year = i64::from(year) - i64::from(month <= 2);
@@ -78,7 +78,7 @@ impl Utc {
         self.0 / 86_400.0 + JD_UNIX_EPOCH
     }
 
-    /// Centuries of terrestrial time since J2000.0.
+    /// Returns the centuries of terrestrial time since J2000.0.
     pub(crate) fn julian_centuries_tt(self) -> f64 {
         (self.julian_date() + self.delta_t_s() / 86_400.0 - 2_451_545.0) / 36_525.0
     }
@@ -86,12 +86,12 @@ impl Utc {
     /// Returns TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. For the years -500 to 3000 it comes
     /// from the crate `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until
     /// 2015, then a quartic through the observations of IERS until the middle of 2026, and a quadratic through
-    /// simulations (Agnew 2026). Before and after these years it continues as the parabola of Morrison and Stephenson
-    /// (2004), 32 s per century squared for tidal friction, shifted to meet the fit.
+    /// simulations (Agnew 2026) after that. Before and after these years it continues as the parabola of Morrison and
+    /// Stephenson (2004), 32 s per century squared for tidal friction, shifted to meet the fit.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
         let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);
-        // The crate has an estimate for all of these years.
+        // The crate estimates every year of this range, so the default is never used.
         solar_positioning::delta_t::estimate(fitted).unwrap_or_default() + long_term_s(year) - long_term_s(fitted)
     }
 

@@ -109,7 +109,8 @@ impl Rays {
             let b = find(least, 1.0);
             high = (self.amplitude(b, turned), self.path(b));
         } else {
-            // Rays near the edge do not turn so far. The path continues linearly from that of the ray at the edge.
+            // All rays near the edge turn by less than this angle. The path continues linearly from that of the ray at
+            // the edge.
             high.1 += turned - most;
         }
         if turned < self.turn(0.0) {

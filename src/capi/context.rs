@@ -50,8 +50,9 @@ pub type wk_world_kind = u32;
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, with the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect; the origin only affects the sunlight that
-/// dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+/// Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin is the zero point of maps (of
+/// local cloud cover, fog patches, waves and lightning), and the place of the sunlight that dries a simulated ground
+/// (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Directions of the host's axes in flat and tangent worlds.

@@ -8,16 +8,17 @@ use crate::{
     world::GivenDirection,
 };
 
-/// Duration of the change to each weather, s, and shares of it at which it is drawn.
+/// Duration of the change to each weather, s, and shares of the change at which a picture is drawn.
 const CHANGE_S: f64 = 60.0;
 const SHARES: [f64; 12] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98];
-/// Times after the change, s: at once, and when the ground is as wet or white as it gets in a shower.
+/// Times after the change at which a picture is drawn, s: at once, and when the ground is as wet or white as in a
+/// shower.
 const SETTLED_S: [f64; 2] = [1.0, 180.0];
 /// Time for which each weather lasts before the next one comes, s.
 const LASTS_S: f64 = 120.0;
 /// Elevations of the sun under which each weather is drawn, degrees: day, a low sun, twilight, night.
 const SUNS_DEG: [f64; 5] = [40.0, 4.0, -4.0, -9.0, -30.0];
-/// Moments of each weather.
+/// Number of moments of each weather.
 const MOMENTS: usize = SHARES.len() + SETTLED_S.len() + SUNS_DEG.len();
 
 /// Weathers to rehearse, and the state to which the context returns.
@@ -35,12 +36,12 @@ impl Rehearsal {
         Ok(Self { weathers, saved: context.save()? })
     }
 
-    /// Weathers that are rehearsed.
+    /// Returns the weathers that are rehearsed.
     pub fn weathers(&self) -> &[Conditions] {
         &self.weathers
     }
 
-    /// Number of moments in all.
+    /// Returns the number of moments of all weathers.
     pub fn moments(&self) -> usize {
         MOMENTS * self.weathers.len()
     }
@@ -51,7 +52,7 @@ impl Rehearsal {
     /// As [`Context::update`]; call [`Self::leave`] then too.
     pub fn enter(&self, context: &mut Context, moment: usize) -> Result<()> {
         let (i, moment) = (moment / MOMENTS, moment % MOMENTS);
-        // The weathers before it leave their water and snow.
+        // The earlier weathers come first, so that their water and snow lie on the ground.
         for weather in self.weathers.iter().take(i) {
             let now_s = context.world.time_s;
             context.world.change_weather(*weather, now_s, 0.0)?;
@@ -70,7 +71,7 @@ impl Rehearsal {
         context.update(now_s + after_s)
     }
 
-    /// Returns the context to where it was.
+    /// Restores the state that the context had before the rehearsal.
     ///
     /// # Errors
     /// As [`Context::load`].

@@ -36,7 +36,7 @@ pub struct Context {
     pub(super) shared: Arc<Shared>,
     pub(crate) world: World,
     pub(crate) held: Held,
-    /// Settings as they were when an update began that still has steps to do; `None` without such an update.
+    /// Settings at the beginning of an update of which steps remain; `None` if no steps remain.
     pub(super) behind: Option<Box<Settings>>,
 }
 
@@ -183,8 +183,8 @@ impl Context {
         outcome
     }
 
-    /// Sets the host's lamps, in place of those before. They light what Welkin draws in their beams (today rain). Set a
-    /// moving lamp again every frame.
+    /// Sets the host's lamps, in place of those before. They light the drops, flakes, clouds and wet or snowy ground in
+    /// their beams. Set a moving lamp again every frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_LIGHTS`], or naming the field; nothing changes then.

@@ -18,7 +18,7 @@ const FORMAT: u32 = 2;
 /// Beginning of the first line.
 const MAGIC: &str = "welkin state ";
 
-/// Computes FNV-1a, 64 bits: it differs for any two texts that differ in one byte.
+/// Computes the 64-bit FNV-1a hash. It differs for any two texts of the same length that differ in one byte.
 fn checksum(text: &str) -> u64 {
     let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     text.bytes().fold(0xcbf2_9ce4_8422_2325, fold)
@@ -77,8 +77,9 @@ impl Context {
     }
 
     /// Saves everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights,
-    /// water, areas, shelters, lamps, wind grid, fog law, planet, exposure and tone curve, and the place, seed and
-    /// ground model for which the state is valid. Not saved are the way it is drawn (sky settings, views) and the
+    /// exposure, tone curve, planet, shelters, lamps, rain areas, maps, wind, fog law, the settings of single effects,
+    /// and the simulated water, snow and wind. It also contains the place, seed and ground model for which it is valid.
+    /// Not saved are settings of drawing (sky settings, views), the list of stars, heights of terrain tiles, and the
     /// images of [`Context::set_occluder_maps`], of which each channel has its own.
     ///
     /// # Errors

@@ -29,14 +29,14 @@ impl Context {
         Ok(())
     }
 
-    /// Advances time as [`Context::update`] does, but runs steps of the simulated ground only for about as long as
-    /// `most`: at least one step, or for terrain in tiles a part of one. [`Status::Pending`] says that steps remain:
-    /// call it again with the same time, now or after a frame, until it answers [`Status::Ok`].
+    /// Advances time as [`Context::update`] does, but runs steps of simulated states only for about as long as `most`:
+    /// at least one step, or for terrain in tiles a part of one. [`Status::Pending`] says that steps remain: call it
+    /// again with the same time, now or after a frame, until it returns [`Status::Ok`].
     ///
-    /// Until then weather and light are those of the new time, while water is shown and queried as of
-    /// [`Context::state_time_s`], and a still later time is refused. Settings made meanwhile take effect after the
-    /// remaining steps. The state is therefore the same for any `most`, and it can be saved only after the last step
-    /// ([`Context::save`]).
+    /// Until then weather and light are those of the new time, simulated water and snow are those of
+    /// [`Context::state_time_s`], and a call with a later time first runs the remaining steps: time advances once none
+    /// remains. Settings made meanwhile take effect after the remaining steps. The state is therefore the same for any
+    /// `most`, and it can be saved only after the last step ([`Context::save`]).
     ///
     /// # Errors
     /// As [`Context::update`].
@@ -123,7 +123,8 @@ impl Context {
             effect.publish(&mut self.world);
             match reached {
                 Ok(Status::Ok) => {}
-                // Later effects read the published state of this one. They must not see how far it gets in one call.
+                // Later effects read the published state of this one. They must not depend on how far it gets in one
+                // call.
                 Ok(status) => return Ok(status),
                 fault => advanced = fault,
             }
@@ -131,8 +132,8 @@ impl Context {
         advanced
     }
 
-    /// Lets each effect take over the host's settings since its last step, as far as they are part of its state. While
-    /// steps of an update remain, this waits for the last of them.
+    /// Lets each effect apply the settings that the host has made since its last step and that are part of its state.
+    /// While steps of an update remain, this does nothing; the last step calls it.
     pub(crate) fn settle(&mut self) {
         if self.behind.is_some() {
             return;
@@ -143,8 +144,8 @@ impl Context {
         }
     }
 
-    /// Returns the simulation time of the simulated state, s: the present, or an earlier time as long as
-    /// [`Context::update_within`] answers that steps remain. Without simulated state it is the present.
+    /// Returns the simulation time of the simulated state, s: the present, or an earlier time as long as steps of
+    /// [`Context::update_within`] remain. Without simulated state it is the present.
     pub fn state_time_s(&self) -> f64 {
         let stepped = self.held.all().into_iter().filter_map(|effect| effect.stepped_to_s());
         match &self.behind {

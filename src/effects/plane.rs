@@ -24,7 +24,7 @@ pub(crate) const CD_M2: [f64; 2] = [3000.0, 500.0];
 const SHADER: &str = "
 struct Plane {
     clip: mat4x4f,
-    // Camera-relative height, half size, and the camera's place among the squares.
+    // Height relative to the camera, half size, and the camera's position in the pattern of squares.
     height: f32,
     half_size: f32,
     origin: vec2f,

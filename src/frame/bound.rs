@@ -11,7 +11,7 @@ pub(super) struct Bound {
     pub normals: Option<KeptLayer>,
     /// Present textures of the effects.
     pub own: Own,
-    /// Previous textures of the effects and their bind group, for effects that draw into two textures by turns.
+    /// Previous textures of the effects and their bind group, for effects that draw into two textures alternately.
     pub before: Option<(Own, wgpu::BindGroup)>,
 }
 

@@ -36,8 +36,8 @@ impl View {
         frame.validate()
     }
 
-    /// Checks that the images can be drawn into and read, even if there is nothing to draw now: a host should not first
-    /// learn of unsuitable images when it starts to rain.
+    /// Checks that the images can be drawn into and read, even if there is nothing to draw now: a host should not learn
+    /// of unsuitable images only when it starts to rain.
     pub(super) fn check_images(&self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         if !stages.draw() {
             return Ok(());

@@ -109,7 +109,7 @@ impl View {
         let (frame, now) = (frame_context.frame, frame_context.now);
         let mut context =
             DrawContext { device: frame_context.device, frame, now, target, stages, plan: PlannedShares::whole(PARTS) };
-        // A rehearsal draws everything, and teaches the plan nothing.
+        // A rehearsal draws every part, and its pictures do not enter the plan.
         if self.rehearses() {
             return context;
         }
@@ -172,7 +172,8 @@ impl View {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(context.target.color, Layer::view);
         let groups = [group, tables, self.cache.surroundings.bind_group()];
-        // A GPU skips by branches what is not drawn; to compile another pipeline for that would delay a frame.
+        // On a GPU, branches skip the parts that are not drawn. Compiling another pipeline without them would delay a
+        // frame.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();

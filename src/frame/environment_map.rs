@@ -21,7 +21,7 @@ use crate::{
 /// Edge of a face in texels, and number of levels down to one texel.
 const SIZE: u32 = 64;
 const LEVELS: u32 = 7;
-/// Sample directions of the filter for a texel of each level; narrow lobes need few.
+/// Number of sample directions of the filter for a texel of each level; narrow lobes need few.
 const SAMPLES: [f32; LEVELS as usize] = [0.0, 16.0, 32.0, 64.0, 64.0, 64.0, 64.0];
 /// Number of source levels that the filter reads.
 const SOURCE_LEVELS: u32 = 5;
@@ -83,7 +83,7 @@ struct EnvironmentInputs {
     world_to_enu: DMat3,
 }
 
-/// Changes from one frame to the next that count as a jump: of a size, and of a direction (rad).
+/// Smallest changes from one frame to the next that count as a jump: of one of the `sizes`, and of a direction (rad).
 const LEAP: f64 = 0.05;
 const LEAP_RAD: f64 = 0.02;
 /// Ratios of adaptation luminance to the map's scale for which half floats are precise enough.
@@ -137,7 +137,7 @@ pub(super) struct EnvironmentMap {
     drawn: Option<EnvironmentInputs>,
     /// Face that the next frame draws.
     next: u32,
-    /// Frame that drew its faces last.
+    /// Last frame in which faces were drawn.
     pub frame_id: Option<u64>,
     /// Factor from texels to cd/m^2.
     pub cd_m2_per_unit: f64,

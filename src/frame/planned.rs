@@ -1,4 +1,4 @@
-//! Budget and plan of a view: what its pictures may leave out, and what they have left out.
+//! Budget and plan of a view: the parts that its pictures may leave out, and those that they have left out.
 
 use glam::DVec3;
 
@@ -50,8 +50,8 @@ impl View {
         device.check()
     }
 
-    /// Reports the time that the weather took in the last frame, ms, measured as the host means its budget (by its GPU
-    /// timer, or by a call that waits). Under a budget of time the plan follows these reports.
+    /// Reports the time that the weather took in the last frame, ms, measured in the way that the host's budget refers
+    /// to (by the host's GPU timer, or by a call that waits). Under a budget of time the plan follows these reports.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; the view is then unchanged.
@@ -80,7 +80,7 @@ impl View {
     ///
     /// # Errors
     /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;
-    /// [`Status::InvalidArgument`], which names the sky's setting in which the view's context differs.
+    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();

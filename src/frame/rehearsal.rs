@@ -46,12 +46,13 @@ impl View {
         record(self, &own)
     }
 
-    /// Draws weathers that may come, into small images of its own, so that hardly a frame waits for a shader once they
-    /// come: their pipelines are compiled, and the first of their tables are made. Each weather is drawn while the one
-    /// before it changes to it, once it lasts, and under several heights of the sun. `frame` is one like those to come:
-    /// with the formats, samples and usages of their images, which are not drawn into, and their settings. `calls` are
-    /// the stages of the calls of one frame, in order, at most seven. Call it before the first frame or behind a
-    /// loading screen: the next frame begins as a view's first one does. The context is as before afterwards.
+    /// Draws weathers that may come, into small images of the view's own. Their pipelines are then compiled and their
+    /// first tables made, so that hardly any frame waits for them when the weather comes. Each weather is drawn while
+    /// the previous one changes to it, after the change, and with the sun at several heights. `frame` stands for the
+    /// frames to come: it has their settings, and images with their formats, samples and usages. These images are not
+    /// drawn into. `calls` are the stages of the calls of one frame, in order, at most seven. Call it before the first
+    /// frame or behind a loading screen: the next frame begins as a view's first one does. The context is as before
+    /// afterwards.
     ///
     /// One call draws for about `most`, at least one moment of a weather. [`Status::Pending`] says that moments remain:
     /// call it again with the same weathers. Other weathers begin anew.
@@ -93,7 +94,8 @@ impl View {
         Ok(Status::Ok)
     }
 
-    /// Checks the calls of a rehearsal's frames; begins it anew if the weathers are others than in the last call.
+    /// Checks the calls of a rehearsal's frames. Begins the rehearsal anew if the weathers differ from those of the
+    /// last call.
     pub(crate) fn begin_rehearsal(
         &mut self,
         context: &Context,
@@ -111,7 +113,7 @@ impl View {
         Ok(rehearsal)
     }
 
-    /// Next moment to draw. After the last there is none, and the next rehearsal begins anew.
+    /// Returns the next moment to draw. After the last moment it returns `None`, and the next rehearsal begins anew.
     pub(crate) fn next_moment(&mut self, rehearsal: &Rehearsal) -> Option<usize> {
         let done = self.rehearsal.done;
         if done < rehearsal.moments() {

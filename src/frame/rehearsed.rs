@@ -2,7 +2,7 @@
 
 use crate::{stage::Frame, weather::Conditions};
 
-/// Side of the rehearsed pictures, pixels: the smallest that is drawn as larger ones are.
+/// Side of the rehearsed pictures, pixels: the smallest side for which the coarse grid is used, as in larger pictures.
 const SIDE: u32 = 64;
 /// State of a view's rehearsal.
 #[derive(Default)]
@@ -52,7 +52,7 @@ impl RehearsedView {
         }
     }
 
-    /// The images, and the number of the rehearsed frame, in place of the host's.
+    /// Returns the images and the frame number that replace the host's.
     pub fn images(&self) -> ([Option<wgpu::Texture>; 5], u64) {
         (self.images.clone(), u64::MAX / 2 + self.frames)
     }

@@ -1,5 +1,5 @@
-//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: a scene is lit without units and its
-//! white is 1; with 1 cd/m^2 per unit it is black in daylight, and nothing else would say why.
+//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: in a scene lit without units white
+//! is 1. With 1 cd/m^2 per unit that white is black in daylight, and only this warning says why.
 //!
 //! In formats whose values end at 1 the largest value is known. From float formats a few rows of the host's picture are
 //! read back without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged
@@ -15,7 +15,7 @@ use crate::{
     stage::{ColorSpace, Frame, can_copy},
 };
 
-/// Number of rows that are read back, spread over the picture.
+/// Number of rows that are read back, evenly spaced over the picture.
 const ROWS: u32 = 8;
 /// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;

@@ -108,8 +108,8 @@ impl View {
         if frame_id == self.history.report.frame_id { self.history.recorded } else { Stages(0) }
     }
 
-    /// Undoes a call that failed after it was recorded: the frame has the stages that it had before, so that the host
-    /// may record it again. Everything of the picture's size is dropped, because memory may have been too small for it.
+    /// Undoes a call that failed after it was recorded: its stages no longer count as recorded, so that the host may
+    /// record them again. Everything of the picture's size is dropped, because memory may have been too small for it.
     pub(crate) fn take_back(&mut self, recorded: Stages) {
         self.history.recorded = recorded;
         self.forget_images();
@@ -149,7 +149,7 @@ impl View {
         held.into_iter().map(|(pixels, program, constants)| (format!("{pixels:?}"), program, constants)).collect()
     }
 
-    /// Creates what the view needs of the picture's size, before anything of the frame is recorded, because memory may
+    /// Creates the resources that have the picture's size, before anything of the frame is recorded, because memory may
     /// be too small for a large target.
     fn hold_images(&mut self, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         let Some(color) = frame.color else { return Ok(()) };
@@ -183,8 +183,8 @@ impl View {
         device.check_made()
     }
 
-    /// Charges the time since `start`, less that of the measured call itself, to [`CostItem::HandOver`]: it went into
-    /// taking over and returning the host's context and images.
+    /// Charges the time since `start`, less that of the measured call itself, to [`CostItem::HandOver`]: the time in
+    /// which the host's context and images were imported and returned.
     pub(crate) fn add_hand_over(&mut self, start: Instant) {
         if let (Some(costs), Some(inside)) = (&mut self.history.report.costs, self.history.last_call) {
             let ms = (start.elapsed().saturating_sub(inside)).as_secs_f64() * 1e3;

@@ -20,8 +20,8 @@ use crate::{
 };
 
 impl Context {
-    /// Returns the share of light that air, fog, rain, snow and clouds drawn as a volume let through between `from` and
-    /// `to` at simulation time `time_s`. Rain areas count with the mean over their curtains.
+    /// Returns the share of light that passes from `from` to `to` at simulation time `time_s` through air, fog, rain,
+    /// snow, and clouds if they are drawn as a volume. For rain areas it is the mean over their curtains.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if a position is invalid, or both are the same; for times as
@@ -36,7 +36,7 @@ impl Context {
         }
         let clouds = self.cloud_rays((&scene, from), time_s)?;
         let through = self.through(&scene, clouds.as_ref(), from, offset, time_s)?;
-        // Without `abs` the logarithm of 1 could be -0.
+        // Negating the logarithm of 1 would give -0.
         let mean = through[1].max(f64::MIN_POSITIVE).ln().abs() / distance;
         Ok(Between { transmittance: through, visibility_m: koschmieder_visibility_m(mean) })
     }
@@ -44,8 +44,8 @@ impl Context {
     /// Returns the slant visual range, m: the distance at which a black object along `direction` is just visible from
     /// `position`, at simulation time `time_s`. `direction` is a unit vector (east, north, up) there. At that distance
     /// [`Context::between`] leaves 5 % of the light of 550 nm, and the object's contrast falls to 5 %. Air, fog, rain,
-    /// snow, rain areas, and clouds drawn as a volume count. Infinite if more light is left at the end of the air or on
-    /// the planet's ground.
+    /// snow, rain areas, and clouds drawn as a volume count. Infinite if more than 5 % is left where the ray leaves the
+    /// air or meets the planet's ground.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid or the direction is not a unit vector; for times
@@ -127,7 +127,7 @@ impl Context {
             (sh.map(colored), colored(table.irradiance(scene.place.altitude_m, light.direction.z))[1])
         };
         let ((sun, sun_e), (moon, moon_e)) = (clear(&scene.sun), clear(&scene.moon));
-        // Clouds and fog replace the clear sky's pattern by a uniform one of the light that they let through.
+        // Clouds and fog replace the clear sky's pattern by a uniform sky, which has the light that they let through.
         let through = if scene.ground != scene.above_fog {
             let above = Viewpoint::flat(scene.place.altitude_m);
             LowAir::even(&scene.conditions).transmittance(&above, DVec3::Z * 1e5)?[1]
@@ -238,7 +238,7 @@ pub(super) fn unit_vector(name: &str, direction: DVec3) -> Result<DVec3> {
     Err(Error::range(name, "a unit vector (east, north, up)", direction))
 }
 
-/// Adds a sky of uniform radiance `u` above the horizon, and a ground of this albedo that it lights.
+/// Adds a sky of uniform radiance `u` above the horizon, and below it a ground of this albedo that the sky lights.
 fn add_even_sky(sh: &mut Sh9, u: [f32; 3], albedo: [f64; 3]) {
     // Integrals of the basis over the upper half: Y00 sqrt(pi), Y10 sqrt(3 pi)/2, the zonal Y20 vanishes.
     let (y00, y10) = (std::f32::consts::PI.sqrt(), (3.0 * std::f32::consts::PI).sqrt() / 2.0);

@@ -51,7 +51,8 @@ impl Context {
     }
 
     /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away,
-    /// (east, north, up) of the first: the mean over their curtains. It is negative where they thin the weather's rain.
+    /// (east, north, up) of the first: the mean over their curtains. It is negative where the areas have less rain than
+    /// the weather.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

@@ -12,8 +12,8 @@ use crate::{
 const MOST_SHORTEST_M: f64 = 1e4;
 
 impl Context {
-    /// Sets the sea, or takes it away with `None`; part of the saved state. Set it before the first update: what it
-    /// says about fetch holds for all weather that the timeline still knows.
+    /// Sets the sea; `None` removes it. Part of the saved state. Set it before the first update, because its fetch
+    /// applies to all weather that the timeline still knows.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -26,10 +26,9 @@ impl Context {
         self.held.sea.settings()
     }
 
-    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
-    /// place on the ground of a position counts, not its height. `shortest_wave_m`, [0, 1e4], leaves out shorter waves,
-    /// and tiles that hold no longer ones; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height
-    /// may be off.
+    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. The height
+    /// of a position has no influence. `shortest_wave_m`, [0, 1e4], leaves out shorter waves, and tiles that have only
+    /// such waves; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may be off.
     ///
     /// The first query of a time sums the short waves (some milliseconds); the sums of the last two times are kept.
     /// Nothing is allocated after the first queries.

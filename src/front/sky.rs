@@ -18,7 +18,7 @@ use crate::{
     world::color_of,
 };
 
-/// Distance, m, below which the light of fog has no air in front of it.
+/// Distance of fog, m, below which the air in front of its light is ignored.
 const NEAR_FOG_M: f64 = 50.0;
 /// Ratio E / (pi L) of an overcast sky: E is the illuminance of level ground, L the luminance of the zenith (Moon and
 /// Spencer 1942).
@@ -32,8 +32,8 @@ impl Context {
     /// areas, and the host's objects.
     ///
     /// Clear air comes from its f64 reference, at three wavelengths. The first call in a new state of the air solves
-    /// it; that takes a second or two, during which other threads that call this wait. The last four solutions are kept
-    /// for all contexts of the device.
+    /// it; that takes a second or two, during which other threads that call this function wait. The last four solutions
+    /// are kept for all contexts of the device.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid or a direction is not a unit vector; for times as
@@ -82,7 +82,7 @@ impl DirectionLight<'_> {
         [&self.scene.sun, &self.scene.moon].into_iter().filter(|light| light.matters)
     }
 
-    /// Returns the clear sky, solved on first use: a closed deck or dense fog hides all of it.
+    /// Returns the clear sky. It is solved at the first use, because a closed deck or dense fog may hide all of it.
     fn clear(&self) -> Result<&SolvedSky> {
         if let Some(solved) = self.solved.get() {
             return Ok(solved);
@@ -102,7 +102,7 @@ impl DirectionLight<'_> {
         DVec3::from_array(color_of(&self.scene.color, spectrum)).max(DVec3::ZERO)
     }
 
-    /// Returns the share of the sky above that is a deck.
+    /// Returns the share of the sky above the horizon that is drawn as a deck.
     fn deck_share(&self) -> f64 {
         self.clouds.as_ref().map_or(self.scene.deck_cover, |clouds| f64::from(u8::from(clouds.has_deck)))
     }

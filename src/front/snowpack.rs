@@ -63,7 +63,7 @@ impl Context {
         Ok(done)
     }
 
-    /// Advances time by `hours`, (0, 720], with the snow in steps of ten minutes, so that a lesson can begin after a
+    /// Advances time by `hours`, (0, 720], with the snow in steps of ten minutes, for a scene that begins after a
     /// night's snowfall. The laws are those of ordinary steps. The state differs from that of ordinary steps by up to
     /// some percent, and records the time simulated this way ([`Context::snow_laid_fast_s`]). Everything else advances
     /// as by [`Context::update`].

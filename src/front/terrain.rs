@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets the lattice of a terrain in tiles, at first without tiles, in place of the terrain before, be that tiles or
-    /// a grid; `None` leaves none. If the lattice is the present one, it keeps its tiles.
+    /// Replaces the host's terrain, tiles or grid, by one in tiles on this lattice, at first without any tile; `None`
+    /// removes the terrain. If the lattice is the present one, it keeps its tiles.
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
     /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`].

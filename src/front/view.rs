@@ -58,9 +58,9 @@ impl View {
         Ok(())
     }
 
-    /// Sets the windscreen through which the view looks; `None` removes it. A host that drives, turns its head or wipes
-    /// sets it again before each frame: the water stays on the glass as long as the size stays the same. Unchanged
-    /// after an error.
+    /// Sets the windscreen through which the view looks; `None` removes it. A host sets it again before each frame in
+    /// which the vehicle drives, the head turns or the wiper moves. The water stays on the glass as long as the size
+    /// stays the same. After an error the windscreen is unchanged.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.

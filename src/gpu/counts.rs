@@ -14,7 +14,7 @@ pub(crate) enum DeviceWork {
     PipelineTime,
     /// Bytes written to buffers and textures.
     UploadBytes,
-    /// Gauges drawn, and answers of gauges taken.
+    /// Gauges drawn, and results of gauges read.
     Gauges,
     /// Waits for the GPU to read something back.
     Readbacks,

@@ -123,7 +123,7 @@ impl Drop for Entrance {
     }
 }
 
-/// Last field of a device to be dropped: leaves the host's context, and tells the binding that the device is gone.
+/// Last field of a device to be dropped: leaves the host's context, and calls the binding's `closed` or `forsaken`.
 struct Exit {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -198,8 +198,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// Creates the device as [`Device::adopt`] does, without testing the driver: it is trusted, or tested by the
-    /// caller.
+    /// Creates the device as [`Device::adopt`] does, without testing the driver. The caller trusts it or tests it.
     pub(super) fn around(
         instance: wgpu::Instance,
         adapter: wgpu::Adapter,
@@ -408,8 +407,8 @@ impl Device {
         Ok(made)
     }
 
-    /// Submits the commands. Threads take turns, so semaphores and barriers that a Vulkan host has staged go with its
-    /// own submission.
+    /// Submits the commands. Only one thread submits at a time, so that the semaphores and barriers that a Vulkan host
+    /// has staged belong to its own submission.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();

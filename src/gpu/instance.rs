@@ -40,9 +40,9 @@ pub(super) fn open(backends: wgpu::Backends, display: Option<KeptDisplay>) -> Re
     Ok(wgpu::Instance::new(desc))
 }
 
-/// Whether libwayland is able to look for a compositor. If it is not, it says so on standard error. A layer that comes
-/// with Mesa (`VK_LAYER_MESA_device_select`) makes it look whenever an instance has `VK_KHR_wayland_surface`, which
-/// wgpu always requests.
+/// Whether libwayland is able to look for a compositor. If it is not, libwayland prints an error on standard error. A
+/// layer that comes with Mesa (`VK_LAYER_MESA_device_select`) makes it look whenever an instance has
+/// `VK_KHR_wayland_surface`, which wgpu always requests.
 #[cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
 fn wayland_can_be_asked() -> bool {
     let is_absolute = |name: &str| std::env::var_os(name).is_some_and(|path| std::path::Path::new(&path).is_absolute());

@@ -1,10 +1,10 @@
-//! Rectangle of heights, with what is known of the distance and the place of its samples.
+//! Rectangle of heights, with the distance and the place of its samples if they are known.
 
 use crate::error::{Error, Result, Status, check_range};
 
 /// Largest number of samples of a height map: a square of 16 384.
 pub const MAX_HEIGHT_SAMPLES: u64 = 1 << 28;
-/// Largest height above or below 0, m, as terrain has it.
+/// Largest height above or below 0, m, the same as for terrain.
 pub(super) const MOST_M: f64 = 1e5;
 
 /// Least and largest distance between samples.
@@ -55,7 +55,7 @@ impl HeightMap {
         Ok(self)
     }
 
-    /// Returns the map with what a file says of its samples' distance and place.
+    /// Returns the map with the distance and place of its samples from a file.
     pub(super) fn placed(mut self, cell: Option<[f64; 2]>, south_west: Option<[f64; 2]>) -> Self {
         (self.cell, self.south_west) = (cell, south_west);
         self

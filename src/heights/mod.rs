@@ -3,17 +3,17 @@
 //! A [`HeightMap`] is a rectangle of heights in metres. Its rows run from south to north and each row from west to
 //! east, as the cells of [`crate::terrain`] do. A height that is not known is NaN, which the terrain turns into a hole.
 //!
-//! | file | numbers | first row | what the file says besides |
+//! | file | numbers | first row | further contents |
 //! |---|---|---|---|
-//! | raw | 16-bit whole numbers or 32-bit floats, in either byte order | as [`RawHeights`] says | nothing |
+//! | raw | 16-bit whole numbers or 32-bit floats, in either byte order | by [`RawHeights`] | nothing |
 //! | PNG, one channel of grey | 8 or 16 bits | north | pixels without height, by transparency |
 //! | Terragen `.ter` (Planetside 2003, *Terrain file specification*) | 16 bits with a scale and a base | south | distance of samples |
 //! | ESRI ASCII grid (Esri, *Esri ASCII raster format*) | text | north | distance and place of samples, the number for no data |
 //!
 //! A height is `base + step x number` ([`HeightScale`]), so whole numbers keep their full precision, and feet become
-//! metres. The caller names the number that means no data; NaN always does. Every reader answers a damaged file by an
-//! error that names the file, the place in it and what is accepted. All else is for `gdal_translate`, which writes each
-//! of these formats; `docs/heights.md` has the commands.
+//! metres. The caller names the number that means no data; NaN always does. For a damaged file every reader returns an
+//! error that names the file, the place in it and what is accepted. Other formats must be converted first, by
+//! `gdal_translate`, which writes each of these formats; `docs/heights.md` has the commands.
 //!
 //! [`HeightMap::resampled`] keeps the mean height. It averages, over each new cell, the piecewise parabolas of Colella
 //! and Woodward (1984, *The Piecewise Parabolic Method*, equations 1.5 to 1.9), whose mean in each old cell is the

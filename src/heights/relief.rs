@@ -11,11 +11,11 @@ use crate::{
 
 /// Largest distance of a place from the origin, m.
 const FARTHEST_M: f64 = 1e7;
-/// Cells after which an octave would repeat: farther than any place.
+/// Number of cells after which an octave repeats; no place is as far away.
 const PERIOD: UVec2 = UVec2::splat(1 << 31);
 /// Largest number of octaves.
 const MOST_OCTAVES: i32 = 24;
-/// Largest value of one octave of gradient noise, by which ridges are sharp on top and never below 0.
+/// Largest value of one octave of gradient noise; with it ridges are sharp on top and never below 0.
 const MOST_NOISE: f64 = 0.85;
 
 /// Kind of relief.

@@ -69,7 +69,7 @@ impl HeightMap {
     }
 }
 
-/// Line of old cells over which new ones lie.
+/// Row or column of old cells, divided into new cells.
 #[derive(Clone, Copy)]
 struct Line {
     old: usize,

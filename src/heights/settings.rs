@@ -6,8 +6,8 @@ use crate::error::{Error, Result, check_range};
 /// Height of a number in a file: `base_m + step_m x number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightScale {
-    /// Metres for each 1 of a number, 1e-6 to 10 000 in amount; below 0 where numbers are depths. Default 1; 0.3048 for
-    /// international feet, 1200/3937 for US survey feet.
+    /// Height difference for a difference of 1 in the number, m; its absolute value is in 1e-6 to 10 000, and it is
+    /// negative where numbers are depths. Default 1; 0.3048 for international feet, 1200/3937 for US survey feet.
     pub step_m: f64,
     /// Height of the number 0, m, within 1 000 000. Default 0.
     pub base_m: f64,
@@ -83,16 +83,18 @@ pub struct RawHeights {
     pub row_order: RowOrder,
 }
 
-/// Settings for reading and writing heights. What is written with the same settings is read again within half a step.
+/// Settings for reading and writing heights. A map that is written and read with the same settings is the same within
+/// half a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightSettings {
     /// Height of a number. The number of an ESRI ASCII grid is the one in the text; that of a Terragen file is its
     /// height in metres.
     pub scale: HeightScale,
     /// Number in the file that means no data, before it is scaled, as -9999 or -32768. NaN always means no data, and so
-    /// does what an ESRI ASCII grid or the transparency of a PNG names. Default: none.
+    /// do the number that an ESRI ASCII grid names and transparent pixels of a PNG. Default: none.
     pub no_data: Option<f64>,
-    /// Layout of a raw file. `None`, the default, for files of the other formats, which are told by their beginning.
+    /// Layout of a raw file. `None`, the default, for files of the other formats, which are recognised by their first
+    /// bytes.
     pub raw: Option<RawHeights>,
 }
 

@@ -10,7 +10,7 @@ use crate::error::{Error, Result, check_range};
 pub enum ToneCurve {
     /// Exposure and clamp.
     Linear,
-    /// 1 - exp(-x) a channel (O'Neil 2005): bright skies never burn out.
+    /// 1 - exp(-x) for each channel (O'Neil 2005), which never reaches white: bright skies keep their gradation.
     #[default]
     Exponential,
     /// Hable's filmic curve (2010), white at 11.2.

@@ -6,23 +6,24 @@ use glam::DVec3;
 
 use super::scene::Scene;
 
-/// Light on the things that fall around a camera, in cd/m^2 and lux; after [`LightAround::exposed`], in these units
-/// times the exposure.
+/// Light on drops and flakes around a camera, per channel of linear Rec. 709, in cd/m^2 and lux.
+/// [`LightAround::exposed`] multiplies it by an exposure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAround {
-    /// Mean radiance of the sky.
+    /// Mean luminance of the sky.
     pub above: DVec3,
-    /// Mean radiance of the ground.
+    /// Mean luminance of the ground.
     pub below: DVec3,
-    /// Irradiance by the sun or the moon, whichever is brighter.
+    /// Illuminance by the sun or the moon, whichever is brighter.
     pub sun: DVec3,
-    /// Unit vector towards it, (east, north, up).
+    /// Unit vector towards the sun or moon of `sun`, (east, north, up).
     pub to_sun: DVec3,
 }
 
 impl LightAround {
-    /// Creates the light of a scene from the mean of its sky and of its ground. In steady rain it is within 1 % of the
-    /// light of the veil, so that no ring shows where the veil takes over.
+    /// Creates the light of a scene from the mean of its sky and of its ground. In steady rain the drops are within 1 %
+    /// as bright as distant rain, which is drawn as part of the air, so that no ring shows where one ends and the other
+    /// begins.
     pub fn of(scene: &Scene) -> Self {
         let light = scene.brighter();
         let g = &scene.ground;

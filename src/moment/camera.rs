@@ -102,7 +102,7 @@ impl<'a> SceneMoment<'a> {
         !(self.lamps.is_empty() && self.flash_lamps().is_empty())
     }
 
-    /// Whether any occluder map of the host shows a surface.
+    /// Whether any of the host's occluder maps holds a surface.
     pub fn has_maps(&self) -> bool {
         self.maps.is_some_and(|m| m.ranges().is_some())
     }

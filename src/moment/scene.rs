@@ -7,12 +7,12 @@ use crate::{planet::Planet, scene::Place, weather::Conditions};
 /// Largest extinction that is accepted, 1/m: a visibility of 30 cm.
 pub const MAX_EXTINCTION_PER_M: f64 = 10.0;
 
-/// The sun or the moon as seen from a place. Vectors are (east, north, up) there.
+/// The sun or the moon as seen from a place. Vectors are (east, north, up) at the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Unit vector towards it, without refraction: the direction that scattering uses.
+    /// Unit vector towards the sun or moon, without refraction: the direction that scattering uses.
     pub direction: DVec3,
-    /// Unit vector towards its apparent place, lifted by refraction.
+    /// Unit vector towards its apparent position, which refraction lifts.
     pub apparent: DVec3,
     /// Unit vector in the plane of the disc towards the middle of the lit limb (moon).
     pub bright_limb: DVec3,
@@ -29,7 +29,7 @@ pub struct Light {
     pub flattening: f64,
     /// Share of the direct light that the clouds above the place let through, as a mean over all places at its height.
     pub direct_share: f64,
-    /// Whether it contributes to the picture.
+    /// Whether its light is bright enough to be drawn.
     pub matters: bool,
 }
 
@@ -49,7 +49,7 @@ pub struct GroundLight {
     pub adaptation_cd_m2: f64,
 }
 
-/// All that a view draws from, at one camera position and time.
+/// Place, weather, air and lights from which a view draws, at one camera position and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     /// The camera's place.
@@ -63,7 +63,7 @@ pub struct Scene {
     pub drift_m: [f64; 2],
     /// Distance over which the curtains of the weather's rain have fallen, m, modulo their period.
     pub curtains_fallen_m: f64,
-    /// The weather there.
+    /// The weather at the place.
     pub conditions: Conditions,
     /// The planet's air under that weather.
     pub planet: Planet,
@@ -83,13 +83,13 @@ pub struct Scene {
     pub ground_albedo: [f64; 3],
     /// Light on top of the low layer of fog, rain, snow or dust, if the place lies in one; otherwise equal to `ground`.
     pub above_fog: GroundLight,
-    /// Airglow and starlight, cd/m^2 per channel.
+    /// Mean luminance of the moonless sky, cd/m^2 per channel.
     pub night_floor_cd_m2: [f64; 3],
     /// Zenith luminance of the cloud deck's underside, cd/m^2 per channel.
     pub deck_cd_m2: [f64; 3],
     /// Share of the sky that the deck hides.
     pub deck_cover: f64,
-    /// Share of the clear sky's light that the air below the clouds scatters.
+    /// Mean share of sunlight, direct and diffuse, that the clouds let through to the air below them.
     pub medium_share: f64,
 }
 

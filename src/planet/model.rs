@@ -232,7 +232,7 @@ impl Planet {
         out
     }
 
-    /// Returns the planet with everything in its air thinner or thicker by `factor` (1 = as it is).
+    /// Returns the planet with the coefficients of its gas, haze and ozone multiplied by `factor`.
     pub fn with_air_scaled(mut self, factor: f64) -> Self {
         for list in [
             &mut self.rayleigh.scattering_per_m,

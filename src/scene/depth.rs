@@ -138,7 +138,7 @@ pub struct ViewRays {
     /// Perspective: `w = scale / (e - pole . (1, x, y))`. Parallel rays: `t = (e - pole . (1, x, y)) scale`, m.
     pole: DVec3,
     scale: f64,
-    /// Plane distance per unit of w.
+    /// Distance from the camera's plane per unit of clip w, m.
     plane_scale: f64,
     /// Constants of logarithmic depth: `ln(c far + 1)`, and in `inverse_c` 1/c, m.
     log_far: f64,
@@ -298,8 +298,8 @@ impl ViewRays {
         (self.view_depth(depth, ndc) * self.view_ray(ndc).slant).min(RANGE_SKY_M)
     }
 
-    /// Returns the distance of that surface from the camera's plane, m, as the fog laws of older simulators may measure
-    /// it; [`RANGE_SKY_M`] without one.
+    /// Returns the distance from the camera's plane to the surface that the host drew in the pixel, m; [`RANGE_SKY_M`]
+    /// without one. Fog laws of older simulators can use it.
     pub fn view_plane(&self, depth: f64, ndc: DVec2) -> f64 {
         (self.view_depth(depth, ndc) * self.plane_scale).min(RANGE_SKY_M)
     }

@@ -99,8 +99,9 @@ pub enum WorldKind {
     Flat,
     /// A tangent plane: axes east, north and up at the origin's place, with the curved planet below.
     Tangent,
-    /// Earth-centred, Earth-fixed (WGS 84). The axes are not used, and the origin only for the sunlight on simulated
-    /// ground. Altitudes count from mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
+    /// Earth-centred, Earth-fixed (WGS 84). The axes are not used. The origin is used for the sunlight on simulated
+    /// ground, and as the zero point of maps: of local cloud cover, waves and lightning. Altitudes count from mean sea
+    /// level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 

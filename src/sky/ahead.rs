@@ -1,4 +1,5 @@
-//! Tables of the places ahead of an observer that moves steadily: drawn in slices, and mixed for where it is.
+//! Tables for places ahead of an observer that moves steadily. They are drawn in slices, and mixed for the place where
+//! the observer is.
 
 use bytemuck::{Zeroable as _, bytes_of};
 
@@ -9,12 +10,13 @@ use super::passes::{bind, uniform_buffer};
 use super::uniforms::ObserverUniform;
 use crate::gpu::Device;
 
-/// Tables at three places on the way of an observer: the pair between which it is, and the place that comes next.
+/// Tables for three places on the way of an observer: the two places between which the observer is (the pair), and the
+/// next place.
 pub(super) struct WayTables {
     tables: [Apart; 3],
     /// Bind groups that read each layer of each table.
     groups: [Vec<wgpu::BindGroup>; 3],
-    /// Bind groups for the passes of the place that comes next, for each lamp: of the sky, and of the air.
+    /// Bind groups for the passes that draw the next place's tables, for each lamp: of the sky, and of the air.
     pub observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
     pub observers: [[wgpu::Buffer; 2]; LAMPS],
     first: usize,

@@ -50,7 +50,8 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
     add("directional-half", half(Directional));
     add("directional", SkySettings::default());
     add("directional-double", double(Directional));
-    // Only the planet's tables doubled, and only the observer's: they show which of the two improves the picture.
+    // Doubled sizes of the planet's tables only, then of the observer's tables only: they show which of the two
+    // improves the picture.
     add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
     add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
     add("isotropic-eighth", coarsest(IsotropicTables));

@@ -57,8 +57,8 @@ const FRAMES_BEFORE: u32 = 8;
 const MOST_FRAMES: (f64, f64) = (40.0, 400.0);
 /// Way of a very slow motion from one place to the next, in multiples of the near bounds.
 const SHORT_WAY: f64 = 20.0;
-/// Weight of the newest frame's motion in the speed, an exponential mean over some 10 frames. The mean keeps the course
-/// of a camera that sways.
+/// Weight of the newest frame's motion in the speed, an exponential mean over some 10 frames. With the mean, a camera
+/// that sways keeps its course.
 const SPEED_SHARE: f64 = 0.1;
 
 /// Tables of the next place, which are drawn row by row from the first row on.
@@ -130,9 +130,9 @@ impl ObserverCourse {
         step
     }
 
-    /// Plans a frame of an observer with a pair: between its places a mix of their tables and a slice of the next
-    /// tables, past the second place the rest of the next tables and a shift of the pair. Forgets the course if no pair
-    /// serves the observer then.
+    /// Plans a frame of an observer with a pair. Between the pair's places the plan is a mix of their tables and a
+    /// slice of the next tables. Past the second place it is the rest of the next tables and a shift of the pair.
+    /// Forgets the course if no pair serves the observer then.
     fn between(
         &mut self,
         pair: &[ObserverPlace; 2],
@@ -198,7 +198,7 @@ impl ObserverCourse {
         (self.pair, self.coming) = (Some(pair), None);
     }
 
-    /// Forgets the course but for the observer's place.
+    /// Forgets everything except the observer's place in the last frame.
     fn forget(&mut self) {
         *self = Self { last: self.last, ..Self::default() };
     }

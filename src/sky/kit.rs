@@ -56,7 +56,7 @@ const PACE: (f64, f64) = (0.5, 5.0);
 /// Tables that are needed only during a build.
 struct Scratch(Vec<(Name, SkyTable)>);
 
-/// Claim on a build, which goes on as long as someone holds one.
+/// Claim on a build. The build continues as long as anyone holds a claim.
 pub(crate) struct Ticket {
     set: Arc<TableSet>,
 }
@@ -100,7 +100,7 @@ struct BuildQueue {
     count: u64,
 }
 
-/// Table that passes draw and read under a name. With several triples it is that of one triple.
+/// Table that passes draw and read under a name. If there are several triples of wavelengths, it holds one triple.
 fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a SkyTable> {
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
@@ -254,7 +254,7 @@ impl Kit {
         let mut guard = self.lock();
         let work = &mut *guard;
         let Some(i) = work.builds.iter().position(|b| Arc::ptr_eq(&b.set, &ticket.set)) else {
-            // Someone else who wanted these tables has finished them.
+            // Another holder of a claim has finished these tables.
             return Ok((BuildStep { work: 0.0, done: 1.0 }, Some(ticket.set.clone())));
         };
         self.begin(&work.builds[i])?;
@@ -426,7 +426,7 @@ impl Kit {
         }
     }
 
-    /// Whether this device's tables are worth a file; the `noop` backend computes nothing.
+    /// Whether this device computes tables that can be cached; the `noop` backend computes nothing.
     fn is_real(&self) -> bool {
         self.device.caps().backend != wgpu::Backend::Noop
     }

@@ -1,11 +1,12 @@
-//! Textures of an observer's tables: an array that shaders look up, and layers apart that passes mix.
+//! Textures of an observer's tables: an array texture that shaders read, and separate textures of its layers that
+//! passes mix.
 
 use super::passes::table_texture;
 use super::settings::SkySettings;
 use crate::gpu::bind::as_layers;
 use crate::gpu::{Device, Layer};
 
-/// Layers for each lamp: complete light, and light scattered once by haze without its phase function.
+/// Number of layers for each lamp: complete light, and light scattered once by haze without its phase function.
 pub(super) const LAYERS: u32 = 2;
 /// Most lamps that light the air.
 pub(super) const LAMPS: usize = 2;
@@ -37,8 +38,8 @@ impl Layered {
     }
 }
 
-/// Layers as in [`Layered`], but each in its own texture, for passes to read. On OpenGL a view of a single layer of an
-/// array reads as nothing.
+/// Layers as in [`Layered`], but each in its own texture, for passes to read. On OpenGL, shaders read nothing through a
+/// view of a single layer of an array.
 pub(super) struct Apart {
     pub layers: Vec<wgpu::TextureView>,
 }

@@ -1,5 +1,5 @@
 //! GPU resources of the tables over the planet: textures, layouts and pipelines. Every pass is a full-screen fragment
-//! pass into rgba16float, so that one code path serves all tiers.
+//! pass into rgba16float, so that the same code serves every kind of device.
 
 use std::sync::Arc;
 
@@ -223,7 +223,7 @@ impl FadePasses {
         bind(device, &self.layout, &[tex(table)])
     }
 
-    /// Draws the light of `first` into `target`, and over it the other's with its share.
+    /// Draws the light of `first` into `target`, and blends the other set's light over it by its share.
     pub fn show_light(
         &self,
         encoder: &mut wgpu::CommandEncoder,

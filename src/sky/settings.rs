@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 
-/// Model of the sky. All models share the same look-ups, so that a frame does not depend on the choice.
+/// Model of the sky. All models share the same look-up functions, so that only the tables depend on the choice;
+/// [`SkyModel::BruteForce`] marches in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkyModel {
     /// Light scattered once, from a table over (altitude, view angle, sun angle); the phase functions are applied

@@ -58,8 +58,8 @@ enum State {
     Built(Arc<TableSet>),
 }
 
-/// Number of calls in which one does not continue the build. In that call observers draw their own tables for the sun
-/// and altitude of the moment.
+/// One call in this many does not continue the build. In that call observers draw their own tables for the sun and
+/// altitude of the moment.
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
@@ -75,7 +75,7 @@ const UNSEEN_SHARE: f32 = 1e-4;
 /// Progress made by [`SkyTables::update`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TablesProgress {
-    /// Work submitted by this call, as a share of a whole build; 0 if someone else has built the planet.
+    /// Work submitted by this call, as a share of a whole build; 0 if another user of the library has built the planet.
     pub work: f32,
     /// Progress towards the whole tables of the planet given last: 0 while a draft is built, 0.5 when the whole tables
     /// are built, 1 when they are shown.
@@ -436,7 +436,7 @@ impl SkyTables {
         }
     }
 
-    /// Whether this frame already has work on tables to pay for.
+    /// Whether this frame already works on tables or on a fade.
     pub(crate) fn is_busy(&self) -> bool {
         self.busy
     }

@@ -49,7 +49,7 @@ impl Fade {
     }
 }
 
-/// Movement of the sun after which the tables are drawn again, rad: normally, and in frames that already draw other
+/// Movement of the sun after which the tables are drawn again, rad: usually, and in frames that already work on other
 /// tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
@@ -61,10 +61,10 @@ fn least_scale_height_m(air: &AirUniform) -> f64 {
     if least_m.is_finite() { least_m } else { 0.0 }
 }
 
-/// Change of altitude after which the tables follow it, m: 0.2 % of the altitude, or a thousandth of the smallest scale
-/// height of the air, over which its light changes by as much; near the ground, where the horizon moves fastest, at
-/// most 5 cm and 30 %. Directions are looked up from the observer's own altitude meanwhile, so the horizon follows at
-/// once.
+/// Change of altitude after which the tables are drawn again, m: 0.2 % of the altitude, or a thousandth of the smallest
+/// scale height of the air, over which its light changes by as much; near the ground, where the horizon moves fastest,
+/// at most 5 cm and 30 %. Directions are looked up from the observer's own altitude meanwhile, so the horizon follows
+/// at once.
 fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
     (2e-3 * altitude_m.abs() + 1e-2).max((1e-3 * least_scale_height_m(air)).min(0.05 + 0.3 * altitude_m.abs()))
 }

@@ -39,7 +39,7 @@ impl Books {
         [self.began, self.fallen, self.blown_in, self.blown_out, self.ran_off, self.sublimated, self.taken]
     }
 
-    /// Creates the books from the sums in the order of the fields.
+    /// Creates the mass balance from its sums, in the order of the fields.
     pub fn from_array([began, fallen, blown_in, blown_out, ran_off, sublimated, taken]: [i64; 7]) -> Self {
         Self { began, fallen, blown_in, blown_out, ran_off, sublimated, taken }
     }

@@ -109,7 +109,8 @@ impl SavedTile {
 }
 
 impl SavedCells {
-    /// Writes a field: the columns of a grid or tiles, and the books; with `for_hash`, tiles have only their hash.
+    /// Writes a field: the columns of a grid or of tiles, and the mass balance; with `for_hash`, tiles have only their
+    /// hash.
     fn of(field: &SnowField, for_hash: bool) -> Self {
         let cells = field.size[0] * field.size[1];
         let is_grid = field.lattice.is_none();

@@ -32,7 +32,7 @@ impl Constants {
     /// The empty list.
     pub const NONE: Self = Self { list: [("", 0.0); MOST], count: 0 };
 
-    /// Adds a constant. The list has room for those of all effects.
+    /// Adds a constant. The list has room for the constants of all effects.
     pub fn push(&mut self, constant: Constant) {
         debug_assert!(self.count < MOST, "room for {constant:?}");
         if let Some(place) = self.list.get_mut(self.count) {
@@ -249,7 +249,7 @@ impl<'a> Contribution<'a> {
         matches!(self.block, Some(FrameBlock::Stars { behind }) if behind[1] > 0.0)
     }
 
-    /// Texture that the effect has set at a slot.
+    /// Texture that the effect has set at a slot, if any.
     pub fn texture(&self, place: Texture) -> Option<&wgpu::TextureView> {
         self.textures[place as usize].as_ref()
     }

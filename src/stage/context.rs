@@ -31,9 +31,9 @@ pub(crate) struct FrameContext<'a> {
     pub asked: Stages,
     /// Planet under the weather to which the present one is changing; `None` while it rests.
     pub planet_ahead: Option<Planet>,
-    /// Work on tables in this frame, as a share of the work of building them all.
+    /// Work on tables in this frame, as a share of the work that builds all of them.
     pub table_share: f32,
-    /// Whether tables over the planet that are there are drawn with, even if they are those of another weather.
+    /// Whether to draw with the tables of the planet that exist, even if they belong to another weather.
     pub keeps_tables: bool,
 }
 

@@ -112,7 +112,7 @@ pub(crate) trait DrawnEffect {
         false
     }
 
-    /// Draws over the finished picture; `toned` is whether this call has tone-mapped it.
+    /// Draws over the finished picture; `toned` says that this call has tone-mapped it.
     fn draw_lens(
         &mut self,
         _frame: &Frame<'_>,

@@ -45,7 +45,7 @@ impl Outputs {
         }
     }
 
-    /// Takes what an effect has gathered, if the effect lists it in `gives`.
+    /// Takes the outputs that an effect has gathered and lists in `gives`.
     pub fn take(&mut self, gathered: &Self, gives: &[Output]) {
         if gives.contains(&Output::FogDepth) {
             self.fog_depth = gathered.fog_depth;

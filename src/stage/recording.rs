@@ -38,9 +38,9 @@ pub enum CostItem {
     Veil = 6,
     /// Import of the host's context and images, and their return to the host.
     HandOver = 7,
-    /// Rain.
+    /// Rain, hail, snow and lightning channels, if their stage is drawn alone.
     Particles = 8,
-    /// Water on surfaces.
+    /// Water and snow on surfaces.
     Surface = 9,
     /// Water on the windscreen: its simulation steps and the lens.
     Windscreen = 10,

@@ -11,13 +11,13 @@ impl Stages {
     pub const PREPARE: Self = Self(1);
     /// Sky behind everything: fills the pixels at the far depth, or all pixels without a depth texture.
     pub const BACKGROUND: Self = Self(2);
-    /// Wet surfaces (later also snow-covered ones, sea and terrain), after the host's opaque objects.
+    /// Water and snow on surfaces, after the host's opaque objects.
     pub const SURFACE: Self = Self(4);
     /// Fog and aerial perspective over everything that the host drew.
     pub const MEDIUM: Self = Self(8);
-    /// Rain, snow and dust.
+    /// Rain, hail and snow near the camera, and the channels of lightning flashes.
     pub const PARTICLES: Self = Self(16);
-    /// Water on the windscreen.
+    /// Water and snow on the windscreen.
     pub const LENS: Self = Self(32);
     /// Exposure, tone curve, display encoding and dither of a scene-linear picture. Does nothing in the other colour
     /// spaces, where the host has tone-mapped the picture.

@@ -173,15 +173,15 @@ pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
 }
 
 /// Returns the scale of light in the coarse grid, 1/(cd/m^2): the exposure for the luminance to which eyes adapt, or
-/// the display's exposure if that is larger (it then shows darker things). A scene-linear host's own exposure has no
-/// influence. The scale is rounded down to a power of two, so that a change of scale causes no rounding.
+/// the display's exposure if that is larger, as in a picture exposed for dark parts. A scene-linear host's own exposure
+/// has no influence. The scale is rounded down to a power of two, so that a change of scale causes no rounding.
 fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
     let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);
     eyes.max(display_exposure).log2().floor().clamp(-100.0, 100.0).exp2() as f32
 }
 
-/// Creates the block of a frame before any effect has added to it: with nothing drawn. `tone` is whether the whole
-/// picture is tone-mapped.
+/// Creates the block of a frame to which no effect has added anything. `tone` is whether the whole picture is
+/// tone-mapped.
 pub(crate) fn uniform(
     frame: &Frame<'_>,
     now: &SceneMoment<'_>,
@@ -194,8 +194,8 @@ pub(crate) fn uniform(
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
     let plain_display = display && !is_float(format) && !format.is_srgb();
     let step = if format == wgpu::TextureFormat::Rgb10a2Unorm { 1.0 / 1023.0 } else { 1.0 / 255.0 };
-    // Only plain formats dither: in an sRGB format the hardware encodes after us, and its steps are not steps of our
-    // value.
+    // Only plain formats dither: in an sRGB format the hardware encodes the value after the shader, so the format's
+    // steps are not steps of the shader's value.
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
     FrameUniform {
         depth: rays.uniform(),

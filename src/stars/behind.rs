@@ -17,9 +17,9 @@ use crate::{
 
 /// Light of the night sky behind the air's own light, over a place.
 pub(crate) struct NightBehind {
-    /// Luminance where no glow is drawn and before night has come, cd/m^2 a channel.
+    /// Luminance of an even sky, cd/m^2 a channel: used where no glow is drawn, and mixed with the glow in twilight.
     even_cd_m2: [f64; 3],
-    /// The glow, and the share of night that has come, 0 to 1.
+    /// The glow, and its share in the mix, 0 to 1.
     glow: Option<(NightSky, f64)>,
 }
 

@@ -194,8 +194,8 @@ impl NightSky {
         std::array::from_fn(|k| S10_CD_M2 * (0..3).map(|i| s10[i] * self.colors[i][k]).sum::<f64>())
     }
 
-    /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air:
-    /// `L T + S (1 - T)`. Directions below the horizon use the air at the horizon.
+    /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air: `L T + S
+    /// (1 - T)`. For directions below the horizon the air is that at the horizon.
     ///
     /// T is the air's transmittance. S is the light that an infinitely deep layer of lit air sends: half the mean of
     /// the dome, because air scatters equally to all sides, absorbs little, and has the dome above and dark ground

@@ -80,7 +80,7 @@ struct GlowUniform {
     pad3: f32,
 }
 
-/// State of dusk: luminance of the sky before night has come, cd/m^2 a channel, and the share of night that has come.
+/// Mix of the glow in twilight: luminance of the even sky, cd/m^2 a channel, and the share of the glow, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Dusk {
     pub cd_m2: [f64; 3],

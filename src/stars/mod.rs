@@ -59,8 +59,8 @@
 //! | zenith of a moonless night | 20.9 to 22.1 mag/arcsec^2 measured | inside |
 //!
 //! Left out are twinkling, glare in the eye, variable stars, the discs of planets (they are points up to the
-//! magnification of strong binoculars), star clouds and dark clouds of the Milky Way, waves of the airglow, and its
-//! layer as seen from orbit.
+//! magnification of strong binoculars), star clouds and dark clouds of the Milky Way that are smaller than the 4 to 10
+//! degrees between Pioneer 10's directions, waves of the airglow, and its layer as seen from orbit.
 
 mod behind;
 #[cfg(not(feature = "lab"))]

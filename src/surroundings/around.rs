@@ -192,7 +192,7 @@ impl SurroundingsBlock {
             count += 1;
         }
         put(STARTS[2], &(count as u32).to_ne_bytes());
-        // Leaves out the rest: shaders do not read beyond the last lamp.
+        // The rest is not uploaded: shaders do not read beyond the last lamp.
         STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 

@@ -1,5 +1,5 @@
-//! Occluder maps: up to four depth textures in which the host shows, from any direction, the surfaces that keep rain
-//! off.
+//! Occluder maps: up to four depth textures of the host with the surfaces that keep rain off, each seen from any
+//! direction.
 //!
 //! A drop is removed if its slanted path, traced back, crosses a surface in a map:
 //! `shaders/surroundings/occluders.wgsl`. A map does not contain what its surfaces hide. If it is taken along the

@@ -1,6 +1,6 @@
 //! The work of a GPU for a frame, counted without a GPU: passes, bytes of a view for each pixel, and for each draw of
-//! the composition the most texels and operations of a pixel. The test compares the counts with the table of
-//! docs/lab/counts.md.
+//! the composition the greatest numbers of texels and operations of a pixel. The test compares the counts with the
+//! table of docs/lab/counts.md.
 //!
 //! The counts are static. Each shader is parsed by naga with the constants of a GPU's pipelines. Where a constant
 //! decides a branch, the side that is taken counts; elsewhere the dearer side does. The body of a loop counts once. The
@@ -23,7 +23,7 @@ use crate::{
     weather::Weather,
 };
 
-/// Texels read, and operations.
+/// Numbers of texels read and of operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Count {
     texels: u32,
@@ -40,14 +40,15 @@ impl Count {
     }
 }
 
-/// The most that a way through some statements takes, and whether each way ends there.
+/// Greatest count over all ways through some statements, and whether every way leaves the block there (return, break,
+/// continue, discard).
 #[derive(Clone, Copy, Default)]
 struct Way {
     count: Count,
     ends: bool,
 }
 
-/// A shader whose constants are decided.
+/// A shader with the values of its constants written in, and the counts of its functions so far.
 struct Counted {
     module: Module,
     info: valid::ModuleInfo,
@@ -82,7 +83,8 @@ impl Counted {
     }
 
     fn block(&mut self, function: &Function, known: &Known, block: &Block) -> Way {
-        // From the end on, since what follows a branch that ends is not on its way.
+        // Goes from the last statement to the first, because the statements after a branch that ends are not on its
+        // way.
         block.iter().rev().fold(Way::default(), |rest, statement| {
             let here = |count: Count| Way { count: count.plus(rest.count), ends: rest.ends };
             let joined = |way: Way| if way.ends { way } else { here(way.count) };
@@ -119,11 +121,11 @@ impl Counted {
     }
 }
 
-/// Facts that are known of a function's expressions.
+/// Properties of a function's expressions.
 struct Known {
-    /// Numbers in each.
+    /// Number of components of each expression.
     sizes: Vec<u32>,
-    /// Values of those that constants decide.
+    /// Values of the conditions that constants decide.
     values: HashMap<Handle<Expression>, bool>,
 }
 
@@ -144,8 +146,8 @@ impl Known {
         known
     }
 
-    /// Goes through statements with what `held` variables of the function are known to hold: `a && b` is a branch that
-    /// writes one.
+    /// Finds the conditions that constants decide in some statements. `held` has the variables whose values are known:
+    /// `a && b` becomes a branch that writes a variable.
     fn walk(&mut self, function: &Function, block: &Block, held: &mut HashMap<Handle<LocalVariable>, bool>) {
         let local = |pointer: Handle<Expression>| match function.expressions[pointer] {
             Expression::LocalVariable(variable) => Some(variable),
@@ -179,7 +181,7 @@ impl Known {
                     }
                 },
                 Statement::Loop { body, continuing, .. } => {
-                    // What a turn writes is not known in the next.
+                    // Values that one turn of a loop writes are unknown in the next.
                     held.clear();
                     self.walk(function, body, held);
                     self.walk(function, continuing, held);
@@ -195,7 +197,7 @@ impl Known {
     }
 }
 
-/// A line of a shader with the value of its override constant written in.
+/// Returns a line of a shader with the value of its override constant written in.
 fn decided(line: &str, constants: &[(&str, f64)]) -> String {
     let Some((name, rest)) = line.strip_prefix("override ").and_then(|rest| rest.split_once(':')) else {
         return line.to_owned();
@@ -212,7 +214,7 @@ fn decided(line: &str, constants: &[(&str, f64)]) -> String {
     format!("const {name}: {ty} = {value};")
 }
 
-/// Numbers in a value.
+/// Number of components of a value.
 fn size(ty: &wgpu::naga::proc::TypeResolution, module: &Module) -> u32 {
     match ty.inner_with(&module.types) {
         TypeInner::Scalar(scalar) if scalar.kind != ScalarKind::Bool => 1,
@@ -262,7 +264,8 @@ impl Host {
         Self { device, context, view }
     }
 
-    /// Draws until nothing is built any more; answers the passes of the last frame, the most of as many as take turns.
+    /// Draws until nothing is built any more; returns the greatest number of passes among the last 32 frames, since
+    /// some work alternates between frames.
     fn draw(&mut self, size: (u32, u32)) -> u32 {
         use wgpu::TextureUsages as U;
         let seen = U::TEXTURE_BINDING | U::RENDER_ATTACHMENT;
@@ -297,7 +300,7 @@ fn counts(weather: &str) -> Counts {
     Counts { passes, bytes_a_pixel, draws }
 }
 
-/// Texels and operations of the dearest pixel that is drawn whole in a weather.
+/// Texels and operations of the most expensive pixel that is drawn in full in a weather.
 pub(super) fn dearest_pixel(weather: &str) -> [u32; 2] {
     let drawn = counts(weather).draws.into_iter().filter(|(pixels, _)| pixels == "Uneven");
     let most = drawn.fold(Count::default(), |most, (_, count)| most.most(count));
@@ -312,7 +315,7 @@ const DRAWS: [(&str, &str); 4] = [
     ("EvenDrawn", "looked up, with what lies on it or hangs before it"),
 ];
 
-/// The table as docs/lab/counts.md has it.
+/// Text of the table in docs/lab/counts.md.
 fn table() -> String {
     let mut text = String::from(
         "| weather | passes | bytes a pixel | a pixel | texels | operations |\n|---|---|---|---|---|---|\n",

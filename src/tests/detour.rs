@@ -1,4 +1,4 @@
-//! Patches of fog that are led round a slow place: the parts of a ray against a fine sum over it.
+//! Patches of fog that lag where the wind is slow: the mean over a ray by parts against a fine sum over its points.
 
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use crate::{
     wind::{DetourMap, WindGrid, WindGridKind, WindVolume},
 };
 
-/// East at 5 m/s, and hardly any wind behind a house 80 m ahead and as wide as given.
+/// Wind to the east at 5 m/s, except for slow air behind a house 80 m ahead that is `width_m` wide.
 fn lee(width_m: f64) -> WindVolume {
     let (nodes, cell_m) = ([81, 81, 5], DVec3::new(4.0, 4.0, 6.0));
     let origin = DVec3::new(-160.0, -80.0, 0.0);
@@ -22,7 +22,7 @@ fn lee(width_m: f64) -> WindVolume {
     WindVolume::of_grid(&grid, DMat3::IDENTITY)
 }
 
-/// Patches of this size round the camera, and the same led by that wind.
+/// Fog patches of this size round the camera without a detour, and with the detour of the wind of [`lee`].
 fn models(size_m: f64, width_m: f64) -> [FogModel; 2] {
     let patches = Patches { amount: 1.0, size_m, seed: 5, drift_m: [0.0; 2] };
     let layer = FogLayer { patches: Some(patches), ..FogLayer::ground_fog(0.01, 20.0, 1.0) };
@@ -33,7 +33,7 @@ fn models(size_m: f64, width_m: f64) -> [FogModel; 2] {
     [free.clone(), free.led_by(Some(map.about(DVec3::new(0.0, 0.0, 2.0))))]
 }
 
-/// Mean of the pattern over many points of a ray, each of them shifted by its own lag.
+/// Mean of the pattern over many points of a ray, each shifted by its own lag.
 fn by_points(m: &FogModel, direction: DVec3, length: f64) -> f64 {
     const POINTS: usize = 2000;
     let detour = m.detour.as_ref().expect("led");

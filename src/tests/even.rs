@@ -1,4 +1,4 @@
-//! The grid of the weather against pictures that are drawn pixel by pixel.
+//! The coarse grid of the weather against pictures in which every pixel is drawn.
 
 use std::sync::Arc;
 
@@ -16,14 +16,14 @@ use crate::{
 const SIZE: (u32, u32) = (320, 180);
 const EYE_M: f64 = 12.0;
 
-/// The picture of a weather, looked up and drawn pixel by pixel.
+/// Picture of a weather, once interpolated from the grid and once with every pixel drawn, and the passes of both.
 struct Pictures {
     looked_up: Vec<[f32; 4]>,
     drawn: Vec<[f32; 4]>,
     passes: [u32; 2],
 }
 
-/// Level ground with posts on it: one a pixel wide, a board, and thin ones far off.
+/// Depths of level ground with a post one pixel wide, a board, and thin posts far away.
 fn depths() -> Vec<f32> {
     let (width, half) = (SIZE.0, 0.5 * f64::from(SIZE.1));
     let of = |i: u32| {
@@ -41,7 +41,7 @@ fn depths() -> Vec<f32> {
     (0..SIZE.0 * SIZE.1).map(of).collect()
 }
 
-/// A weather before those depths.
+/// A weather in front of these depths.
 struct Scene {
     device: Arc<Device>,
     context: Context,
@@ -92,7 +92,7 @@ impl Scene {
         *self.view.report()
     }
 
-    /// Draws until nothing changes any more. Clouds come in sixteen frames.
+    /// Draws until nothing changes any more. Clouds need sixteen frames.
     fn settle(&mut self, stages: Stages) {
         let mut quiet = 0;
         while quiet < 20 {
@@ -115,7 +115,7 @@ fn pictures(device: &Arc<Device>, weather: &Weather, sun: (f64, f64), stages: St
     Pictures { looked_up, drawn: scene.picture(), passes: [first, second] }
 }
 
-/// A device that is drawn on as on a software driver, or as on a GPU.
+/// A device that Welkin treats as a software driver or, if `is_gpu`, as a GPU.
 fn device(is_gpu: bool) -> Arc<Device> {
     let mut device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     if is_gpu {
@@ -168,8 +168,8 @@ fn nobody_sees_what_a_gpu_looks_up() {
     nobody_sees_what_is_looked_up(true);
 }
 
-/// A GPU compiles a pipeline a frame, and draws at every pixel until all are there; pure pictures do not depend on what
-/// was drawn before.
+/// On a GPU each frame compiles one pipeline, and every pixel is drawn until all are compiled; pure pictures must not
+/// depend on that.
 #[test]
 fn pure_pictures_of_a_gpu_wait_for_no_pipeline() {
     let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
@@ -188,7 +188,7 @@ fn pure_pictures_of_a_gpu_wait_for_no_pipeline() {
     assert_eq!(steps, [1, 1, 3, 3], "all pixels; grid, the uneven and the even ones are compiled one by one");
 }
 
-/// A software driver works shadows of clouds out for the pixels on which the host drew alone, a GPU for all.
+/// A software driver computes cloud shadows only for pixels on which the host drew, a GPU for all pixels.
 #[test]
 fn shadows_drawn_apart_are_those_drawn_with_the_clouds() {
     let cumulus = CloudLayer::of(CloudKind::Cumulus, 0.5, 1000.0);

@@ -1,5 +1,5 @@
-//! The longest submissions, in units of work that do not hang on a machine. Windows resets a GPU that works for 2 s on
-//! one submission (TDR), so none may grow unseen. The test compares them with the table of docs/lab/counts.md.
+//! The longest submissions, in units of work that do not depend on a machine. Windows resets a GPU that works for 2 s
+//! on one submission (TDR), so none may grow unnoticed. The test compares them with the table of docs/lab/counts.md.
 
 use std::{fmt::Write, path::Path};
 
@@ -9,14 +9,14 @@ use crate::{
     sky::{SkySettings, candidates::work},
 };
 
-/// Pixels of the picture that the table is for.
+/// Number of pixels of the picture in the table.
 const PIXELS: f64 = 1920.0 * 1080.0;
 
 fn millions(amount: f64) -> String {
     format!("{:.1}", amount / 1e6)
 }
 
-/// The table as docs/lab/counts.md has it.
+/// Text of the table in docs/lab/counts.md.
 fn table() -> String {
     let mut text = String::from(
         "| submission | samples, 10^6 | texels, 10^6 | bytes, 10^6 | together, 10^6 samples |\n|---|---|---|---|---|\n",

@@ -1,4 +1,4 @@
-//! Tests of several rooms together that look at what no host can see.
+//! Tests of several rooms together that check things hidden from hosts.
 
 mod changing_air;
 mod counted;

@@ -1,4 +1,4 @@
-//! The scene of a frame is worked out once for all of its calls, and anew for whatever it follows from.
+//! The scene of a frame is computed once for all calls of the frame, and again when any of its inputs changes.
 
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ impl Host {
         Self { device, context, view, camera, frame_id: 0 }
     }
 
-    /// How many scenes were worked out so far.
+    /// Number of scenes computed so far.
     fn scenes(&self) -> u64 {
         self.view.scene_count()
     }
@@ -61,7 +61,7 @@ impl Host {
         self.view.record(&self.context, &frame, stages)
     }
 
-    /// How many scenes a frame of one call a stage takes.
+    /// Draws a frame with one call for each stage; returns the number of scenes computed for it.
     fn frame(&mut self) -> u64 {
         let before = self.scenes();
         self.frame_id += 1;

@@ -1,4 +1,5 @@
-//! The opaque step on the software driver: a plane among a host's things, in every depth mapping, and what lies on it.
+//! The opaque step on the software driver: a plane among a host's objects, in every depth mapping, with water and fog
+//! on it.
 
 mod host;
 
@@ -29,7 +30,7 @@ const SIZE: (u32, u32) = (64, 36);
 const ASPECT: f64 = 64.0 / 36.0;
 const EYE: DVec3 = DVec3::new(3.0, -5.0, 10.0);
 const PLANE_M: f64 = 3.0;
-/// Luminance of the host's thing, cd/m^2.
+/// Luminance of the host's wall, cd/m^2.
 const HOST_CD_M2: f32 = 7000.0;
 const BACK_CD_M2: f32 = 20.0;
 
@@ -40,14 +41,14 @@ fn reversed() -> Mapped {
 const STANDARD: [DVec2; 4] =
     [DVec2::new(0.375, 0.125), DVec2::new(0.875, 0.375), DVec2::new(0.125, 0.625), DVec2::new(0.625, 0.875)];
 
-/// Where a sample of a pixel is, as multisampled pictures have them everywhere.
+/// Position of a sample of a pixel, in the standard pattern of multisampled pictures.
 fn sample_ndc(pixel: usize, (sample, samples): (u32, u32)) -> DVec2 {
     let off = if samples == 1 { DVec2::ZERO } else { STANDARD[sample as usize] - 0.5 };
     ndc(pixel) + off * DVec2::new(2.0 / f64::from(SIZE.0), -2.0 / f64::from(SIZE.1))
 }
 
-/// Draws the host's wall and the plane, and holds each sample of each pixel against where the two are met. How many
-/// pixels show the plane, the wall in its front, and neither.
+/// Draws the host's wall and the plane, and checks each sample of each pixel against the distances to both along its
+/// ray.
 fn assert_drawn(name: &str, case: &Mapped, format: (wgpu::TextureFormat, DepthFormat), samples: u32) {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, format.0, samples);
     host.view.effects.plane.height_m = Some(PLANE_M);
@@ -71,7 +72,8 @@ fn assert_drawn(name: &str, case: &Mapped, format: (wgpu::TextureFormat, DepthFo
                 covered
             };
             let near = 3.0 * rays.resolution_m(plane.min(wall).min(1e5), ndc(i), format.1);
-            // A rasteriser snaps corners to parts of a pixel: what lies on the plane's own edge may be either.
+            // A rasteriser rounds corners to parts of a pixel, so a sample on the plane's edge may show the plane or
+            // not.
             let on_edge = [-0.02, 0.02].iter().any(|off| {
                 let beside = at + DVec2::splat(off / f64::from(SIZE.1));
                 (to_plane(&rays, beside).0 < RANGE_SKY_M) != (covered < RANGE_SKY_M)
@@ -96,7 +98,7 @@ fn assert_drawn(name: &str, case: &Mapped, format: (wgpu::TextureFormat, DepthFo
             let right = range == RANGE_SKY_M || (f64::from(depths[i]) - expected).abs() <= off;
             assert!(right, "{here}: {} {expected}", depths[i]);
             assert_eq!(colors[i][3], 0.25, "{here}");
-            // All samples have the colour of the pixel's middle; far off, squares are smaller than pixels.
+            // All samples have the colour of the pixel's middle; far away, squares are smaller than pixels.
             let middle = to_plane(&rays, ndc(i));
             if samples == 1 || (middle.0 < 60.0 && middle.1 == shade) {
                 assert_eq!(f64::from(colors[i][0]), shade, "{here}");
@@ -130,7 +132,7 @@ fn every_depth_format_is_written() {
     }
 }
 
-/// Stencil of the host's depth.
+/// Reads the stencil of the host's depth.
 fn stencil(host: &Host) -> Vec<u8> {
     let (width, height) = SIZE;
     let buffer = host.device.device.create_buffer(&wgpu::BufferDescriptor {
@@ -172,7 +174,7 @@ fn where_depth_is_only_read_not_a_bit_changes_and_the_report_says_so() {
         host.record(&reversed(), Stages::SURFACE, |frame| frame.depth_access = DepthAccess::Read);
         assert!(bits(&host) == before);
         assert_eq!((host.view.report().passes, host.view.report().opaque_left_out), (0, 1));
-        // Only SURFACE draws what is opaque.
+        // Only SURFACE draws opaque objects.
         host.record(&reversed(), Stages::MEDIUM, |frame| frame.depth_access = DepthAccess::Read);
         assert_eq!(host.view.report().opaque_left_out, 0);
         host.record(&reversed(), Stages::MEDIUM, |_| ());
@@ -180,7 +182,7 @@ fn where_depth_is_only_read_not_a_bit_changes_and_the_report_says_so() {
     }
 }
 
-/// Fog, rain's water on the ground, and a bright day.
+/// Weather with fog and water on the ground, on a bright day.
 fn wet_fog() -> Weather {
     let surface = Surface { state: Some(SurfaceState::StandingWater), ..Surface::default() };
     Weather { visibility_m: 300.0, relative_humidity: 1.0, surface, ..Weather::default() }
@@ -214,7 +216,7 @@ fn water_and_fog_lie_on_what_is_opaque_as_on_the_hosts_own() {
             host.draw_own(&reversed(), false);
             host
         };
-        // The plane in the dry, as if the host had drawn it; then the weather over that.
+        // First the plane in dry weather, as if the host had drawn it; then the weather over that picture.
         let mut given = opaque(false, true);
         given.record(&reversed(), Stages::SURFACE, |_| ());
         let dry = given.read(&given.color, 0);
@@ -226,7 +228,7 @@ fn water_and_fog_lie_on_what_is_opaque_as_on_the_hosts_own() {
         for sample in 0..samples {
             assert!(own.read(&own.color, sample) == given.read(&given.color, sample), "sample {sample} of {samples}");
         }
-        // It shows: far squares go under in the fog, near ones mirror the sky.
+        // The weather is visible: far squares vanish in the fog, near ones reflect the sky.
         let shown = own.read(&own.color, 0);
         let rays = reversed().rays();
         let plane = |i: &usize| to_plane(&rays, ndc(*i)).0 < to_wall(&rays, ndc(*i));
@@ -250,7 +252,7 @@ fn a_frame_in_steps_shows_what_it_shows_at_once() {
     let id = host.frame_id;
     host.record(&reversed(), rest, |frame| frame.frame_id = id);
     let steps = host.colors();
-    // Fog lies on the sky in another call: what lies between is rounded to half floats.
+    // Fog is drawn over the sky in another call: the picture between the calls is rounded to half floats.
     let near = |a: &[f32; 4], b: &[f32; 4]| (0..3).all(|c| (a[c] - b[c]).abs() <= 3e-3 * a[c].abs());
     assert!(once.iter().zip(&steps).all(|(a, b)| near(a, b)));
     let rays = reversed().rays();
@@ -303,7 +305,7 @@ fn displays_get_it_by_the_tone_curve_and_opengl_the_right_way_up() {
             }
             counted += 1;
             let linear = host.context.tone_curve().apply(shade * exposure);
-            // Shaders read linear numbers from an sRGB format.
+            // Shaders read linear values from an sRGB format.
             let encoded = format == wgpu::TextureFormat::Rgba8Unorm;
             let expected = if encoded { tone::srgb_encode(linear) } else { linear };
             assert!(

@@ -15,7 +15,7 @@ use crate::{
 
 const SIZE: (u32, u32) = (160, 90);
 
-/// A simulator on a device that draws nothing, as a software driver or as a GPU.
+/// A simulator on a device that draws nothing, treated as a software driver or as a GPU.
 struct Simulator {
     device: Arc<Device>,
     context: Context,
@@ -57,7 +57,7 @@ impl Simulator {
         self.view.prepare(&mut self.context, &frame, &[Stages::ALL], weathers, most)
     }
 
-    /// Draws a frame each tenth of a second for so long.
+    /// Draws a frame each tenth of a second for `seconds`.
     fn play(&mut self, seconds: f64) {
         let from_s = self.context.time_s();
         for i in 1..=(10.0 * seconds) as u32 {
@@ -73,7 +73,7 @@ impl Simulator {
         self.device.counts.total(DeviceWork::Pipelines)
     }
 
-    /// Number of pipelines that are created while the weathers follow each other.
+    /// Numbers of pipelines that are created in each weather, while the weathers follow each other.
     fn created(&mut self, weathers: &[Weather]) -> Vec<u64> {
         self.play(2.0);
         let mut created = Vec::new();
@@ -109,7 +109,7 @@ fn prepared_weathers_come_with_hardly_a_new_pipeline() {
         let with = simulator.created(&day());
         println!("as a GPU: {is_gpu}: {without:?} without, {with:?} after {calls} calls and {prepared} pipelines");
         assert!(calls > 50, "a call of no time draws one moment: {calls}");
-        // Three of 84: a bow that fades in fog before snow, at a share that is not rehearsed.
+        // Three of 84 are not rehearsed: those of a bow that fades in fog before snow.
         assert!(20 * with.iter().sum::<u64>() <= without.iter().sum::<u64>(), "{with:?} of {without:?}");
     }
 }

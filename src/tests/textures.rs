@@ -10,7 +10,7 @@ pub fn texture(
     samples: u32,
 ) -> wgpu::Texture {
     use wgpu::TextureUsages as U;
-    // Multisampled textures cannot be filled, and not all drivers draw into single floats.
+    // Multisampled textures cannot be filled, and not all drivers draw into 32-bit floats.
     let filled = if samples == 1 { U::COPY_DST } else { U::empty() };
     let drawn = if format == wgpu::TextureFormat::R32Float { U::empty() } else { U::RENDER_ATTACHMENT };
     device.device.create_texture(&wgpu::TextureDescriptor {

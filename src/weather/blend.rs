@@ -36,7 +36,7 @@ pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
     if log_ratio.abs() < 1e-9 || !whole.is_finite() { t } else { libm::expm1(t * log_ratio) / whole }
 }
 
-/// Returns the extinction of all matter near the ground, with the fog wherever it lies.
+/// Returns the sum of the extinctions of air, aerosol, fog and precipitation. Fog counts wherever its layer lies.
 fn burden_per_m(c: &Conditions) -> f64 {
     c.air.rayleigh_extinction_per_m
         + c.aerosol.extinction_per_m
@@ -78,8 +78,8 @@ impl Conditions {
 }
 
 /// Returns the share of clear sky at `t` between two weathers. It is `independent`, the share that independently placed
-/// layers leave clear, less the interpolated difference of the two at the ends; and it is clamped to the values at the
-/// ends.
+/// layers leave clear, less an excess. At each end the excess is what independent layers would leave clear beyond the
+/// actual share; in between it is interpolated. The result is clamped to the values at the ends.
 fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];

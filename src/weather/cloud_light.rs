@@ -14,8 +14,8 @@
 use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};
 
-/// Share of the optical depth that hides objects behind a layer from the eye. The rest is light scattered straight on,
-/// which hides nothing.
+/// Share of the optical depth that hides objects behind a layer from the eye. The rest scatters light nearly straight
+/// on and hides nothing.
 const HIDING: f64 = 0.25;
 /// Weight of the value for a clear sky in [`over_layers`], as a share of the sky.
 const LEAST_COVER: f64 = 1e-6;
@@ -25,14 +25,14 @@ const MOST_GROWTH_M: f64 = 500.0;
 /// sets in around the cloud's base instead ([`Conditions::below_cloud`]).
 pub(crate) const ONSET_M: f64 = 100.0;
 
-/// Returns the share of precipitation at an altitude if it begins at another: all below the depth over which it sets
-/// in, none above.
+/// Returns the share of the precipitation that has set in at an altitude. It sets in around the altitude `begins_m`,
+/// over the depth [`ONSET_M`].
 fn onset(begins_m: f64, altitude_m: f64) -> f64 {
     ((begins_m + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
 }
 
-/// Returns the mean of `f` over layers, weighted by the share of the sky in which each is met first, in the order of
-/// `layers` (cover, layer); `clear` without layers. Continuous when a layer comes or goes.
+/// Returns the mean of `f` over `layers` (cover, layer), weighted by the share of the sky in which a layer is the first
+/// one met in this order; `clear` without layers. Continuous when a layer comes or goes.
 fn over_layers<'a>(
     layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
     clear: f64,

@@ -8,12 +8,12 @@ use crate::error::{Error, Result, check_range};
 /// Maximum number of cells of a map east and north.
 pub const MAX_CLOUD_MAP_CELLS: u32 = 128;
 
-/// Share of the layers' cover in the weather that they have over each part of the ground, from 0 (none) to 1 (all of
-/// it). For a layer with the cover 1, the map gives the cover itself.
+/// Factors, 0 to 1, by which the covers of the weather's layers are multiplied over each part of the ground. For a
+/// layer with the cover 1, the map gives the cover itself.
 ///
-/// The map stands still over the ground, because a lesson needs a storm or a clearing in a place that is known
-/// beforehand. Clouds move through it with their wind, and form and dissolve by its values. It is level and aligned to
-/// north. Values are interpolated between the centres of cells, and constant beyond the outermost centres.
+/// The map does not move over the ground, because a scenario needs a storm or a clearing in a known place. Clouds move
+/// through it with their wind, and form and dissolve by its values. It is level and aligned to north. Values are
+/// interpolated between the centres of cells, and constant beyond the outermost centres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudMap {
     /// Centre of the south-western cell, m east and north of the world's origin, each within 1e7.
@@ -75,7 +75,7 @@ impl CloudMap {
 }
 
 impl Conditions {
-    /// Returns the weather with the cover that its layers have at a place under a map.
+    /// Returns the weather with the covers of its layers at a place under a map.
     pub(crate) fn under_map(mut self, map: &CloudMap, place_m: DVec2) -> Self {
         let left = map.at(place_m);
         let hidden = 1.0 - super::conditions::clear_between(&self.clouds);

@@ -69,8 +69,8 @@ impl CloudSlab {
         mix2(broken, even, self.closed())
     }
 
-    /// Returns these shares for broken clouds. Their domes rise by their excess over the field's threshold, which has a
-    /// normal distribution.
+    /// Returns the shares of [`Self::shares_above`] for broken clouds. A dome rises by the excess of the field over its
+    /// threshold, and the field has a normal distribution.
     fn broken_above(&self, height: f64, heaped: f64) -> [f64; 2] {
         let tall = (2.0 * self.convection - 1.0).max(0.0);
         let left = (1.0 - height / (1.0 - 0.15 * heaped * (1.0 - tall))).max(0.0);

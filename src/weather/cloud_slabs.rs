@@ -51,8 +51,8 @@ fn substance(kind: CloudKind) -> Substance {
     }
 }
 
-/// Largest ratio of a layer's thickness to its kind's, or of the kind's to the layer's, up to which the distance
-/// between its clouds follows its thickness.
+/// Largest ratio between a layer's thickness and the usual one of its kind, in either direction, up to which the
+/// distance between its clouds is proportional to its thickness.
 const WIDER: f64 = 3.0;
 
 /// Lowest base of middle clouds, m (WMO levels of temperate latitudes).

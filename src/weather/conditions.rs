@@ -12,9 +12,9 @@ pub const LN_20: f64 = 2.995_732_273_553_991;
 
 /// The physical state of the weather at one place and moment.
 ///
-/// Created by [`super::derive`] or [`super::Timeline::at`]. No field is a kind: what a report names in words is a
-/// quantity here, so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the station
-/// unless stated otherwise; extinctions are at 550 nm. Plain data, any thread.
+/// Created by [`super::derive`] or [`super::Timeline::at`]. Every field is a quantity. Kinds that a report names in
+/// words become numbers, so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the
+/// station unless stated otherwise; extinctions are at 550 nm. Plain data, any thread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Total extinction at station height, 1/m: air, aerosol, fog, precipitation and matter lifted by the wind.
@@ -231,7 +231,7 @@ fn whole() -> f64 {
     1.0
 }
 
-/// Whether a share is none at all, as in states saved before it could be another.
+/// Whether a share is 0. It is then not saved, because older states, which do not have the field, mean 0.
 fn is_none(share: &f64) -> bool {
     *share == 0.0
 }

@@ -1,4 +1,5 @@
-//! Matter that the wind lifts: how uneven gusts make it, by the law of saltating grains; and the layer of blown snow.
+//! Matter that the wind lifts: how unevenly gusts distribute it, by the law of saltating grains; and the layer of blown
+//! snow.
 
 use super::conditions::{Conditions, GroundLayer, WindProfile};
 
@@ -12,14 +13,14 @@ pub const LIFTING_M_S: f64 = 7.0;
 /// snow absorbs nothing.
 pub(crate) const DUST_ABSORPTION_EXPONENT: f64 = 2.7;
 
-/// Returns the amount of loose grains that a wind carries, up to a factor: u^3 (1 - (ut / u)^2), and 0 below the
-/// threshold (Owen 1964).
+/// Returns the amount of loose grains that a wind carries, up to a constant factor: u^3 (1 - (ut / u)^2), and 0 below
+/// the threshold (Owen 1964).
 pub fn carried(speed_m_s: f64) -> f64 {
     speed_m_s * (speed_m_s * speed_m_s - LIFTING_M_S * LIFTING_M_S).max(0.0)
 }
 
-/// Mean amounts carried by gusts, m^3/s^3: below the first the wind lifts nothing, and from the second on its
-/// unevenness counts fully. Matter that a calmer wind still carries was lifted earlier and has mixed.
+/// Mean amounts carried by gusts, m^3/s^3. Below the first the wind lifts nothing; matter in the air was then lifted
+/// earlier and is evenly mixed. From the second on, the unevenness of the gusts counts fully.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
 /// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\]: 0 where
@@ -84,7 +85,7 @@ pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
         patch_size_m: 12.0 + 108.0 * high,
         lifted: unevenness(&c.wind),
     };
-    // Drifting snow stays below the eye, and a station's reported visibility looks over it.
+    // Drifting snow stays below the observer's eye, so it does not count in the reported visibility.
     c.extinction_per_m += extinction_per_m * high;
 }
 

@@ -9,7 +9,8 @@ pub struct Overrides {
     pub aerosol_extinction_per_m: Option<f64>,
     /// Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10].
     pub fog_extinction_per_m: Option<f64>,
-    /// Extinction of the precipitation, 1/m, in place of that by drop and flake spectra. Range [0, 10].
+    /// Extinction of the precipitation, 1/m, in place of that computed from the spectra of drops and flakes. Range [0,
+    /// 10].
     pub precipitation_extinction_per_m: Option<f64>,
     /// Visibility of the air above mist or fog, m. Range [100, 1e6]; by law 5 km above mist, 10 km above fog.
     pub visibility_above_fog_m: Option<f64>,
@@ -20,14 +21,14 @@ pub struct Overrides {
     pub rayleigh_density_ratio: Option<f64>,
     /// Scale height of the air, m. Range [100, 50 000].
     pub rayleigh_scale_height_m: Option<f64>,
-    /// Whether rain requires a cloud; by law it does.
+    /// Whether rain adds water to clouds, and a cloud to a clear sky; by law it does.
     pub rain_needs_cloud: Option<bool>,
     /// Share of the sun's beam below the clouds, and share of diffuse light, in place of the slabs' light. Range [0, 1]
     /// each.
     pub cloud_light: Option<(f64, f64)>,
-    /// Significant wave height, m, in place of that by wind or sea state. Range [0, 30].
+    /// Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30].
     pub wave_height_m: Option<f64>,
-    /// Wetness of the ground, in place of that by precipitation. Range [0, 1].
+    /// Wetness of the ground, in place of that from the precipitation. Range [0, 1].
     pub wetness: Option<f64>,
 }
 

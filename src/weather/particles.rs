@@ -77,8 +77,8 @@ fn effective_kind(w: &Weather) -> AerosolKind {
 }
 
 /// Maximum altitude of a station, in scale heights of its particles. The sky's tables count their density from sea
-/// level, and hold at most e^4.6, a hundred times the density at the station. The haze of a plateau lies on the
-/// plateau.
+/// level, and hold at most e^4.6, a hundred times the density at the station. The haze of a high plateau is a layer on
+/// the plateau, and does not continue down to sea level.
 const DEEPEST_SCALES: f64 = 4.6;
 
 /// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude divided by

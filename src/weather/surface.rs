@@ -41,8 +41,8 @@ pub fn wave_height_of_state_m(state: u8) -> f64 {
     }
 }
 
-/// Returns the share of level ground that snow of this depth, m, covers: sparse at first, then all. It is the
-/// hyperbolic tangent of the depth divided by 2.5 times a roughness of 1 cm, as in Niu and Yang 2007.
+/// Returns the share of level ground that snow of this depth, m, covers. It is the hyperbolic tangent of the depth
+/// divided by 2.5 times a roughness of 1 cm, as in Niu and Yang 2007.
 pub fn snow_cover(depth_m: f64) -> f64 {
     if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
 }
@@ -93,8 +93,8 @@ pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option
     }
 }
 
-/// Wetness that rain maintains against evaporation: L / (L + E), with L the liquid rate and E = 0.5 (1 - RH) + 0.02
-/// mm/h, the daytime evaporation from a wet surface (order of Penman 1948).
+/// Returns the wetness that rain maintains against evaporation: L / (L + E), with L the liquid rate and E = 0.5 (1 -
+/// RH) + 0.02 mm/h, the daytime evaporation from a wet surface (order of Penman 1948).
 pub fn wetness_from_rain(liquid_mm_h: f64, relative_humidity: f64) -> f64 {
     liquid_mm_h / (liquid_mm_h + 0.5 * (1.0 - relative_humidity) + 0.02)
 }
@@ -105,7 +105,7 @@ fn puddles_from_rain(liquid_mm_h: f64) -> f64 {
     excess / (excess + 20.0)
 }
 
-/// Wetness and share of puddles that rain and drizzle maintain.
+/// Returns the wetness and the share of puddles that rain and drizzle maintain.
 pub(crate) fn cover_under_rain(falling: &Falling, humidity: f64) -> (f64, f64) {
     let liquid = falling.rain_mm_h + falling.drizzle_mm_h;
     (wetness_from_rain(liquid, humidity), puddles_from_rain(liquid))

@@ -1,4 +1,4 @@
-//! Couplings: the functions by which the effects act on every world.
+//! Couplings: functions of effects that a world calls to compute light and clouds, without naming the effects.
 
 use glam::DVec3;
 
@@ -14,7 +14,8 @@ use crate::{
 /// Function by which an effect changes the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
-/// Function that returns the cloud over rain areas above a place; `eye` is the place in the host's world.
+/// Function that returns the cloud over rain areas above a place, given in the planet's and in the host's coordinates,
+/// at a time in seconds.
 pub(crate) type CloudOverAreas =
     fn(&WeatherOver<'_>, &Conditions, (&LocalFrame, DVec3), f64) -> Result<Option<CloudSlab>>;
 
@@ -22,7 +23,7 @@ pub(crate) type CloudOverAreas =
 /// vertical optical depths.
 pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[f64; 3]>;
 
-/// Functions by which the effects act on every world.
+/// Functions of effects that a world calls.
 #[derive(Clone, Copy)]
 pub(crate) struct Couplings {
     /// Dims a scene by the weather's low layer.

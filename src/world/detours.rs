@@ -1,5 +1,5 @@
-//! Cache of the last map of detours and its inputs. Detours say by how much air that flows around obstacles lags behind
-//! the wind's displacement (`src/wind/detour.rs`).
+//! Cache of the last map of detours and its inputs. A detour is the distance by which air that flows around obstacles
+//! lags behind the wind's displacement (`src/wind/detour.rs`).
 
 use std::sync::{Arc, Mutex};
 

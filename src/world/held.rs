@@ -24,8 +24,8 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// Advances the state to `budget.until_s` by steps of a grid that is anchored at time 0, or until the time limit is
-    /// reached; one step at least. Returns whether it got there.
+    /// Advances the state to `budget.until_s`, or until the time limit is reached, by at least one step. Steps end at
+    /// whole multiples of their length since time 0. Returns [`Status::Pending`] if the time limit ended it.
     fn advance(&mut self, _world: &World, _budget: UpdateBudget) -> Result<Status> {
         Ok(Status::Ok)
     }
@@ -62,7 +62,7 @@ pub(crate) trait HeldEffect: std::any::Any {
     /// Adds the values that were fixed at creation to the table with which saved states are compared.
     fn created(&self, _table: &mut toml::Table) {}
 
-    /// Adds its state and its settings to a saved state.
+    /// Adds the effect's state and settings to a saved state.
     fn save(&self, _state: &mut toml::Table) -> Result<()> {
         Ok(())
     }

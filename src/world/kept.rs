@@ -23,7 +23,7 @@ pub(crate) struct KeptScene {
     pub count: u64,
 }
 
-/// Inputs from a world and a camera that may change and that determine a scene. Equal inputs give equal scenes.
+/// Values of a world and a camera that determine a scene and can change. Equal inputs give equal scenes.
 #[derive(Clone, Copy, PartialEq)]
 struct SceneInputs {
     eye: DVec3,

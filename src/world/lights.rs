@@ -29,8 +29,8 @@ const LAND_ALBEDO: f64 = 0.2;
 /// Reflectance of snow of which only the depth is known.
 const SNOW_ALBEDO: f64 = 0.82;
 
-/// Number of steps from bare to covered land in the ground that the sky's tables use. Half a step changes the light of
-/// a clear sky by less than a hundredth.
+/// Number of steps to which the share of snow on the ground is rounded for the sky's tables. Half a step changes the
+/// light of a clear sky by less than a hundredth.
 const SNOW_STEPS: f64 = 16.0;
 
 /// Times for which a change of the weather is looked ahead, s, and the change of the air's vertical optical depth up to
@@ -39,7 +39,7 @@ const SNOW_STEPS: f64 = 16.0;
 const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
 const AHEAD_DEPTH: f64 = 0.15;
 
-/// Land as light from above meets it, with its share of snow.
+/// Reflectance of the land for light from above, with its share of snow.
 pub(super) struct LandSeen {
     /// Share that snow covers.
     pub snow: f64,
@@ -60,7 +60,7 @@ impl LandSeen {
     }
 
     /// Returns a planet whose ground is this land. The share of snow is rounded to steps, so that the sky's tables are
-    /// not rebuilt for every flake.
+    /// not rebuilt at every small change.
     pub fn under_sky(&self, planet: Planet) -> Planet {
         let stepped = Self { snow: (self.snow * SNOW_STEPS).round() / SNOW_STEPS, ..*self };
         Planet { ground_albedo: stepped.albedo_on(&planet), ..planet }
@@ -107,11 +107,12 @@ fn out_of_almanac(time_s: f64) -> Error {
     Error::range("time_s", "a time at which the context's clock shows one of the years -2000 to 6000", time_s)
 }
 
-/// A light with what the clouds leave of it.
+/// The sun or moon, and the shares of its light that the clouds let through.
 pub(super) type UnderClouds = (Light, CloudLight);
 
 impl World {
-    /// Returns sun and moon over `place` at simulation time `time_s`.
+    /// Returns sun and moon over `place` at simulation time `time_s`, under the weather `c` over land of the given
+    /// albedo.
     pub(super) fn lights_over(
         &self,
         place: &Place,
@@ -128,7 +129,8 @@ impl World {
         Ok([sun, moon])
     }
 
-    /// Returns the sun over a place, with what the clouds leave of its light.
+    /// Returns the sun over a place. `see` returns the apparent direction and the flattening of a disc in a true
+    /// direction.
     fn sun_over(
         &self,
         almanac: &SunPosition,
@@ -155,7 +157,7 @@ impl World {
         (sun, clouds)
     }
 
-    /// Returns the moon over a place, with what the clouds leave of its light.
+    /// Returns the moon over a place, as [`Self::sun_over`].
     fn moon_over(
         &self,
         mut almanac: MoonPosition,

@@ -3,7 +3,8 @@
 //! their own are advanced along with it ([`HeldEffect`]).
 //!
 //! Everything here is a function of (description, timeline, time, position): two worlds with the same input give the
-//! same answers on every machine. No device and no frame is needed.
+//! same answers on every machine, except that the sun's direction may differ by 1e-14 (`src/almanac/celestial.rs`). No
+//! device and no frame is needed.
 
 mod air;
 mod binary;

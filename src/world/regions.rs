@@ -48,7 +48,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether saved regions are possible in this world over `timeline`.
+    /// Whether saved regions could have been set in this world with `timeline`.
     pub(super) fn are_valid(&self, regions: &[Region], timeline: &Timeline) -> bool {
         let is_place = |center_m: [f64; 3]| self.frame.place_at("center_m", DVec3::from(center_m)).is_ok();
         let is_timed = |kept: &Region| match (kept.area.motion, kept.carried_m) {

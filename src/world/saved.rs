@@ -53,7 +53,7 @@ pub(crate) fn parse_error(what: impl std::fmt::Display) -> Error {
     Error::new(Status::Parse, format!("saved state: {}", beginning(&line, MOST_FAULT)))
 }
 
-/// Checks that a state is of a context that was created alike; the error names all that differs.
+/// Checks that a state belongs to a context created from the same description; the error names each value that differs.
 fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     let names = here.keys().chain(saved.keys().filter(|name| !here.contains_key(*name)));
     let value = |v: Option<&toml::Value>| beginning(&v.map_or("nothing".into(), ToString::to_string), 40).into_owned();
@@ -69,7 +69,7 @@ fn check_created(saved: &toml::Table, here: &toml::Table) -> Result<()> {
     Err(Error::invalid("state", format!("must be of a context that was created alike; other is {other}")))
 }
 
-/// Returns the drift from which counting continues: that at the end of what `timeline` has forgotten.
+/// Checks and returns the saved drift, which belongs to the end of the last change that `timeline` has forgotten.
 fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) -> Result<Drift> {
     let drift = Drift { time_s, path_m, displacement_m: DVec2::new(east, north) };
     let since_ever = timeline.known_since_ever() && drift == Drift::ZERO;
@@ -79,7 +79,7 @@ fn drifted_from([time_s, path_m, east, north]: [f64; 4], timeline: &Timeline) ->
     sound.then_some(drift).ok_or_else(|| parse_error(wanted))
 }
 
-/// Reads the drifts of the cloud layers. Older states have none: their clouds stand as at time 0.
+/// Reads the drifts of the cloud layers. Older states have none: their clouds are placed as at time 0.
 fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
     let mut drifts = LayerDrifts { time_s, ..LayerDrifts::ZERO };
     let fits = saved.is_empty() || saved.len() == drifts.slots.len();
@@ -158,14 +158,14 @@ impl World {
         table
     }
 
-    /// Returns the values that a context's description fixed once and that are settings now. A state that has them
-    /// among its fixed values is older: they are then compared, not restored.
+    /// Returns the values that the description fixed in earlier versions and that are settings now. An old state has
+    /// them among its fixed values; they are then compared, not restored.
     fn fixed_before(&self) -> [(&'static str, toml::Value); 2] {
         let planet = format!("hash {:016x}", self.set.planet.hash());
         [("planet_toml", planet.into()), ("tone_curve", format!("{:?}", self.tone).into())]
     }
 
-    /// Returns the saved state: weather, time, clock, lights, surroundings, and what was `created`.
+    /// Returns the saved state: weather, time, clock, lights, surroundings, and the fixed values `created`.
     ///
     /// # Errors
     /// [`Status::Internal`] if a number cannot be written.
@@ -205,10 +205,10 @@ impl World {
         })
     }
 
-    /// Reads a saved world, if it fits this one, whose description fixed the values of `created`.
+    /// Reads a saved world and checks that it fits this one, whose fixed values are `created`.
     ///
     /// # Errors
-    /// [`Status::Parse`] or [`Status::InvalidArgument`], naming what does not fit.
+    /// [`Status::Parse`] or [`Status::InvalidArgument`], naming the value that does not fit.
     pub fn read(&self, saved: SavedWorld, created: &toml::Table) -> Result<LoadedWorld> {
         let mut here = created.clone();
         let before = self.fixed_before().into_iter().filter(|(name, _)| saved.created.contains_key(*name));

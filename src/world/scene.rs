@@ -27,7 +27,7 @@ use crate::{
 /// [`Couplings::night_lux`](super::Couplings::night_lux) gives the brightness.
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
-/// Elevations of the sun, degrees, between which the computed light of the night replaces those figures.
+/// Elevations of the sun, degrees, between which the computed light of the night replaces these two constants.
 const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
 /// Night light that the table below contains, lux.
 const TABLE_NIGHT_LUX: f64 = 6.4e-4;
@@ -81,8 +81,8 @@ impl ZenithDepths {
 /// albedo 0.8 then appears two stops above grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
 const SNOW_KEY: f64 = 0.2;
-/// Longest path of scattered light through absorbing haze, in vertical thicknesses: light of a low sun leaves its slant
-/// path when it is scattered. Fitted to sums of radiance over computed skies.
+/// Longest path of scattered light through absorbing haze, in vertical thicknesses: light of a low sun leaves its
+/// slanted path when it is scattered. Fitted to sums of radiance over computed skies.
 const LONGEST_WAY: f64 = 4.0;
 /// Luminous efficacy of sun and sky together, lm/W (Muneer 1997).
 const LUX_PER_W_M2: f64 = 110.0;
@@ -186,7 +186,7 @@ impl World {
         Ok(self.scene_and_wind(name, position, time_s)?.0)
     }
 
-    /// Returns that scene, with the wind if it had to be computed.
+    /// Returns the scene of [`World::scene_named`], with the wind if it had to be computed.
     pub(super) fn scene_and_wind(&self, name: &str, position: DVec3, time_s: f64) -> Result<(Scene, Option<Blowing>)> {
         let conditions = self.weather_at(time_s)?;
         let land = self.land(&conditions);
@@ -212,7 +212,7 @@ impl World {
         Ok([mapped, under_areas])
     }
 
-    /// Returns the scene in this weather over this land, with the wind if it had to be computed.
+    /// Returns the scene in the weather `conditions` over `land`, with the wind if it had to be computed.
     fn scene_over(
         &self,
         (name, position): (&str, DVec3),
@@ -224,8 +224,8 @@ impl World {
         let bare = planet_under(&self.set.planet, &conditions);
         let (planet, ground_albedo) = (land.under_sky(bare), land.albedo_on(&bare));
         let map_m = self.map_place(position, &local);
-        // The light is that under the clouds over the place, those of rain areas included; all else follows the
-        // weather.
+        // The lights shine through all clouds over the place, those of rain areas included. Everything else follows the
+        // weather and the host's cloud map.
         let [mapped, under_areas] =
             self.clouds_over(&conditions, &local, position, DVec2::from_array(map_m), time_s)?;
         let shown = mapped.as_ref().unwrap_or(&conditions);
@@ -239,7 +239,7 @@ impl World {
         let patchy = conditions.fog.is_patchy();
         let curtained = curtain::variation(&conditions.precipitation) > 0.0;
         let wind = (patchy || curtained).then(|| self.over().wind_at(time_s)).transpose()?;
-        // The clouds' own effect draws broken cloud; a closed deck is the sky's own look.
+        // The cloud effect draws broken cloud; a closed deck is drawn by the sky effect.
         let deck_cover = smoothstep(0.55, 0.95, shown.opaque_cover(local.place.altitude_m));
         let mut scene = Scene {
             place: local.place,
@@ -275,7 +275,7 @@ impl World {
     pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
         let frame = &self.frame;
         let origin = if frame.kind == WorldKind::Ecef { frame.position_of(&frame.origin) } else { DVec3::ZERO };
-        // A state must not depend on how far another state has been published.
+        // The simulated snow is left out: a state must not depend on how far another state has advanced.
         let conditions = self.timeline.at(time_s);
         let land = LandSeen::reported(&conditions);
         let (scene, _) = self.scene_over(("position", origin), time_s, conditions, &land)?;

@@ -56,7 +56,7 @@ pub(crate) struct World {
     pub time_s: f64,
     pub(super) ephemeris: Ephemeris,
     pub(super) couplings: Couplings,
-    /// Revision of the rain areas and static shelters.
+    /// Revision of the rain areas, the static shelters and the map of cloud cover.
     pub surroundings_revision: u64,
 }
 
@@ -209,7 +209,7 @@ impl World {
         Ok(())
     }
 
-    /// Forgets what has ended before `keep_s`, the earliest time that will still be asked for.
+    /// Forgets changes of the weather that ended before `keep_s`, the earliest time of later queries.
     pub fn forget_before(&mut self, keep_s: f64) {
         self.drifted = self.drifted.kept(&self.wind, &self.timeline, keep_s);
         self.layers_drifted = self.layers_drifted.kept(&self.timeline, keep_s);

@@ -19,7 +19,7 @@ fn rate(world: &World, x: f64) -> f64 {
 fn an_area_rains_where_it_is_and_a_bad_one_is_refused_by_name() {
     let world = World::new();
     let set = |areas: &[wk_rain_area], count: u32| {
-        // SAFETY: live pointers; what is too many is refused before it is read.
+        // SAFETY: live pointers; too large a count is refused before the list is read.
         unsafe { wk_context_set_rain_areas(world.context, areas.as_ptr(), count, STRIDE) }
     };
     let shower = wk_rain_area { rain: WK_AREA_RAIN_SHOWERS, rate_mm_h: 24.0, ..init("wk_rain_area") };

@@ -1,4 +1,4 @@
-//! The clock at its seams: leap days, the ends of days and years, and the sun and the moon that go on over them.
+//! The clock at leap days and at the ends of days and years: sun and moon move on without a jump.
 
 use welkin::capi::{conditions::*, query::*, status::*, timeline::*, weather::*};
 
@@ -106,8 +106,8 @@ fn sun_and_moon_go_on_over_midnight_the_leap_day_and_the_years_end() {
     }
 }
 
-/// Answers of a timeline and the light on the ground, second by second over a seam of the calendar: no jump, and
-/// what the weather itself does is the same as at any other hour.
+/// Weather and light on the ground, second by second over the end of a day: nothing jumps, and a change of weather
+/// proceeds as at any other hour.
 #[test]
 fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
     let told = |utc_s: f64| {
@@ -121,7 +121,7 @@ fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
         unsafe {
             assert_eq!(wk_context_set_weather(world.context, &from, 0.0, 0.0), WK_OK, "{}", message());
             assert_eq!(wk_context_set_weather(world.context, &to, 1000.0, 600.0), WK_OK, "{}", message());
-            // The seam comes in the middle of the change.
+            // Midnight falls in the middle of the change.
             assert_eq!(wk_context_set_clock(world.context, utc_s, 1300.0), WK_OK, "{}", message());
             for i in 0..=20 {
                 let time_s = 1290.0 + f64::from(i);

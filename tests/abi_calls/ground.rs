@@ -63,7 +63,7 @@ fn a_terrain_gets_wet_and_its_hollow_fills() {
     let mut ground = init::<wk_ground>("wk_ground");
     assert_eq!(unsafe { wk_context_get_ground(context, &[0.0; 3], &mut ground) }, WK_OK);
     assert!((ground.water_mm / f64::from(cells[12].standing_mm) - 1.0).abs() < 1e-6 && ground.in_puddle == 1);
-    // What it is made of: by the cell, else by the default.
+    // The material is that of the cell, or the default where the cell has none.
     let mut classes = [WK_SURFACE_CLASS_ROCK as u8; 25];
     classes[12] = 0;
     let made = wk_ground_grid { surface_classes: classes.as_ptr(), surface_class_count: 25, ..grid };
@@ -167,10 +167,10 @@ fn boxes_keep_rain_off_the_surfaces_that_are_asked_for() {
     assert!((on([0.0, 0.0, 3.0], up, drives, 0.0) / open - 1.0).abs() < 1e-9, "on its roof");
     let front = on([0.0, 2.0, 2.0], [0.0, 1.0, 0.0], drives, 0.0);
     assert!(front > 2.0 * open, "{front}");
-    // What stands in its way is dry while it passes, and wet again when it has.
+    // A surface in the cab's way is dry while the cab passes over it, and wet again afterwards.
     let by_time = [0.0, 0.5, 1.05, 2.0].map(|t| on([0.0, 20.0, 0.5], up, still, t) / open);
     assert!(by_time[0] > 0.99 && by_time[2] < 0.1 && by_time[3] > 0.9, "{by_time:?}");
-    // Below a roof at the edge of the shadow, the steep drops come and the flat ones do not.
+    // Below a roof at the edge of the shadow, steeply falling drops arrive and slanting ones do not.
     let windy = wk_weather {
         precipitation_kind: WK_PRECIPITATION_RAIN,
         precipitation_rate_mm_h: 20.0,

@@ -31,7 +31,7 @@ fn case(
     Case { function, parameter, null_is_fine, call: Box::new(call) }
 }
 
-/// One line a function. Outputs are NULL where the handle is checked first.
+/// Lists one case for each function. Outputs are NULL where the handle is checked first.
 fn cases(view: *mut wk_view) -> Vec<Case> {
     // SAFETY, for all: the handle is what is tested; other pointers are NULL or live.
     vec![

@@ -1,5 +1,5 @@
-//! Limits: what lies beyond one is refused by the parameter's name in the header, what lies at one is served
-//! everywhere, and of several answers none is given where one cannot be.
+//! Limits: a value beyond a limit is refused with the parameter's name in the header, a value at a limit is accepted
+//! everywhere, and a call for several places writes nothing if one of them is invalid.
 
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -11,7 +11,7 @@ use welkin::capi::{
 
 use super::world::{World, init, message, next_frame};
 
-/// Asks every query for a place, now or at the present time: name of the place's parameter, and status.
+/// Calls every query that takes a place. Returns the name of the place's parameter, the status and the message of each.
 fn ask(world: &World, at: [f64; 3]) -> Vec<(&'static str, wk_status, String)> {
     let (context, mut answers) = (world.context, Vec::new());
     let mut take = |name, status| answers.push((name, status, message()));
@@ -98,7 +98,7 @@ fn a_place_that_is_none_is_named_as_the_header_names_it() {
     }
 }
 
-/// The lowest and the highest altitude all over the Earth, whatever rounding makes of coordinates.
+/// The lowest and the highest altitude are accepted all over the Earth, even with rounded coordinates.
 #[test]
 fn the_ends_of_the_altitudes_are_places_everywhere() {
     let mut world = World::new();
@@ -208,7 +208,7 @@ fn time_ends_for_starts_where_it_ends_for_updates() {
             assert!(message().contains(": start_time_s must be in [-10000000000, 10000000000] s"), "{}", message());
         }
         assert_eq!(set(1e10), WK_OK, "{}", message());
-        // What the clock cannot show, no light can be asked for.
+        // Light cannot be queried at a time that the clock cannot show.
         assert_eq!(wk_context_set_clock(world.context, 1.27e11, 0.0), WK_OK, "{}", message());
         let mut sun = init::<wk_celestial>("wk_celestial");
         assert_eq!(wk_context_get_sun_at(world.context, &[0.0; 3], 1e10, &mut sun), WK_ERROR_INVALID_ARGUMENT);
@@ -267,7 +267,7 @@ fn stars_are_refused_by_name() {
     }
 }
 
-/// Each place is asked for before any is written.
+/// All places are checked before any result is written.
 #[test]
 fn of_several_answers_none_is_given_where_one_cannot_be() {
     // SAFETY: live locals; what is misaligned is refused before it is written to.
@@ -297,7 +297,7 @@ fn of_several_answers_none_is_given_where_one_cannot_be() {
     }
 }
 
-/// An area as it comes from its INIT macro is accepted at any time, and has gone with the wind since time 0.
+/// An area with the values of its INIT macro is accepted at any time; it has moved with the wind since time 0.
 #[test]
 fn a_default_rain_area_is_accepted_whatever_has_been_forgotten() {
     let world = World::new();
@@ -327,7 +327,7 @@ fn a_default_rain_area_is_accepted_whatever_has_been_forgotten() {
     }
 }
 
-/// Texts of hosts come back in errors by their beginning, however long they are.
+/// Errors quote only the beginning of a host's text.
 #[test]
 fn errors_of_texts_are_short() {
     let world = World::new();

@@ -1,8 +1,9 @@
-//! Every function of the C interface with everything that can be wrong about its parameters: a status and a sentence
-//! that names the parameter, nothing written, never a crash. On the backend that needs no GPU.
+//! Every function of the C interface with everything that can be wrong about its parameters: the call returns a status
+//! and a sentence that names the parameter, writes nothing and never crashes. The tests run on the backend that needs
+//! no GPU.
 //!
-//! `world` makes one live object of each kind; `handles` and `structs` hold one line a function and parameter, and fail
-//! if a function of the header has none.
+//! `world` makes one live object of each kind; `handles` and `structs` have one line for each function and parameter,
+//! and fail if a function of the header has no line.
 
 mod areas;
 mod clock;

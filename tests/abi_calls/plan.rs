@@ -29,7 +29,7 @@ fn part(world: &World, number: wk_part) -> wk_part_plan {
     part
 }
 
-/// Draws a frame and answers the rungs of air, fog, sky and rain in it.
+/// Draws a frame and returns the rungs of air, fog, sky and rain in it.
 fn drawn(world: &World) -> [u32; 4] {
     let target = wk_own_target { color: world.texture, ..init("wk_own_target") };
     let mut projection = [0.0; 16];
@@ -99,7 +99,7 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
     };
     for importance in [-0.1, 1.1] {
         wished(&[wish(WK_PART_FOG, importance)], "budget.wishes[0].importance must be in [0, 1], got");
-        // By its place in the list, which is not its part's number.
+        // The error names the place in the list, which is not the part's number.
         let behind = [wish(WK_PART_RAIN, 0.5), wish(WK_PART_FOG, importance), wish(WK_PART_AIR, 0.5)];
         wished(&behind, "budget.wishes[1].importance must be in [0, 1], got");
         wished(&[behind[0], behind[2], behind[1]], "budget.wishes[2].importance must be in [0, 1], got");
@@ -120,7 +120,7 @@ fn budgets_and_times_out_of_range_are_named_with_their_range() {
         assert_eq!(unsafe { wk_view_get_part_plan(world.view, part, &mut plan) }, WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("part must be one of WK_PART_AIR"), "{}", message());
     }
-    // What is not asked for is not looked at.
+    // A field whose flag is clear is not checked.
     let nothing = [wk_part_wish { importance: 7.0, rung: 9, ..init("wk_part_wish") }];
     let b = wk_budget { tolerance: -1.0, milliseconds: -1.0, wishes: nothing.as_ptr(), wish_count: 1, ..budget(0) };
     assert_eq!(unsafe { wk_view_set_budget(world.view, &b) }, WK_OK);

@@ -54,7 +54,7 @@ impl Scene {
         ok(unsafe { wk_context_set_weather(self.context, &weather, 0.0, 0.0) });
     }
 
-    /// The sky to the north, that depends on no frame before.
+    /// Draws the sky to the north, independent of earlier frames.
     fn picture(&mut self) -> Vec<[u8; 4]> {
         let target = wk_own_target { color: self.color, ..init("wk_own_target") };
         self.frames += 1;
@@ -77,7 +77,7 @@ impl Scene {
         texels
     }
 
-    /// What of the light at 680, 550 and 440 nm is left over 10 km.
+    /// Returns the transmittance over 10 km at 680, 550 and 440 nm.
     fn left_over_10_km(&self) -> [f64; 3] {
         let segment = wk_segment { from_m: [0.0, 0.0, 2.0], to_m: [0.0, 10_000.0, 2.0] };
         let mut between = wk_between { transmittance: [0.0; 3], visibility_m: 0.0 };
@@ -135,7 +135,7 @@ fn a_planets_own_haze_is_drawn_beside_the_weathers() {
         let [both, weathers] = scenes.each_ref().map(Scene::left_over_10_km);
         for i in 0..3 {
             let separate = own[i] / none[i] * weathers[i];
-            // The way rises by some metres above the ground, over which a mixture of one scale height thins a little
+            // The path rises by some metres above the ground. Over these a mixture with one scale height thins a little
             // less.
             assert!((both[i] / separate - 1.0).abs() < 1e-2, "{both:?} {weathers:?}");
         }
@@ -152,7 +152,8 @@ fn a_changed_context_draws_what_one_created_so_draws() {
     {
         let mut scene = Scene::new(device, None, WK_TONE_EXPONENTIAL, &first);
         let mut last = scene.picture();
-        // What a context shows that was created so; dither goes with the frame's number.
+        // Compares with a context that was created with these values, in a frame with the same number, because dither
+        // depends on it.
         let mut check =
             |scene: &mut Scene, (planet, tone, model): (Option<&CString>, _, &wk_sky_settings), what: &str| {
                 let mut created = Scene::new(device, planet, tone, model);
@@ -171,7 +172,7 @@ fn a_changed_context_draws_what_one_created_so_draws() {
             check(&mut scene, (Some(&dusty), WK_TONE_LINEAR, &first), "planet");
             ok(wk_context_set_sky_settings(scene.context, &second));
             check(&mut scene, (Some(&dusty), WK_TONE_LINEAR, &second), "sky settings");
-            // There and back between two frames, with another planet after it.
+            // Changes the settings and changes them back between two frames, then sets another planet.
             ok(wk_context_set_sky_settings(scene.context, &first));
             ok(wk_context_set_sky_settings(scene.context, &second));
             ok(wk_context_set_planet(scene.context, null()));

@@ -1,4 +1,4 @@
-//! Rehearsals of weathers: what is refused by name, and that the context is as before.
+//! Rehearsals of weathers: errors name the parameter, and the context is afterwards as before.
 
 use std::ptr::{null, null_mut};
 

@@ -1,4 +1,4 @@
-//! Queries: what they answer agrees with the Rust side, lists are checked before anything is written.
+//! Queries: results agree with those of the Rust interface, and lists are checked before anything is written.
 
 use std::ffi::CStr;
 use std::ptr::{null, null_mut};
@@ -39,7 +39,7 @@ fn kinds_of_snow_are_apart_and_add_up() {
         let expected: [f64; 3] = std::array::from_fn(|k| if k == i { c.snow_mm_h } else { 0.0 });
         assert_eq!(of(&c), expected, "{i}");
         assert_eq!(c.snow_mm_h > 0.0, i < 3, "{i}");
-        // On the way from one kind to the next both fall.
+        // During the change from one kind to the next both fall.
         let (both, sum) = (of(&half), of(&half).iter().sum::<f64>());
         assert!((sum - half.snow_mm_h).abs() < 1e-12, "{both:?}");
         if (1..3).contains(&i) {
@@ -130,7 +130,7 @@ fn the_sun_is_where_the_host_puts_it_or_where_the_almanac_has_it() {
     }
 }
 
-/// What the four queries with a time wrote.
+/// Results of the four queries that take a time.
 struct Answers {
     sun: wk_celestial,
     moon: wk_celestial,
@@ -189,7 +189,7 @@ fn every_query_answers_for_other_times_too() {
             "position_m must be at an altitude in",
         );
         assert_eq!(here.visibility_m, 0.0, "nothing is written");
-        // One weather for all the world: another place, the same answer.
+        // The weather is the same everywhere: another place has the same conditions.
         assert_eq!(wk_context_get_conditions(context, &EYE, 200.0, &mut here), WK_OK);
         assert_eq!(wk_context_get_conditions(context, &[1e4, 5e3, 800.0], 200.0, &mut there), WK_OK);
     }

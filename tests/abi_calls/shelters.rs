@@ -1,4 +1,4 @@
-//! What keeps rain off through the C interface: boxes, and planes that cut them.
+//! Shelters through the C interface: boxes, and planes that cut them.
 
 use super::world::{World, init, message};
 use welkin::capi::{rain::*, status::*};

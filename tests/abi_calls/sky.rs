@@ -1,4 +1,4 @@
-//! The sky's tables built ahead: progress, abort, files. On a device that computes.
+//! The sky's tables built ahead of time: progress, abort, files. On a device that computes.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ unsafe extern "C" fn on_log(_: *mut c_void, _: wk_log_level, text: *const c_char
     LOG.lock().unwrap().push(unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned());
 }
 
-/// What a host's progress bar was told, and when it gives up.
+/// Values that a host's progress callback has received, and the call at which it aborts.
 struct Bar {
     told: Vec<f64>,
     most: usize,
@@ -29,7 +29,7 @@ unsafe extern "C" fn on_progress(user: *mut c_void, share: f64) -> i32 {
     i32::from(bar.told.len() >= bar.most)
 }
 
-/// A directory that cannot be on any system: what is above it is a file.
+/// Returns the path of a directory that cannot exist, because its parent is a file.
 fn below_a_file() -> PathBuf {
     let file = std::env::temp_dir().join(format!("welkin-a-file-{}", std::process::id()));
     std::fs::write(&file, b"no directory").unwrap();
@@ -44,7 +44,7 @@ struct Simulator {
 
 fn context_on(device: *mut wk_device, cache: &CStr) -> *mut wk_context {
     let mut context = null_mut();
-    // The quickest tables: what they show does not matter here.
+    // The smallest tables, because the picture does not matter here.
     let sky = wk_sky_settings { model: WK_SKY_ISOTROPIC, suns: 16, altitudes: 8, ..init("wk_sky_settings") };
     let next = (&raw const sky).cast();
     let desc = wk_context_desc { next, cache_dir: cache.as_ptr(), ..init("wk_context_desc") };
@@ -82,7 +82,7 @@ fn build(context: *mut wk_context, most: usize) -> (wk_status, Vec<f64>) {
     (status, bar.told)
 }
 
-/// Tables that the first frame of a new view builds.
+/// Returns the number of tables that the first frame of a new view builds.
 fn tables_of_a_first_frame(context: *mut wk_context) -> u32 {
     let mut view = null_mut();
     let mut report = init::<wk_report>("wk_report");
@@ -119,7 +119,8 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
         let (status, told) = build(host.context, usize::MAX);
         assert_eq!((status, told.last()), (WK_OK, Some(&1.0)), "{}", message());
         assert!(told.len() >= 14 && files(&cache).len() == 1, "{told:?}");
-        // Shown already: by this context, and by another of the device. Frames then draw an observer's tables only.
+        // This context, or another one of the device, already shows the tables. Frames then draw only an observer's
+        // tables.
         assert_eq!(build(host.context, usize::MAX), (WK_OK, vec![1.0]));
         let other = context_on(host.device, &CString::new(below_a_file().to_str().unwrap()).unwrap());
         assert_eq!(tables_of_a_first_frame(other), 1);
@@ -142,7 +143,7 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
     assert_eq!(std::fs::read(&file).unwrap(), whole, "mended, bit for bit");
     drop(host);
     std::fs::remove_dir_all(&cache).unwrap();
-    // A directory that cannot be: said, and built all the same.
+    // If the directory cannot exist, a warning is logged and the tables are built all the same.
     let host = Simulator::new(&below_a_file());
     assert_eq!(build(host.context, usize::MAX).0, WK_OK);
     assert!(said("not kept"));

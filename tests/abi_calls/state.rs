@@ -1,5 +1,5 @@
-//! Saved states: they hold all that decides what a context shows, come back whole or not at all, and are told apart by
-//! format.
+//! Saved states: they contain everything that decides what a context shows, are restored completely or not at all, and
+//! are distinguished by a format number.
 
 use std::{
     ffi::{CString, c_void},
@@ -15,11 +15,11 @@ use welkin::capi::{
 
 use super::world::{World, init, message, update};
 
-/// The format that is written now, and its state that is kept here.
+/// Number of the format that is written now.
 const FORMAT: u32 = 2;
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/abi_calls/states");
 
-/// A context that ends with its scope.
+/// A context that is destroyed at the end of its scope.
 struct Own(*mut wk_context);
 
 impl Own {
@@ -30,7 +30,7 @@ impl Own {
         Self(context)
     }
 
-    /// One that simulates the ground.
+    /// Creates a context that simulates the ground.
     fn simulated(world: &World) -> Self {
         let simulation = wk_simulation_desc { ground_model: WK_GROUND_SIMULATED, ..init("wk_simulation_desc") };
         let next = (&raw const simulation).cast();
@@ -72,7 +72,7 @@ fn ok(status: wk_status) {
     assert_eq!(status, WK_OK, "{}", message());
 }
 
-/// Calls a setter with something else than what a new context has.
+/// Function that calls a setter with a value that a new context does not have.
 type Set = unsafe fn(*mut wk_context);
 
 unsafe fn set_rain(context: *mut wk_context) {
@@ -187,7 +187,7 @@ unsafe fn trigger_flash(context: *mut wk_context) {
 
 unsafe fn set_wind_field(context: *mut wk_context) {
     let field = wk_wind_field { cells: [8, 16, 8], mode: WK_WIND_FIELD_RUNNING, ..init("wk_wind_field") };
-    // To come: a field that runs makes a large state (src/flow/held/tests.rs).
+    // The field begins later, because a running field makes a large state (src/flow/held/tests.rs).
     ok(unsafe { wk_context_set_wind_field(context, &field, 100.0) });
 }
 
@@ -250,8 +250,8 @@ const SETTERS: [(&str, Set); 22] = [
     ("all at once", set_all),
 ];
 
-/// Images of the host's, each channel's own like its depth, how the sky is drawn, and tiles, whose heights the host
-/// sets before it loads (their water: tests/ground/tiles.rs); the header says so.
+/// Functions whose values a state does not contain, as the header says: images, which each channel has for itself; sky
+/// settings; and tiles, whose heights the host sets before it loads (their water: tests/ground/tiles.rs).
 const NOT_STATE: [&str; 4] = [
     "wk_context_set_occluder_maps",
     "wk_context_set_sky_settings",
@@ -279,7 +279,7 @@ fn what_any_setter_sets_is_in_the_hash_and_comes_back_with_the_state() {
         assert_eq!(second.load(&state), WK_OK, "{name}: {}", message());
         assert_eq!(second.hash(), context.hash(), "{name} does not come back");
         assert!(second.save() == state, "{name} does not come back");
-        // And what was there before goes.
+        // A load removes what was set before.
         assert_eq!(second.load(&plain.save()), WK_OK, "{name}: {}", message());
         assert_eq!(second.hash(), plain.hash(), "{name} stays behind");
     }
@@ -310,7 +310,7 @@ fn a_state_of_another_place_or_kind_is_refused_by_name() {
         assert!(message().contains(name), "{name}: {}", message());
         assert_eq!(context.hash(), before, "{name}: a refused state changes nothing");
     }
-    // All that differs is named at once, and what a state restores may differ.
+    // The error names every fixed value that differs. Values that a state restores may differ.
     let other = wk_context_desc { latitude_deg: 0.0, seed: 9, ..desc() };
     assert_eq!(Own::new(&world, &other).load(&state), WK_ERROR_INVALID_ARGUMENT);
     assert!(message().contains("latitude_deg") && message().contains("seed"), "{}", message());
@@ -350,7 +350,7 @@ fn one_byte_changed_anywhere_is_refused_and_so_is_any_cut() {
     assert_eq!(second.hash(), first.hash());
 }
 
-/// What a context with everything set answers at a time, in the order of the file beside the state.
+/// Returns query results of a context with everything set, in the order of the file beside the state.
 fn answers(context: *mut wk_context, time_s: f64) -> Vec<(&'static str, f64)> {
     let at = [0.5; 3];
     let (mut now, mut ground, mut wind) = (init::<wk_conditions>("wk_conditions"), init("wk_ground"), init("wk_wind"));
@@ -404,7 +404,7 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     assert_eq!(second.load(&kept), WK_OK, "{wanted}: {}", message());
     ok(third.load(&second.save()));
     assert!(third.save() == second.save());
-    // It holds what was set when it was written, and goes on.
+    // The loaded context has the values that were set when the state was written, and continues.
     let mut ground = init::<wk_ground>("wk_ground");
     let mut wind = init::<wk_wind>("wk_wind");
     // SAFETY: live pointers.
@@ -414,7 +414,7 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     }
     assert!(ground.in_puddle == 1 && ground.water_mm > 5.0, "{}", ground.water_mm);
     assert!((0.2..0.3).contains(&wind.velocity_m_s[2]), "the wind grid's updraught: {:?}", wind.velocity_m_s);
-    // What it answers is what the state answered when it was written.
+    // Its query results are those that were stored when the state was written.
     let told = answers(second.0, 1234.5);
     let path = Path::new(FIXTURES).join(format!("format{FORMAT}.answers"));
     if std::env::var_os("WELKIN_BLESS").is_some() {
@@ -430,7 +430,7 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     }
     update(second.0, 2000.0);
     let before = second.hash();
-    // It holds no planet and no tone curve, and so needs the same as it was written under.
+    // The old state contains no planet and no tone curve, so it loads only into a context with the same ones.
     let others: [(&str, Set); 2] = [("planet_toml", set_planet), ("tone_curve", set_tone_curve)];
     for (name, set) in others {
         let other = Own::simulated(&world);

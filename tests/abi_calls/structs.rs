@@ -1,6 +1,6 @@
 //! Every input struct: each float NaN and infinite, each enumeration unknown, each reserved field set, sizes of other
-//! versions, foreign types and extensions. The table of fields comes from the library; C's own view of it is checked
-//! elsewhere.
+//! versions, foreign types and extensions. The table of fields comes from the library; another test compares it with
+//! C's view.
 
 use std::collections::BTreeSet;
 use std::ffi::c_void;
@@ -67,7 +67,8 @@ fn cases(world: &World) -> Vec<Case> {
             status
         }),
         case("wk_frame", "frame", false, move |p| {
-            // Each call is a frame of its own; whoever tests frame_id's bytes finds them as they were.
+            // A frame records each stage once. If this frame has been recorded, another frame comes in between, so that
+            // frame_id's bytes, which are also under test, need no change.
             let at = p.cast::<wk_frame>();
             let status = unsafe { wk_view_record(view, at, WK_STAGE_PREPARE) };
             if status == WK_ERROR_WRONG_ORDER {
@@ -86,7 +87,7 @@ fn cases(world: &World) -> Vec<Case> {
             unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
         }),
         case("wk_cloud_layer", "weather.clouds[0]", true, move |p| {
-            // A list of one: the stride leads nowhere and may be as large as the sizes that are tried.
+            // In a list of one element the stride is not used, so it may be as large as the sizes that are tried.
             let weather = wk_weather { clouds: p.cast(), cloud_count: 1, cloud_stride: 2 << 20, ..init("wk_weather") };
             unsafe { wk_context_set_weather(context, &weather, 0.0, 0.0) }
         }),
@@ -219,7 +220,7 @@ fn cases(world: &World) -> Vec<Case> {
 
 const ORIGIN: [f64; 3] = [0.0; 3];
 
-/// Plain values of lists, and structs that need a live window or a host: their own tests reach them.
+/// Structs that are plain values of lists, or that need a window or a host. Other tests cover them.
 const ELSEWHERE: &[&str] = &[
     "wk_surface_config",
     "wk_cloud_slab",
@@ -252,7 +253,7 @@ fn kept<T>(status: wk_status, out: *mut T) {
     assert_eq!(status == WK_OK, !out.is_null(), "{}", message());
 }
 
-/// Calls with changed bytes and expects a refusal that begins with the function's view of the parameter.
+/// Calls with changed bytes and expects an error that begins with the parameter's name.
 fn refused(case: &Case, what: &str, bytes: &mut Bytes, names: &str, status: wk_status) {
     let before = bytes.words().to_vec();
     let got = (case.call)(bytes.ptr());
@@ -323,7 +324,7 @@ fn sizes_of_other_versions_are_understood_or_refused() {
             bytes.put(0, wrong);
             refused(case, "size", &mut bytes, &name, WK_ERROR_INVALID_ARGUMENT);
         }
-        // A later version whose new fields are zero is as before; one that is not zero asks for something unknown.
+        // Zero in the fields of a later version changes nothing; a value that is not zero requests something unknown.
         let mut later = Bytes::of(case.structure, 64);
         later.put(0, (later.size + 32) as u32);
         let size = later.size;
@@ -333,7 +334,7 @@ fn sizes_of_other_versions_are_understood_or_refused() {
         later.put(size + 24, 1_u8);
         let beyond = format!("{} has a field beyond", case.parameter);
         refused(case, "later", &mut later, &beyond, WK_ERROR_UNSUPPORTED);
-        // An earlier version ends at an earlier field; what it lacks has its default.
+        // A struct of an earlier version ends at an earlier field; the missing fields have their defaults.
         let fields = abi::structs().into_iter().find(|s| s.0 == case.structure).expect("known").3;
         for (field, offset, _) in fields.iter().skip(3) {
             let mut earlier = Bytes::of(case.structure, 0);
@@ -346,7 +347,7 @@ fn sizes_of_other_versions_are_understood_or_refused() {
 #[test]
 fn foreign_structs_and_extensions_are_refused() {
     let world = World::new();
-    // An extension is told from others by its type alone: the next test.
+    // An extension is recognised by its type alone, which the next test covers.
     for case in cases(&world).iter().filter(|c| !c.parameter.starts_with("wk_")) {
         let mut bytes = Bytes::of(case.structure, 0);
         bytes.put(4, 999_u32);
@@ -388,8 +389,7 @@ fn extension_chains_are_walked_with_care() {
         (status, text.contains("weather.next holds two extensions of type 19")),
         (WK_ERROR_INVALID_ARGUMENT, true)
     );
-    // A cycle is no endless walk.
-    // SAFETY: `b` is ours.
+    // A cycle of extensions does not lead to an endless loop. SAFETY: `b` is ours.
     unsafe { (*b).next = (&raw const a).cast() };
     assert_eq!(set((&raw const a).cast()).0, WK_ERROR_INVALID_ARGUMENT);
     a.next = null();

@@ -91,7 +91,7 @@ fn tiles_get_wet_join_and_are_dug() {
     assert!(ground.surface_class == WK_SURFACE_CLASS_ROCK && ground.in_puddle == 0);
     assert_eq!(unsafe { wk_context_get_ground(context, &[32.0, 15.0, 0.0], &mut ground) }, WK_OK);
     assert!(ground.in_puddle == 1 && (ground.water_mm / f64::from(cells[15 * SIDE].standing_mm) - 1.0).abs() < 1e-6);
-    // A grid takes the place of the tiles.
+    // A grid replaces the tiles.
     let heights = [0.0f32; 4];
     let grid = wk_ground_grid { heights_m: heights.as_ptr(), height_count: 4, ..init("wk_ground_grid") };
     assert_eq!(unsafe { wk_context_set_ground_grid(context, &grid) }, WK_OK, "{}", message());
@@ -209,7 +209,8 @@ fn what_is_no_height_is_a_hole_where_the_host_says_so() {
     let named = wk_terrain_cells { has_no_data: 1, no_data_m: -9999.0, ..plain };
     assert_eq!(set(&named), WK_OK, "{}", message());
     assert_eq!(has_ground(), [0, 0, 0, 1]);
-    // A height in use: as the classes say, or beside the rectangle.
+    // The value for "no data" must not be a height in use: of a cell that its class says is ground, or of a cell
+    // outside the rectangle.
     classes[77] = WK_SURFACE_CLASS_ROCK as u8;
     let said = wk_terrain_cells {
         no_data_m: 2.0,
@@ -221,7 +222,7 @@ fn what_is_no_height_is_a_hole_where_the_host_says_so() {
     let update = wk_terrain_cells { first_cell: [4, 4], cells: [1, 1], height_count: 1, no_data_m: 2.0, ..named };
     let status = unsafe { wk_context_update_terrain(context, &update) };
     refused(status, "terrain_cells.no_data_m must be no height in use, such as that of cell (2, 0)");
-    // Holes by their class, whatever stands among the heights.
+    // Cells of the hole class are holes, whatever their heights are.
     (classes[0], classes[1], classes[40]) = (WK_TERRAIN_HOLE as u8, WK_TERRAIN_HOLE as u8, 0);
     let surface_classes = classes.as_ptr();
     let holes = wk_terrain_cells { has_no_data: 0, no_data_m: 0.0, surface_classes, ..said };

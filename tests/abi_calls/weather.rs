@@ -38,7 +38,7 @@ fn ranges_are_named_as_the_header_names_them() {
         assert_eq!(status, WK_ERROR_INVALID_ARGUMENT, "{wanted}: {text}");
         assert!(text.contains(wanted), "{wanted}: {text}");
     }
-    // A field whose bit is clear is not looked at.
+    // A field whose bit is clear is not checked.
     assert_eq!(set(&world, |w| w.sea_state = 300).0, WK_OK);
 }
 
@@ -60,7 +60,7 @@ fn lists_have_a_limit_and_a_stride() {
     let (status, text) = set(&world, |w| (w.clouds, w.cloud_count) = (at, 2));
     assert_eq!(status, WK_ERROR_INVALID_ARGUMENT);
     assert!(text.contains("weather.clouds[1].cover must be in [0, 1], got 2"), "{text}");
-    // Every second element: the wrong one is stepped over.
+    // With a stride of two elements the invalid one between them is skipped.
     let at = layers.as_ptr();
     let (status, text) = set(&world, |w| (w.clouds, w.cloud_count, w.cloud_stride) = (at, 3, 2 * stride));
     assert_eq!(status, WK_OK, "{text}");
@@ -198,7 +198,7 @@ fn a_saved_state_comes_back_whole_or_not_at_all() {
     }
 }
 
-/// A report read by a rule, its covers in hundredths, and what the answer says.
+/// Reads a report by a rule. Returns the status, the covers in hundredths, and the structs that the call wrote.
 fn by_rule(report: &std::ffi::CStr, rule: wk_cloud_amount_rule) -> (wk_status, Vec<f64>, wk_metar, wk_weather) {
     let options = wk_metar_options { cloud_amounts: rule, ..init("wk_metar_options") };
     let (mut weather, mut metar) = (init::<wk_weather>("wk_weather"), init::<wk_metar>("wk_metar"));
@@ -259,7 +259,7 @@ fn what_a_report_does_not_say_has_a_bit_and_its_parts_have_places() {
     assert_eq!(part(m.remarks_offset, m.remarks_length), "QFE");
     assert_eq!((part(m.unread_offset, m.unread_length), m.unread_count), ("SLP162", 1));
     assert_eq!(weather.station_altitude_m, 0.0, "reports do not carry it");
-    // A caller of the first version has none of this, and all that it had.
+    // A caller of the first version gets its own fields, and none of the later ones.
     let mut old = wk_metar { struct_size: 40, unread_count: 7, ..init("wk_metar") };
     let mut weather = init::<wk_weather>("wk_weather");
     // SAFETY: live pointers; no layers.

@@ -1,4 +1,5 @@
-//! Wind and rain: what the queries answer hangs together, comes through a save, and wrong input is named.
+//! Wind and rain: query results are consistent with each other and the same after saving and loading; errors name wrong
+//! input.
 
 use std::ptr::{null, null_mut};
 
@@ -103,8 +104,7 @@ fn air_goes_as_far_as_the_wind_says_through_updates_and_a_save() {
     assert!(late.displacement_m[0] > 400.0 && late.displacement_m[1] > 2000.0, "{:?}", late.displacement_m);
     assert!((0.1..0.3).contains(&(late.gust_deviation_m_s / 12.0)));
     assert!(wind(&a, [0.0, 0.0, 2.0], 300.0).mean_m_s[1] < 10.0 && wind(&a, [0.0; 3], 300.0).mean_m_s == [0.0; 3]);
-    // One channel updates every second, the other once; a third takes up the saved state.
-    // SAFETY: live pointers.
+    // One channel updates every second, another only once; a third loads the saved state. SAFETY: live pointers.
     unsafe {
         for second in 0..=120 {
             assert_eq!(wk_context_update(a.context, f64::from(second)), WK_OK);
@@ -119,7 +119,7 @@ fn air_goes_as_far_as_the_wind_says_through_updates_and_a_save() {
         for world in [&a, &b, &c] {
             assert_eq!(wind(world, MAST, 300.0).displacement_m, late.displacement_m, "to the last bit");
         }
-        // A drift that cannot be is refused, under a checksum that fits too.
+        // An impossible drift is refused even with a correct checksum.
         let text = String::from_utf8(state).unwrap();
         let line = text.lines().find(|l| l.starts_with("drifted")).expect("the drift is saved");
         for damaged in ["drifted = [80.0, nan, 0.0, 0.0]", "drifted = [79.0, 0.0, 0.0, 0.0]"] {
@@ -243,7 +243,7 @@ fn surfaces_are_rained_on_by_their_slope_size_and_speed() {
         refused(get(&[bad], 7.0, &mut kept), wanted);
     }
     refused(get(&list[..1], f64::NAN, &mut kept), "time_s must be in [-10000000000, 10000000000] s, got NaN");
-    // SAFETY: what is wrong is refused before it is followed.
+    // SAFETY: wrong pointers are refused before they are read.
     unsafe {
         let call =
             |p, count, size, on, on_size| wk_context_get_rain_on_at(world.context, p, count, size, 7.0, on, on_size);

@@ -15,13 +15,13 @@ pub struct World {
     pub texture: *mut wk_texture,
 }
 
-/// The thread's last message, whose field is held against the header.
+/// Returns the thread's last message, and checks that the header has the field that it names.
 pub fn message() -> String {
     assert_eq!(refusals::field_fault(), None);
     refusals::message()
 }
 
-/// Every field at its default.
+/// Returns the struct with every field at its default.
 pub fn init<T>(name: &str) -> T {
     let mut bytes = vec![0_u64; size_of::<T>().div_ceil(8)];
     assert_eq!(abi::init(name, &mut bytes, size_of::<T>() as u32), WK_OK, "{}", message());
@@ -59,14 +59,14 @@ impl Drop for World {
     }
 }
 
-/// Updates a context until all of its state is there.
+/// Updates a context until no steps remain.
 pub fn update(context: *mut wk_context, time_s: f64) {
     // SAFETY: every caller has a live context.
     let status = (0..1_000_000).map(|_| unsafe { wk_context_update(context, time_s) }).find(|s| *s != WK_PENDING);
     assert_eq!(status, Some(WK_OK), "{}", message());
 }
 
-/// A saved state that was changed, under a checksum that fits.
+/// Returns a changed saved state with a correct checksum.
 pub fn resealed(state: &str) -> String {
     let body = state.split_once('\n').unwrap().1;
     let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -79,7 +79,7 @@ pub fn next_frame() -> u64 {
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Room for any struct of the header, aligned, with its bytes.
+/// Aligned memory for any struct of the header.
 #[derive(Clone)]
 pub struct Bytes {
     words: Vec<u64>,

@@ -15,7 +15,7 @@ use welkin::{
 };
 
 const SIZE: (u32, u32) = (192, 108);
-/// Of the sun, degrees.
+/// Direction of the sun.
 const SUN: GivenDirection = GivenDirection { azimuth_deg: 90.0, elevation_deg: 12.0 };
 const SEEN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM).with(Stages::PARTICLES);
 const EYE: DVec3 = DVec3::new(0.0, 0.0, 20.0);
@@ -29,7 +29,7 @@ struct Scene {
 
 fn rain(rate_mm_h: f64) -> Weather {
     let precipitation = Precipitation { kind: PrecipitationKind::Rain, rate_mm_h, ..Weather::default().precipitation };
-    // A low sun shines in between the clouds that it falls from, whose sides shade more than their cover.
+    // A low sun shines in between the clouds from which the rain falls. Their sides shade more than their cover says.
     let clouds = vec![CloudLayer::new(0.1, 1500.0)];
     Weather { precipitation, clouds, visibility_m: 20_000.0, ..Weather::default() }
 }
@@ -39,7 +39,7 @@ fn fog() -> Weather {
     Weather { fog, visibility_m: 150.0, ..Weather::default() }
 }
 
-/// From the point opposite to the sun up by so many degrees.
+/// Returns the direction this many degrees above the point opposite to the sun.
 fn above_opposite(degrees: f64) -> DVec3 {
     let (azimuth, elevation) = (SUN.azimuth_deg + 180.0, degrees - SUN.elevation_deg);
     welkin::sky::sun::direction(azimuth, elevation)
@@ -52,7 +52,7 @@ impl Scene {
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
         context.set_sun(Some(SUN)).unwrap();
-        // Single clouds would hide parts of it.
+        // Single clouds would hide parts of the bow.
         context.set_cloud_model(CloudModel::Deck);
         context.set_weather(weather, 0.0, 0.0).unwrap();
         let view = View::new(&context).unwrap();
@@ -95,7 +95,7 @@ fn mean(profile: &[(f64, [f64; 3])], from: f64, to: f64) -> [f64; 3] {
     [0, 1, 2].map(|c| inside.iter().map(|(_, v)| v[c]).sum::<f64>() / inside.len() as f64)
 }
 
-/// A picture of the sky holds what the queries say of it.
+/// Checks that a picture of the sky agrees with the queries.
 fn agrees_with_queries(scene: &mut Scene, frame_id: u64) {
     let (picture, directions) = scene.take(frame_id, above_opposite(42.0), 0.9);
     let some: Vec<usize> = (0..picture.len()).step_by(97).filter(|i| directions[*i].z > 0.01).collect();

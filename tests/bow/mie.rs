@@ -1,5 +1,5 @@
-//! Mie's theory (Mie 1908) by the recurrences of Bohren and Huffman (1983), section 4.8: what a sphere of water does to
-//! light, without any ray.
+//! Mie's theory (Mie 1908) by the recurrences of Bohren and Huffman (1983), section 4.8: scattering by a sphere of
+//! water, without rays.
 
 #[derive(Clone, Copy)]
 struct Complex(f64, f64);
@@ -15,7 +15,7 @@ impl Complex {
     }
 }
 
-/// Coefficients a_n and b_n of a sphere of size `x` (circumference over wavelength) that takes nothing from light.
+/// Coefficients a_n and b_n of a sphere of size `x` (circumference over wavelength) that absorbs no light.
 fn coefficients(x: f64, index: f64) -> Vec<[Complex; 2]> {
     let terms = (x + 4.0 * x.cbrt() + 2.0) as usize;
     let inner = index * x;
@@ -45,8 +45,8 @@ fn coefficients(x: f64, index: f64) -> Vec<[Complex; 2]> {
         .collect()
 }
 
-/// Light that a sphere sends to scattering angles whose cosines are given, of what falls on a square of its radius,
-/// 1/sr, unpolarised.
+/// Returns the unpolarised light that a sphere scatters to angles with the given cosines, 1/sr, as a share of the light
+/// that falls on a square whose side is the sphere's radius.
 pub fn intensities(x: f64, index: f64, cosines: &[f64]) -> Vec<f64> {
     let terms = coefficients(x, index);
     let one = |mu: f64| {
@@ -72,7 +72,8 @@ pub fn intensities(x: f64, index: f64, cosines: &[f64]) -> Vec<f64> {
 fn small_spheres_scatter_as_rayleigh_and_large_ones_take_twice_their_face() {
     let [ahead, aside, back] = intensities(0.01, 1.33, &[1.0, 0.0, -1.0])[..] else { panic!("three") };
     assert!((aside / ahead - 0.5).abs() < 1e-3 && (back / ahead - 1.0).abs() < 1e-3, "{ahead} {aside} {back}");
-    // All that is scattered, over the face of the drop: an extinction of 2, and as much is scattered.
+    // The scattered light divided by the drop's cross-section: the extinction efficiency is 2, and without absorption
+    // all of it is scattering.
     let x = 400.0;
     let n = 40_000;
     let cosines: Vec<f64> =

@@ -9,8 +9,8 @@ use crate::mie::intensities;
 const NM: f64 = 550.0;
 const STEP_DEG: f64 = 0.1;
 
-/// Light of drops about a radius, micrometres, spread by 15 %, at angles from the point opposite to the light, as
-/// smoothed by the light's disc: of the model, with what the outside of the drop reflects, and of Mie.
+/// Returns the light of drops around a radius (micrometres, spread by 15 %), smoothed by the light's disc, at angles
+/// from the point opposite to the light: by the model with external reflection added, and by Mie's theory.
 fn both(radius_um: f64, degrees: &[f64]) -> [Vec<f64>; 2] {
     let n = water_index(NM);
     let rays = [Rays { inside: 1, index: n }, Rays { inside: 2, index: n }];
@@ -30,7 +30,7 @@ fn both(radius_um: f64, degrees: &[f64]) -> [Vec<f64>; 2] {
     [model, mie].map(|v| smoothed(&v))
 }
 
-/// What the outside of a drop reflects, likewise: a quarter of Fresnel's share.
+/// Returns the external reflection of a drop in the same unit: a quarter of Fresnel's reflectance.
 fn outside(n: f64, angle: f64) -> f64 {
     // Turned by pi - 2 i.
     let ci = (0.5 * angle).cos();

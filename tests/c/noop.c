@@ -75,7 +75,7 @@ static void draw(wk_view *view, wk_texture *color, wk_texture *depth, uint64_t f
     EXPECT(report.frame_id == frame_id && report.passes > 0);
 }
 
-/* A progress bar that gives up when it is told to. */
+/* A progress callback that aborts at a given call. */
 static int32_t on_progress(void *user, double share)
 {
     double *last = (double *)user;

@@ -1,4 +1,4 @@
-/* The C++ wrapper: objects move and end themselves, failures throw or answer. Built both ways. */
+/* The C++ wrapper: objects can be moved and destroy themselves; failures throw, or return a status. Built both ways. */
 #include "welkin.hpp"
 
 #include <cstdio>

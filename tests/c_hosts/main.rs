@@ -1,5 +1,5 @@
 //! The C examples of hosts that draw with Vulkan or that only have a window: compiled as a C programmer would, and run;
-//! each looks at its own pixels. `WELKIN_LIB` names a ready library; without it the tests build one.
+//! each checks its own pixels. `WELKIN_LIB` names a ready library; without it the tests build one.
 #![cfg(target_os = "linux")]
 
 use std::fs;

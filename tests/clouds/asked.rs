@@ -1,4 +1,4 @@
-//! What questions answer about clouds: the sky's light, and how far one sees.
+//! Queries about clouds: the sky's light, and the visual range.
 
 use glam::DVec3;
 use welkin::{
@@ -23,7 +23,7 @@ fn directions(camera: &Camera, pixels: &[usize]) -> Vec<DVec3> {
     pixels.iter().map(one).collect()
 }
 
-/// The sky's radiance in a picture over that which the question answers, by pixels.
+/// Returns the ratio of the drawn to the queried radiance of the sky, by pixels.
 pub fn drawn_over_asked(sky: &mut Sky, forward: DVec3, height_m: f64) -> Vec<f64> {
     let camera = Camera::look_to(DVec3::Z * height_m, forward, DVec3::new(0.1, 0.0, 1.0), 1.0, 16.0 / 9.0, 0.1);
     let picture = sky.look(forward, height_m, None, FrameFlags::NO_HISTORY);
@@ -88,12 +88,12 @@ fn a_cloud_between_two_places_takes_the_light() {
     assert!(through(&volume, below, above) < 1e-6);
     let back = through(&volume, above, below) / through(&volume, below, above);
     assert!((back - 1.0).abs() < 1e-9, "{back}: the same steps, summed from the other end");
-    // A deck is in the sky alone, and says nothing of places.
+    // A deck is drawn in the sky only, and queries between places ignore it.
     assert!(through(&deck, below, above) > 0.5);
     assert_eq!(through(&volume, DVec3::Z, below), through(&deck, DVec3::Z, below), "below all clouds");
 }
 
-/// The pictures' fibres and anvils are those of the questions: both sides know the same shapes.
+/// Pictures and queries have the same fibres and anvils.
 #[test]
 fn fibres_and_anvils_are_asked_as_they_are_drawn() {
     for (kind, base_m, height_m) in [(CloudKind::Cirrus, 9000.0, 2.0), (CloudKind::Cumulonimbus, 1000.0, 5000.0)] {

@@ -1,4 +1,4 @@
-//! The height of a layer's base, as questions and pictures see it.
+//! The height of a layer's base in queries and pictures.
 
 use glam::DVec3;
 use welkin::{
@@ -13,19 +13,19 @@ use crate::drawn::{BROKEN, SIZE, Sky};
 
 /// Length of a level look, m: along it the planet's curve rises by 8 cm.
 const LOOK_M: f64 = 1000.0;
-/// Optical depth that is seen.
+/// Optical depth from which on a cloud counts as seen.
 const SEEN: f64 = 0.1;
 
 fn place(i: usize, height_m: f64) -> DVec3 {
     DVec3::new(900.0 * (i % 20) as f64 - 9000.0, 900.0 * (i / 20) as f64 - 9000.0, height_m)
 }
 
-/// Optical depth of clouds and air on a way.
+/// Returns the optical depth of clouds and air between two places.
 fn depth(sky: &Sky, from: DVec3, to: DVec3) -> f64 {
     -sky.context.between(from, to, 0.0).unwrap().transmittance[1].max(1e-300).ln()
 }
 
-/// The lowest height between two at which `is_cloud` holds, where it holds above and not below.
+/// Returns the lowest height between two at which `is_cloud` holds, by bisection; it holds above and not below.
 fn lowest(mut low: f64, mut high: f64, mut is_cloud: impl FnMut(f64) -> bool) -> f64 {
     while high - low > 1e-4 * high {
         let middle = 0.5 * (low + high);
@@ -43,7 +43,7 @@ fn met_m(sky: &Sky, base_m: f64) -> (f64, usize) {
     (found, first(found).unwrap())
 }
 
-/// Where looks straight up end in cloud, the height at which they do: half of them below.
+/// Returns the median height at which looks straight up end in cloud.
 fn over_m(sky: &Sky, base_m: f64) -> f64 {
     let up =
         |i: usize, z: f64| depth(sky, place(i, 2.0), place(i, z)) - depth(sky, place(i, 2.0), place(i, 0.9 * base_m));
@@ -91,8 +91,8 @@ fn the_base_that_is_seen_is_the_one_asked_for() {
             let wall = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
             write(&sky, &wall, &[(0.1 / LOOK_M) as f32]);
             let mut light = |z: f64| drawn(&mut sky, &wall, place(look, z));
-            // Of clouds far away, where the planet has curved, some is drawn before the wall too: half-way to what is
-            // seen in cloud counts.
+            // Some distant cloud is drawn before the wall too, because the planet is curved. The limit is therefore
+            // half-way to the luminance inside cloud.
             let (under, within) = (light(0.98 * base_m), light(1.02 * base_m));
             assert!((within / under - 1.0).abs() > 0.3, "{under} {within}");
             let is_within = |light: f64| (light - under).abs() > 0.5 * (within - under).abs();

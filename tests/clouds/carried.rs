@@ -1,4 +1,4 @@
-//! Clouds go with the wind at their height, and no change of weather throws them.
+//! Clouds move with the wind at their height, and a change of weather does not displace them.
 
 use glam::DVec3;
 use welkin::{

@@ -1,4 +1,4 @@
-//! What pictures of clouds hold.
+//! Pictures of clouds.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Clouds where a picture does not look at them: in mirrors, in the cube map, before the host's own transparent things,
-//! and in a picture that is drawn stage by stage.
+//! Clouds outside the main draw of a picture: in mirrors, in the cube map, in front of the host's own transparent
+//! objects, and in a picture that is drawn stage by stage.
 
 use glam::DVec3;
 use welkin::{
@@ -41,7 +41,7 @@ impl Sky {
         self.device.queue.write_texture(self.color.as_image_copy(), &black, layout, self.color.size());
         self.frame_id += 1;
         let mut frame = Frame::new(self.frame_id, camera, &self.color, depth);
-        // The clouds of all directions alone need not be made at once again.
+        // A frame with the stage SURFACE alone keeps the clouds of all directions from the frame before.
         let shows = calls.iter().any(|stages| *stages != Stages::SURFACE);
         frame.flags = if shows { FrameFlags::NO_HISTORY } else { FrameFlags(0) };
         frame.exposure = Some(Exposure::Factor(1e-4));
@@ -86,7 +86,7 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     let (mut mirrored, mut seen) = (Vec::new(), Vec::new());
     let sun = sky.context.light_at(puddle, sky.context.time_s()).unwrap().sun.apparent;
     for azimuth in (0..48).map(|i| 7.5 * f64::from(i)) {
-        // The sun is mirrored as a lamp, and its disc is in the picture alone.
+        // The mirror reflects the sun as a lamp; only the picture has the sun's disc.
         if direction(azimuth, elevation).angle_between(sun) < 0.1 {
             continue;
         }
@@ -105,8 +105,7 @@ fn a_puddle_mirrors_the_clouds_that_stand_over_it() {
     agree("mirrored", &mirrored, &seen);
 }
 
-/// The view in texels of 1.5 degrees holds the light of pictures and follows their clouds, but for the edges of
-/// these.
+/// Checks that a view in texels of 1.5 degrees has the light and the clouds of pictures, except at the edges of clouds.
 fn agree(name: &str, shown: &[f64], drawn: &[f64]) {
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
     let logs = |v: &[f64]| v.iter().map(|v| v.ln()).collect::<Vec<_>>();

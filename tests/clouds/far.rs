@@ -1,4 +1,4 @@
-//! Clouds smaller than a pixel: seen from so far off that a pixel holds many.
+//! Clouds smaller than a pixel, seen from so far away that a pixel contains many.
 
 use glam::DVec3;
 use welkin::{
@@ -34,8 +34,8 @@ fn far(sky: &mut Sky, (height_m, down): (f64, f64)) -> [Vec<f64>; 2] {
     [got, (0..SIZE.0 * SIZE.1).map(mean).collect()]
 }
 
-/// A ray a pixel meets a cloud or misses it: from space such a picture is grains of black and white, which dance as it
-/// moves.
+/// With one ray for each pixel, a ray meets a cloud or misses it. From space such a picture would consist of black and
+/// white grains, which flicker as the camera moves.
 #[test]
 fn clouds_smaller_than_a_pixel_are_seen_as_their_mean() {
     // Few, broken and closed; nearly half or more of the picture is clouds.

@@ -14,7 +14,7 @@ use crate::{
     shadows::{SCATTERED, over_ground},
 };
 
-/// The published sampling function, by hand, with the texture's texels.
+/// The published sampling function on the CPU, with the texture's texels.
 fn share(map: &CloudShadows, texels: &[u8], place: DVec3) -> f64 {
     let size = i64::from(map.texture.width());
     let [u, v] = map.uv_from_world.map(|row| row.dot(place.extend(1.0)));
@@ -37,7 +37,7 @@ fn record(sky: &mut Sky, position: DVec3, stages: Stages, flags: FrameFlags) {
     sky.view.record(&sky.context, &frame, stages).unwrap();
 }
 
-/// Share by share at places about the camera: how far off, in the median and at the 95th percentile.
+/// Returns the error of the map's shares at places around the camera: median and 95th percentile.
 fn off(sky: &mut Sky, eye: DVec3, time_s: f64) -> [f64; 2] {
     let map = sky.view.cloud_shadows().unwrap();
     let texels = readback::bytes(&sky.device, &map.texture, 0).unwrap();
@@ -92,7 +92,7 @@ fn shadows_are_laid_once_and_the_mean_counts_where_none_are_told_apart() {
         spread(&left)
     );
     assert!(spread(&laid) > 2.0 && spread(&left) < 1.2, "{} {}", spread(&laid), spread(&left));
-    // The same texture for as long as the view lives.
+    // The texture stays the same as long as the view lives.
     assert_eq!(sky.view.cloud_shadows().unwrap().texture, map.texture);
     let told = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
     sky.context.set_cloud_model(CloudModel::Deck);

@@ -35,7 +35,7 @@ fn lamp(position_m: DVec3, direction: DVec3, [inner_deg, outer_deg]: [f64; 2]) -
 
 const BULB: [f64; 2] = [180.0; 2];
 
-/// What a lamp adds to a picture, cd/m^2.
+/// Returns the luminance that a lamp adds to a picture, cd/m^2.
 fn added(sky: &mut Sky, lamp: &HostLight, forward: DVec3, height_m: f64) -> Vec<f64> {
     let mut look = |lamps: &[HostLight]| {
         sky.context.set_lights(lamps).unwrap();
@@ -59,7 +59,7 @@ fn a_bulb_under_a_low_ceiling_lights_it_above_itself_most() {
     assert!(far.iter().all(|v| *v < 0.02 * most), "two kilometres off");
 }
 
-/// Steps of a ray are longer than a beam is wide: where they lie must not show.
+/// Steps of a ray are longer than a beam is wide; their positions must not be visible.
 #[test]
 fn a_beam_in_cloud_does_not_show_the_steps_of_rays() {
     let mut sky = night(stratus());

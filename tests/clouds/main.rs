@@ -1,4 +1,4 @@
-//! Clouds as a volume, drawn.
+//! Clouds drawn as a volume.
 
 mod asked;
 mod bases;

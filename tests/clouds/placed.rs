@@ -1,4 +1,4 @@
-//! Clouds where a host's map says, and over rain areas.
+//! Clouds placed by a host's map, and clouds over rain areas.
 
 use glam::DVec3;
 use welkin::{
@@ -60,7 +60,7 @@ fn the_picture_of_a_mapped_layer_is_that_of_the_questions() {
         (CloudKind::Stratus, 1.0, 800.0, 2500.0),
     ] {
         let mut sky = sky(kind, cover, base_m);
-        // Along the border of what is covered, so that both halves are seen.
+        // Looks along the border of the covered half, so that both halves are visible.
         let rise = if height_m > 1000.0 { -0.25 } else { 0.4 };
         let mut off: Vec<f64> = [DVec3::new(0.0, 1.0, rise), DVec3::new(-1.0, 0.3, rise), DVec3::new(1.0, 0.3, rise)]
             .into_iter()
@@ -127,7 +127,7 @@ fn a_map_is_saved_refused_and_taken_off() {
     assert_eq!(sky.view.report().bytes - bytes, 8 * 2 * 64);
 }
 
-/// What clouds let through straight up from a place.
+/// Returns the transmittance of clouds straight up from a place.
 fn up(sky: &Sky, x: f64, y: f64) -> f64 {
     // Above the base of the areas, where no rain takes light.
     let (from, to) = (DVec3::new(x, y, 1500.0), DVec3::new(x, y, 14e3));
@@ -136,7 +136,7 @@ fn up(sky: &Sky, x: f64, y: f64) -> f64 {
 
 const CLEAR: &str = "LOWI 121150Z 00000KT CAVOK 15/05 Q1013";
 
-/// Places of a square of 12 km about the middle of an area, and how deep they lie in it.
+/// Places of a grid in a square of 12 km around the middle of an area, m east and north of it.
 fn places() -> impl Iterator<Item = (f64, f64)> {
     (0..13 * 13).map(|i| (f64::from(i % 13 - 6) * 1000.0, f64::from(i / 13 - 6) * 1000.0))
 }
@@ -169,7 +169,7 @@ fn no_rain_falls_out_of_a_clear_sky() {
             println!("{} layers, {kind:?}: {} wet places, at most {worst:.1e} comes through", clouds.len(), wet.len());
             assert!(wet.len() > 10 && worst < 0.05, "{worst}");
             assert_eq!(beside(&sky), before, "beside nothing changes");
-            // A dry hole asks for no cloud.
+            // An area without rain brings no cloud.
             sky.context.set_rain_areas(&[RainArea { rate_mm_h: 0.0, ..area }]).unwrap();
             assert_eq!(beside(&sky), before);
         }
@@ -203,7 +203,7 @@ fn reaches_m(sky: &Sky, heights_m: [f64; 2]) -> [f64; 16] {
     })
 }
 
-/// The same in the mean of directions.
+/// Returns the mean of [`reaches_m`] over the directions.
 fn reach_m(sky: &Sky, heights_m: [f64; 2]) -> f64 {
     reaches_m(sky, heights_m).iter().sum::<f64>() / 16.0
 }
@@ -219,7 +219,7 @@ fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
     let [tower, anvil] = [[4000.0, 5500.0], [8000.0, 9000.0]].map(|heights| reach_m(&sky, heights));
     println!("towers reach {tower:.0} m from the middle, the anvil {anvil:.0} m");
     assert!(tower > 3500.0 && anvil > 1.15 * tower, "{tower} {anvil}");
-    // Its sides bulge; they hung like curtains.
+    // Its sides bulge instead of hanging straight down.
     let sides: Vec<_> = (0..8).map(|i| reaches_m(&sky, [3000.0, 3200.0].map(|h| h + 500.0 * f64::from(i)))).collect();
     let steps = sides.windows(2).flat_map(|two| (0..16).map(|k| (two[1][k] - two[0][k]).abs()));
     let bulges = steps.sum::<f64>() / (16 * 7) as f64;
@@ -248,7 +248,7 @@ fn light_near_a_storm_is_that_of_its_sky() {
         }
         assert!(worst < 0.25, "{worst}");
     }
-    // Far off all is as without.
+    // Far away nothing changes.
     let place = DVec3::new(300e3, 0.0, 2.0);
     let lux = |sky: &Sky| sky.context.light_at(place, 0.0).unwrap().arriving.total_lux;
     let with = lux(&sky);

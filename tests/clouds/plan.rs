@@ -1,4 +1,4 @@
-//! Where a picture does with a deck in place of a volume.
+//! Pictures for which the plan draws a deck instead of a volume.
 
 use glam::DVec3;
 use welkin::{
@@ -10,10 +10,10 @@ use welkin::{
 
 use crate::drawn::{BROKEN, SIZE, Sky};
 
-/// Frames until a gauge has answered and what it chose has faded.
+/// Frames until a gauge has a result and the fade to the plan's choice has ended.
 const SETTLED: u32 = 60;
 
-/// A depth that is near but for so many rows of sky below the picture's top.
+/// Creates a depth texture that is near everywhere except in this many rows of sky at the picture's top.
 fn slit(sky: &Sky, rows: u32) -> wgpu::Texture {
     let depth = welkin_support::textures::texture(&sky.device, SIZE, wgpu::TextureFormat::R32Float, 1);
     let texels: Vec<f32> = (0..SIZE.0 * SIZE.1).map(|i| if i / SIZE.0 < rows { 0.0 } else { 0.1 }).collect();
@@ -22,10 +22,10 @@ fn slit(sky: &Sky, rows: u32) -> wgpu::Texture {
     depth
 }
 
-/// What a settled plan says of the clouds in a picture with so many rows of sky, and that picture.
+/// Returns the settled plan for the clouds in a picture with this many rows of sky, and that picture.
 fn planned(report: &str, rows: u32, tolerance: f64) -> (PartPlan, Vec<[f64; 3]>) {
     let mut sky = Sky::new(report, CloudModel::Volume);
-    // All else is drawn.
+    // All other parts are drawn.
     let wish = |part: &Part| PartWish { rung: (part.name != "clouds").then_some(0), ..PartWish::default() };
     let wishes = PARTS.iter().map(wish).collect();
     sky.view.set_budget(Budget { tolerance: Some(tolerance), wishes, ..Budget::default() }).unwrap();
@@ -39,11 +39,11 @@ fn planned(report: &str, rows: u32, tolerance: f64) -> (PartPlan, Vec<[f64; 3]>)
     (sky.view.plan().parts[place], picture)
 }
 
-/// What a context whose model is the deck draws there.
+/// Draws the same picture in a context whose model is the deck.
 fn deck(report: &str, rows: u32) -> Vec<[f64; 3]> {
     let mut sky = Sky::new(report, CloudModel::Deck);
     let depth = slit(&sky, rows);
-    // As long as the other: the sky's tables follow the air for some frames.
+    // As many frames as with the plan, because the sky's tables need some frames to follow the air.
     let take = |_| sky.look(DVec3::new(0.0, 1.0, 0.35), 2.0, Some(&depth), FrameFlags(0));
     (0..SETTLED).map(take).last().unwrap_or_default()
 }
@@ -62,8 +62,8 @@ fn a_sky_seen_through_a_slit_needs_no_volume_and_one_that_fills_the_picture_does
     assert!(clouds.last().p95 > 0.1 && clouds.work > 0.5 * f64::from(SIZE.0 * SIZE.1), "{clouds:?}");
 }
 
-/// A digger's driver sees the sky over the pit's edge in the upper half of the picture: fair weather stands there as a
-/// volume, and where little is asked of it as a deck.
+/// The driver of a digger sees the sky over the pit's edge in the upper half of the picture. Fair weather is drawn as a
+/// volume there, and as a deck if the tolerance is large.
 #[test]
 fn a_fair_sky_behind_a_diggers_site_is_drawn_as_what_it_is_worth() {
     let fair = "LOWI 121150Z 00000KT 9999 FEW040 18/12 Q1015";

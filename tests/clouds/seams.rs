@@ -1,5 +1,5 @@
-//! Clouds across the seams that hosts have met: flights through layers, two eyes, two channels, targets and depths of
-//! every kind, saved states and time that goes back.
+//! Clouds in situations in which hosts have seen faults: flights through layers, two eyes, two channels, targets and
+//! depths of every kind, saved states and time that goes back.
 
 use std::sync::Arc;
 
@@ -35,11 +35,11 @@ fn mean(picture: &[[f64; 3]]) -> f64 {
     picture.iter().map(luminance).sum::<f64>() / picture.len() as f64
 }
 
-/// Up through a layer at a speed, 60 frames a second: the brightness of each frame, and of a picture without history at
-/// its place.
+/// Climbs through a layer at a speed, with 60 frames/s. Returns the brightness of each frame, and of a picture without
+/// history at the same place.
 fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Vec<[f64; 2]> {
     let [mut flown, mut fresh] = [0, 1].map(|_| Sky::new(report, CloudModel::Volume));
-    // Settled before it begins.
+    // Draws frames until the picture has settled.
     (0..17).for_each(|_| drop(flown.look(FORWARD, from_m, None, FrameFlags(0))));
     let frames = ((to_m - from_m) / speed_m_s * 60.0) as usize;
     let mut seen = Vec::new();
@@ -53,7 +53,7 @@ fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Ve
     seen
 }
 
-/// A picture on the way up shows what stands there, frame by frame: nothing jumps, and nothing trails behind. With
+/// During a climb each frame shows the clouds at its own place: nothing jumps, and nothing trails behind. With
 /// WELKIN_ACCEPT all the way from below a layer to above it, and more slowly.
 #[test]
 fn a_climb_through_layers_shows_no_jump() {
@@ -82,8 +82,8 @@ fn a_climb_through_layers_shows_no_jump() {
     }
 }
 
-/// A ray through cloud alone ends with nothing left, not with less than nothing: the disc of the sun behind it takes a
-/// root of that.
+/// The transmittance of a ray through cloud alone ends at 0, not below: the sun's disc behind it takes a root of the
+/// transmittance.
 #[test]
 fn what_passes_whole_clouds_is_never_less_than_nothing() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
@@ -121,7 +121,7 @@ fn context(device: &Arc<Device>) -> Context {
     context
 }
 
-/// Channels, a loaded state and a time that was left and came back show the same clouds to the bit; another seed
+/// Channels, a loaded state and a time that is visited again show the same clouds bit for bit; another seed shows
 /// others.
 #[test]
 fn clouds_follow_from_seed_and_time_alone() {
@@ -148,7 +148,7 @@ fn clouds_follow_from_seed_and_time_alone() {
     let mut third = context(&device);
     third.load(&saved).unwrap();
     assert_eq!(shot(&third, 3), later);
-    // On and back.
+    // Advances, then loads the earlier state.
     first.update(900.0).unwrap();
     first.load(&saved).unwrap();
     assert_eq!(shot(&first, 4), later);

@@ -41,7 +41,7 @@ pub fn over_host(sky: &mut Sky, camera: Camera, (plane_m, luminance): (f64, f32)
     readback::rgba(&sky.device, &sky.color).unwrap().iter().map(|t| f64::from(t[1])).collect()
 }
 
-/// What is left of the ground's light, pixel by pixel.
+/// Returns the share of the ground's light that the shadows leave, pixel by pixel.
 fn left_of_ground(sky: &mut Sky) -> Vec<f64> {
     let of = FrameFlags::NO_HISTORY;
     let (dark, bright) = (over_ground(sky, 0.0, of), over_ground(sky, 1e4, of));
@@ -52,7 +52,7 @@ fn left_of_ground(sky: &mut Sky) -> Vec<f64> {
 fn the_shadow_on_each_pixel_is_that_of_its_place() {
     let [mut sky, mut deck] = [CloudModel::Volume, CloudModel::Deck].map(|model| Sky::new(SCATTERED, model));
     let (shaded, even) = (left_of_ground(&mut sky), left_of_ground(&mut deck));
-    // Pictures take how strong shadows are from the light at the camera.
+    // In pictures the strength of the shadows follows from the light at the camera.
     let light = sky.context.light_at(DVec3::Z * HEIGHT_M, 0.0).unwrap();
     let direct = light.arriving.sun_lux[1] * light.sun.direction.z;
     let strength = direct / light.sun.direct_share / (direct + light.arriving.sky_lux[1]);

@@ -40,7 +40,7 @@ fn camera() -> Camera {
     Camera::look_to(EYE, forward(), DVec3::Z, FOV, 16.0 / 9.0, 0.1)
 }
 
-/// The way through a pixel, of length 1 along the camera's axis.
+/// Returns the ray through a pixel, of length 1 along the camera's axis.
 fn way(i: usize) -> DVec3 {
     let (x, y) = (i as u32 % SIZE.0, i as u32 / SIZE.0);
     let at = |p: u32, of: u32| (f64::from(p) + 0.5) / f64::from(of) * 2.0 - 1.0;
@@ -66,7 +66,7 @@ fn the_air_before_a_wall_is_lit_as_the_places_along_the_way() {
     let (with, without) = (take(&mut sky, true, Some(WALL_M)), take(&mut sky, false, Some(WALL_M)));
     let light = sky.context.light_at(EYE, 0.0).unwrap();
     let mean = light.sun.direct_share;
-    // Of the sun's light that faces it between clouds, and of that of the sky around, what a unit of air scatters.
+    // Light that a unit of air scatters: of the sun's light between clouds, and of the sky's light from all around.
     let facing = light.arriving.sun_lux[1] / mean;
     let around = 1.15 / (2.0 * PI) * light.arriving.sky_lux[1];
     let extinction = -sky.context.between(EYE, EYE + DVec3::X * 1e3, 0.0).unwrap().transmittance[1].ln() / 1e3;
@@ -99,7 +99,7 @@ fn the_air_before_a_wall_is_lit_as_the_places_along_the_way() {
     assert!(half < 0.02 && most < 0.06, "{half} {most}");
 }
 
-/// Where no cloud leaves a gap, there are none.
+/// Without gaps between clouds there are no shafts.
 #[test]
 fn shafts_stand_before_the_sky_where_clouds_leave_gaps() {
     let mut broken = sky(HAZY);

@@ -1,4 +1,4 @@
-//! The light that a host is told of, against the mean of what is asked at many places: below, in and above layers.
+//! The mean light that queries return, against the mean of queries at many places: below, in and above layers.
 
 use glam::DVec3;
 use welkin::{
@@ -11,8 +11,8 @@ use welkin_support::seen_lux::seen_lux;
 
 use crate::drawn::Sky;
 
-/// Real reports of broken or overcast cloud below 1000 ft: of all such ones those under which the told sun was furthest
-/// from the mean over places, and some of each kind.
+/// Real reports of broken or overcast cloud below 1000 ft: those for which the queried sunlight was farthest from the
+/// mean over places, and some of each kind.
 const REPORTS: [&str; 16] = [
     "YTRE 092059Z AUTO 21003KT //// // BKN007 22/20 Q1016",
     "YPTN 092130Z AUTO 00000KT 9999 // BKN005 24/23 Q1008",
@@ -37,7 +37,7 @@ fn place(i: usize, height_m: f64) -> DVec3 {
     DVec3::new(8087.0 * (i % 24) as f64, 6283.0 * (i / 24) as f64 + 331.0 * (i % 24) as f64, height_m)
 }
 
-/// Share of the direct light that is told of at a height, and its mean over so many places.
+/// Returns the share of direct light by the query at a height, and its mean over this many places.
 fn told_and_mean(sky: &Sky, height_m: f64, places: usize) -> (f64, f64) {
     let told = sky.context.light_at(place(0, height_m), 0.0).unwrap().sun.direct_share;
     let share = |i: usize| sky.context.sun_share(place(i, height_m), 0.0).unwrap();
@@ -49,7 +49,7 @@ fn set_sun(sky: &mut Sky, elevation_deg: f64) {
     sky.context.set_moon(Some(GivenDirection { azimuth_deg: 300.0, elevation_deg: -60.0 })).unwrap();
 }
 
-/// The report with which this was found: 31,550 lux of sun were told of under eight oktas.
+/// The report with which the fault was found: the query returned 31,550 lux of sunlight under eight oktas.
 #[test]
 fn under_a_low_overcast_no_sun_is_told_of() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
@@ -121,8 +121,7 @@ fn so_it_is_under_real_reports_of_low_cloud() {
     assert!(most.0 < 0.2, "{most:?}");
 }
 
-/// All light on level ground: what is told of, and what the sky is seen to give with the sun's own light at those
-/// places.
+/// All light on level ground: by the query, and as the sum of the drawn sky's light and the sunlight at those places.
 #[test]
 fn the_light_that_is_told_of_is_seen() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
@@ -137,7 +136,7 @@ fn the_light_that_is_told_of_is_seen() {
                 let told = sky.context.light_at(place(0, height_m), 0.0).unwrap();
                 let whole =
                     luminance(&told.arriving.sun_lux) / told.sun.direct_share.max(1e-300) * told.sun.direction.z;
-                // The sun's light changes from place to place more than the sky's does, and costs less to ask for.
+                // The sun's light changes from place to place more than the sky's does, and costs less to query.
                 let (_, share) = told_and_mean(&sky, height_m, 192);
                 let places = if height_m > base_m + 300.0 { 1 } else { 10 };
                 let seen = (0..places).map(|i| seen_lux(&sky.context, place(17 * i, height_m), (4, 8))).sum::<f64>();
@@ -153,7 +152,7 @@ fn the_light_that_is_told_of_is_seen() {
     }
 }
 
-/// A camera that climbs through a deck sees no step: neither in the light that it is told of nor in the exposure.
+/// A camera that climbs through a deck sees no step: neither in the queried light nor in the exposure.
 #[test]
 fn a_climb_through_a_deck_changes_light_and_exposure_steadily() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
@@ -177,8 +176,8 @@ fn a_climb_through_a_deck_changes_light_and_exposure_steadily() {
     }
 }
 
-/// Places that the sun lights above the clouds stay lit by it, however much of it they take: a high moon by day, whose
-/// few lux come through where a low sun's do not, is not what gives light.
+/// Places above which the sun lights the clouds are lit by the sun, however much of its light the clouds take. A high
+/// moon by day does not replace it, even if a few of its lux pass where a low sun's do not.
 #[test]
 fn by_day_clouds_are_not_lit_by_the_moon() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);

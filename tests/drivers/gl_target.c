@@ -143,7 +143,7 @@ static GLuint texture(gl_target *t, GLenum format)
     return name;
 }
 
-/* Where a version lacks storage (OpenGL before 4.2), an image of one level. */
+/* Creates an image; where a version lacks immutable storage (OpenGL before 4.2), an image of one level. */
 static GLuint image(gl_target *t, GLenum internal, GLenum format, GLenum type)
 {
     GLuint name;

@@ -1,8 +1,10 @@
 /*
  * Draws the scenes of scenes.c with one driver, and compares two folders of them.
  *
- *   drivers draw WAY DIR [SCENE..]   DIR/SCENE.ppm; on standard output a line a scene: name, values that are not numbers
- *   drivers compare DIR DIR          a line a scene: name, 95th percentile and greatest difference, of 255
+ *   drivers draw WAY DIR [SCENE..]   writes DIR/SCENE.ppm; prints a line for each scene: its name and the number of
+ *                                    values that are not numbers
+ *   drivers compare DIR DIR          prints a line for each scene: its name, and the 95th percentile and the greatest
+ *                                    difference, of 255
  *   drivers list                     the scenes' names
  */
 #include <math.h>
@@ -19,7 +21,7 @@ static const double PI = 3.14159265358979323846;
 static float world_color[PIXELS][4], world_depth[PIXELS];
 static unsigned char world_classes[PIXELS];
 
-/* Reversed depth without an end; this plane has the depth 1. */
+/* Reversed infinite depth; this plane has the depth 1. */
 #define NEAR_M 0.1
 
 static void paint(const scene *s, double luminance, bool upside_down)
@@ -52,7 +54,7 @@ static void paint(const scene *s, double luminance, bool upside_down)
         }
 }
 
-/* What arrives on level ground, lux: of sun, moon, sky and a flash of lightning. */
+/* Illuminance of level ground, lux, by sun, moon, sky and a flash of lightning. */
 static bool arriving(wk_context *context, const scene *s, double *lux)
 {
     const double at[3] = {0.0, 0.0, 0.0};
@@ -112,7 +114,7 @@ static int not_numbers(const float (*color)[4])
     return count;
 }
 
-/* One picture: before the tone curve its values are looked at, after it they are written. */
+/* Draws one picture: checks its values before the tone curve, and writes those after it. */
 static bool draw(target *t, wk_context *context, wk_view *view, const scene *s, const char *folder)
 {
     static float linear[PIXELS][4], shown[PIXELS][4];
@@ -123,7 +125,7 @@ static bool draw(target *t, wk_context *context, wk_view *view, const scene *s, 
         return false;
     frame.frame_id = 1;
     frame.flags = WK_FRAME_DEPTH_REVERSED | WK_FRAME_CUT | WK_FRAME_NO_HISTORY;
-    /* A white card has the value 1 by day and by night: half floats keep to their range. */
+    /* A white card has the value 1 by day and by night, so that values stay in the range of half floats. */
     frame.cd_m2_per_unit = lux / PI;
     camera(&frame, s);
     paint(s, 1.0, target_upside_down(t));

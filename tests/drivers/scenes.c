@@ -142,7 +142,7 @@ static bool lightning(wk_context *c, wk_view *v)
            expose(c, WK_EXPOSURE_EV100, 9.0) && passed(wk_context_trigger_flash(c, &flash));
 }
 
-/* Against the sun, as a photographer would: a stop less. */
+/* Against the sun, exposed one stop less, as a photographer would. */
 static bool wet_road(wk_context *c, wk_view *v)
 {
     (void)v;

@@ -1,4 +1,4 @@
-/* Twelve small scenes that together use every effect: what the weather is, and where the camera stands. */
+/* Twelve small scenes that together use every effect, each with its weather and camera. */
 #ifndef SCENES_H
 #define SCENES_H
 

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 use welkin::scene::{Camera, ClipSpace, DepthKind, DepthMapping};
 
-/// A camera, its mapping, and what to call it in a failure.
+/// A camera, its mapping, and its name in a failure.
 pub struct Case {
     pub name: String,
     pub camera: Camera,
@@ -38,7 +38,8 @@ pub fn camera(projection: DMat4, forward: DVec3) -> Camera {
     Camera { projection: projection.as_mat4().as_dmat4(), ..base }
 }
 
-/// Every kind of depth, either clip space, straight, off-axis and stereo, near 0.1 m.
+/// Lists cameras with every kind of depth and both clip spaces: straight, off-axis and stereo, with the near plane at
+/// 0.1 m.
 pub fn all() -> Vec<Case> {
     let forward = DVec3::new(0.3, 1.0, 0.1);
     let straight = [-1.2, 1.2, -0.7, 0.7];

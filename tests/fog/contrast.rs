@@ -1,4 +1,4 @@
-//! What a black target shows against the fog behind it, and what light near the level is, where dark ground lies below.
+//! Contrast of a black target against the fog behind it, and the light of nearly level directions over dark ground.
 
 use glam::DVec3;
 use welkin::fog::reference::{FogModel, fog_along};
@@ -25,8 +25,8 @@ fn along(m: &FogModel, azimuth: f64, mu: f64, range: f64) -> [f64; 2] {
     [f.radiance.y, f.transmittance.y]
 }
 
-/// Within a tenth, or what an 8-bit picture can show. A black board against the same ray continued through the fog
-/// shows Koschmieder's contrast, e^(-sigma d): high and low sun and overcast, looking level, up and down, also where
+/// A black board against the same ray continued through the fog shows Koschmieder's contrast, e^(-sigma d), within a
+/// tenth or within a step of an 8-bit picture: high and low sun and overcast, looking level, up and down, also where
 /// the ground falls away below the station's.
 #[test]
 fn a_black_board_keeps_koschmieders_contrast() {
@@ -64,8 +64,8 @@ fn a_black_board_keeps_koschmieders_contrast() {
     }
 }
 
-/// Near the level and near the ground the field turns within degrees from dark to bright: by how much is known from
-/// adding and doubling. Depth of fog below the eye: from a hand's height to a tower's.
+/// In nearly level directions and near the ground the radiance changes within degrees from dark to bright, as adding
+/// and doubling computes it. The fog below the eye is as deep as a hand's height up to a tower's.
 #[test]
 fn light_near_the_level_follows_adding_and_doubling() {
     let phase = Phase::Droplets { diameter_um: 15.0 };

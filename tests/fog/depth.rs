@@ -1,4 +1,5 @@
-//! Depth conventions: a point goes into a depth buffer and must come back, at the edge as in the centre.
+//! Depth conventions: a point that is written to a depth buffer must be read back at its place, at the picture's edge
+//! as in the centre.
 
 use glam::{DMat4, DVec2, DVec3};
 use welkin::gpu::shader;
@@ -25,7 +26,7 @@ fn a_projected_point_comes_back_in_f64() {
                 let (depth, seen) = cameras::project(&case, ray.origin + ray.direction * range);
                 let name = format!("{} at {ndc} range {range}", case.name);
                 assert!((seen.truncate() - ndc).length() < 1e-9, "{name}: projects to {seen}");
-                // A depth within 1e-16 of the far end carries only that much of the range.
+                // Near the far end the rounding of depths in f64 (1e-16) limits the precision of the range.
                 let tolerance =
                     1e-9 * range + 4.0 * rays.resolution_m(range, ndc, DepthFormat::Float32) * 2f64.powi(-28);
                 let back = rays.view_range(depth, ndc);

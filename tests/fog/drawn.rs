@@ -14,8 +14,8 @@ use welkin::scene::depth::RANGE_SKY_M;
 use super::path::{EARTH_M, exponential, model, noon, slab, view};
 use super::{cameras, gpu};
 
-/// Fog along rays given as (azimuth, mu, range, plane); answers radiance and transmittance of the green channel,
-/// the share of the air's light, and transmittance of the red one.
+/// Fog along rays given as (azimuth, mu, range, plane). Returns radiance and transmittance of the green channel, the
+/// share of the air's light, and transmittance of the red one.
 const BODY: &str = "fn answer(i: vec4f) -> vec4f {
     let s = sqrt(max(1.0 - i.y * i.y, 0.0));
     let fog = fog_along(u, vec3f(0.0), vec3f(s * sin(i.x), s * cos(i.x), i.y), i.z, i.w);
@@ -26,7 +26,7 @@ fn drawn(m: &FogModel, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     gpu::evaluate("fog/lookup.wgsl", BODY, "FogUniform", bytemuck::bytes_of(&m.uniform()), inputs)
 }
 
-/// The same by the pipeline that can do no more than the model needs.
+/// Draws as [`drawn`] does, by the pipeline that has only the steps that the model needs.
 fn drawn_narrow(m: &FogModel, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let uniform = m.uniform();
     gpu::evaluate_with(
@@ -109,7 +109,7 @@ fn patches_are_drawn_as_the_reference_has_them() {
     }
 }
 
-/// What falls below a cloud 600 m up.
+/// Precipitation below a cloud 600 m up.
 fn rain(liquid_per_m: f64) -> FallingLayer {
     FallingLayer { liquid_per_m, solid_per_m: 1e-4, top_m: 650.0, soft_m: 100.0 }
 }

@@ -1,4 +1,4 @@
-//! Runs WGSL functions of the library on the GPU over a list of inputs: one texel a case, 32-bit floats.
+//! Runs WGSL functions of the library on the GPU over a list of inputs: one texel for each input, in 32-bit floats.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -6,7 +6,7 @@ use welkin::fog::LowAirUniform;
 use welkin::gpu::{Device, DeviceOptions, flat_texture, pass, readback, shader};
 use welkin_support::fullscreen;
 
-/// The device all tests of this file share.
+/// Device that all tests of fog on the GPU share.
 pub fn device() -> &'static Arc<Device> {
     static DEVICE: OnceLock<Arc<Device>> = OnceLock::new();
     DEVICE.get_or_init(|| Device::headless(&DeviceOptions::default()).expect("a graphics adapter"))
@@ -18,14 +18,14 @@ fn float_texture(width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::T
     flat_texture(&device().device, "host", (width, height), wgpu::TextureFormat::Rgba32Float, usage)
 }
 
-/// `answer(input)` for each input, where `body` defines `fn answer(input: vec4f) -> vec4f` and may read the uniform `u`
-/// of type `uniform_type`, of which a fog, if there is one, comes first; `include` is the library's shader file under
-/// test.
+/// Computes `answer(input)` for each input. `body` defines `fn answer(input: vec4f) -> vec4f`; it may read the uniform
+/// `u` of type `uniform_type`, in which a fog, if there is one, comes first. `include` is the library's shader file
+/// under test.
 pub fn evaluate(include: &str, body: &str, uniform_type: &str, uniform: &[u8], inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     evaluate_with(include, body, uniform_type, uniform, inputs, &[])
 }
 
-/// As [`evaluate`], by a pipeline with these `override` constants.
+/// Computes as [`evaluate`] does, by a pipeline with these `override` constants.
 pub fn evaluate_with(
     include: &str,
     body: &str,
@@ -48,7 +48,7 @@ pub fn evaluate_with(
     let target = float_texture(WIDTH, height, wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC);
     let buffer = d.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
-        // As much as the fog's own binding has with the detours of its patches.
+        // As large as the fog's own block with the detours of its patches.
         size: uniform.len().max(size_of::<LowAirUniform>()) as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
@@ -76,7 +76,8 @@ pub fn evaluate_with(
     out
 }
 
-/// Compiling costs far more than drawing: each distinct function is compiled once.
+/// Returns the pipeline of a function, compiled once for each distinct function, because compiling takes far longer
+/// than drawing.
 fn cached(
     layout: &wgpu::BindGroupLayout,
     include: &str,

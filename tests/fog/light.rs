@@ -1,4 +1,4 @@
-//! Light in the layer against adding and doubling: how wrong the radiance may be.
+//! Error of the radiance in the layer against adding and doubling.
 
 use glam::DVec3;
 use welkin::fog::reference::{FogModel, fog_along};
@@ -115,8 +115,8 @@ fn errors(phase: Phase, moments: &[f64], scale: f64) -> Errors {
     out
 }
 
-/// What a two-stream source with the true first scattering can do; sharpened, it would show in the pictures less than
-/// an uncertainty of the visibility by a tenth.
+/// Errors that a two-stream source with the true first scattering reaches. In pictures they are less visible than an
+/// error of the visibility by a tenth.
 #[test]
 fn radiance_in_haze_follows_adding_and_doubling() {
     let e = errors(Phase::HenyeyGreenstein { g: 0.85 }, &slab::henyey_greenstein(0.85), 1.0);

@@ -1,4 +1,4 @@
-//! Visibility, fog and depth: the drawn functions against their f64 twins, and both against the published truths.
+//! Visibility, fog and depth: the drawn functions against their f64 references, and both against published values.
 
 mod cameras;
 mod contrast;

@@ -86,7 +86,7 @@ fn transmittance_is_that_of_quadrature_on_the_curved_planet_and_the_flat_one() {
             for h0 in [1.7, 50.0, 210.0, 3000.0] {
                 for mu in [-1.0f64, -0.3, -0.02, -0.004, -0.0005, 0.0, 0.0007, 0.01, 0.2, 1.0] {
                     for t in [10.0, 150.0, 3e3, 4e4, 1.5e5] {
-                        // What lies below the sea is no air.
+                        // There is no air below the sea.
                         if h0 + layer_rise(1.0 / (radius + h0), mu, t) < -200.0 {
                             continue;
                         }
@@ -104,7 +104,7 @@ fn transmittance_is_that_of_quadrature_on_the_curved_planet_and_the_flat_one() {
     println!("largest relative error of T: {worst:.2e}");
 }
 
-/// What falls is a slab without a lower end, whatever fog lies in it.
+/// Precipitation is a slab without a lower end, whatever fog lies in it.
 #[test]
 fn what_falls_is_that_of_quadrature_beside_any_fog() {
     for (top_m, soft_m) in [(650.0, 100.0), (150.0, 100.0), (2050.0, 100.0), (300.0, 1.0)] {

@@ -1,5 +1,5 @@
-//! Small pictures of fog to look at: WELKIN_FOG_PICTURES=<folder> writes them; without it, a few are drawn and checked
-//! for what an eye would see first (lines, steps, black or burnt fog).
+//! Small pictures of fog for people to look at: WELKIN_FOG_PICTURES=<folder> writes them; without it, a few are drawn
+//! and checked for the faults that an eye notices first (lines, steps, black or overexposed fog).
 
 use glam::{DVec3, Vec3};
 use welkin::fog::{
@@ -13,7 +13,7 @@ use super::{gpu, path::EARTH_M};
 const WIDTH: u32 = 480;
 const HEIGHT: u32 = 270;
 
-/// One picture: linear RGB and distance a pixel.
+/// A picture: linear RGB and distance of each pixel.
 struct Picture(Vec<[f32; 4]>);
 
 struct FogScene {

@@ -1,4 +1,4 @@
-//! The probe: what it draws and what it refuses.
+//! The probe of fog: its results, and the inputs that it refuses.
 
 use welkin::fog::probe;
 use welkin::gpu::{Device, DeviceOptions};
@@ -17,7 +17,7 @@ fn the_probe_draws_koschmieder() {
     }
 }
 
-/// Tier 0 on OpenGL draws the same, to the half floats it may have to draw into.
+/// Tier 0 on OpenGL draws the same, within the rounding of half floats, into which it may have to draw.
 #[test]
 fn opengl_draws_the_same() {
     let options = DeviceOptions { backends: wgpu::Backends::GL, force_tier0: true, ..Default::default() };

@@ -100,18 +100,18 @@ fn resolvent(a: &Matrix) -> Matrix {
     right
 }
 
-/// A layer's answer to light from outside and to the beam, one azimuth order.
+/// Response of a layer to light from outside and to the beam, for one azimuth order.
 #[derive(Clone)]
 struct Layer {
     r: Matrix,
     t: Matrix,
     up: Vector,
     down: Vector,
-    /// What is left of the beam.
+    /// Transmittance of the beam.
     beam: f64,
 }
 
-/// What is asked.
+/// Inputs of a solution.
 pub struct Case<'a> {
     /// Legendre moments of the phase function, the first of them 1.
     pub moments: &'a [f64],
@@ -120,7 +120,7 @@ pub struct Case<'a> {
     pub above: f64,
     pub below: f64,
     pub mu0: f64,
-    /// Sun facing it, sky on the horizontal, ground reflectance.
+    /// Irradiance of the sun on a surface facing it, of the sky on a horizontal surface, and reflectance of the ground.
     pub sun: f64,
     pub sky: f64,
     pub ground: f64,

@@ -1,4 +1,4 @@
-//! Above the cloud that rain falls from.
+//! Pictures from above the cloud that rain falls from.
 
 use std::sync::Arc;
 

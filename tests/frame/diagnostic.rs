@@ -1,4 +1,4 @@
-//! Diagnostic pictures: read back through their scale, they are the numbers that queries and pictures say.
+//! Diagnostic pictures: read back through their scale, they agree with queries and pictures.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -74,7 +74,7 @@ fn low() -> (Camera, f32) {
     (camera, 0.1 / 800.0)
 }
 
-/// Optical depths that the picture shows and that the query says, from a place of this easting to a wall so far off,
+/// Returns optical depths by the picture and by the query, from a place of this easting to a wall at this distance,
 /// over a grid of pixels.
 fn optical_depths(host: &mut Host, id: u64, east_m: f64, wall_m: f32) -> Vec<(f64, f64)> {
     let (mut camera, depth) = (low().0, 0.1 / wall_m);
@@ -117,7 +117,7 @@ fn optical_depth_is_that_of_the_query() {
     }
 }
 
-/// Patches of fog pass a place where the air hardly moves: they are held up there, in pictures as in queries.
+/// Patches of fog pass a place where the air hardly moves. They are delayed there, in pictures as in queries.
 #[test]
 fn patches_go_round_what_the_wind_goes_round() {
     let mut host = Host::new(HALF);
@@ -203,7 +203,7 @@ fn wetness_is_none_in_the_dry_and_some_in_the_wet() {
         [SurfaceState::Dry, SurfaceState::Wet, SurfaceState::StandingWater].map(|state| mean(&with(state)));
     let drizzle = Precipitation::of(PrecipitationKind::Drizzle, 0.2);
     let drizzled = mean(&Weather { precipitation: drizzle, ..Weather::default() });
-    // Of that drizzle a film covers 0.08 of the ground between the hollows, more of their edges.
+    // This drizzle covers 0.08 of the ground between the hollows with a film, and more at their edges.
     assert_eq!(dry, 0.0);
     assert!((0.05..0.2).contains(&drizzled) && wet > 0.98 && standing > 0.98, "{drizzled} {wet} {standing}");
 }
@@ -275,7 +275,7 @@ fn wind_is_that_of_the_query_and_arrows_lie_along_it() {
     let velocities_m_s = (0..33 * 33 * 3).map(turning).collect();
     let kind = WindGridKind::Whole;
     host.context.set_wind_grid(Some(WindGrid { origin, cell_m, nodes, kind, velocities_m_s })).unwrap();
-    // Not at the world's origin: squares of arrows stay where they are.
+    // The camera is not at the world's origin; the squares of arrows keep their places.
     let eye = DVec3::new(13.0, -21.0, 60.0);
     let down = Camera::look_to(eye, -DVec3::Z, DVec3::Y, 1.0, 160.0 / 90.0, 0.1);
     host.clear([5.0; 4], 0.1 / 60.0);

@@ -1,4 +1,4 @@
-//! The cube map of what stands around the camera against pictures and the query, and when it is drawn.
+//! The cube map of the camera's surroundings, against pictures and the query, and the frames in which it is drawn.
 
 use std::{collections::BTreeSet, sync::Arc};
 
@@ -35,7 +35,7 @@ pub struct Level {
 }
 
 impl Level {
-    /// As a host's shader finds it: looked up by direction. (wgpu does not copy cube maps of OpenGL.)
+    /// Reads a level as a host's shader does, by direction. (wgpu does not copy cube maps of OpenGL.)
     pub fn read(device: &Arc<Device>, map: &Environment, level: u32) -> Self {
         let size = SIZE >> level;
         let looked_up = cube_lookup::faces(device, &map.texture, size, level);
@@ -118,9 +118,9 @@ fn agrees_with_pictures(mut host: Host) {
                 let level = Level::read(&host.device, &map, 0);
                 let stride = (SIZE * SIZE) as usize;
                 for (i, (d, _, texel)) in level.all().skip(face * stride).take(stride).enumerate() {
-                    // Discs are in the picture alone.
+                    // Only the picture has discs.
                     let is_disc = [light.sun, light.moon].iter().any(|l| d.angle_between(l.apparent) < 0.04);
-                    // So are bows of fog and rain, on the side away from the light.
+                    // Only the picture has bows of fog and rain, on the side away from the light.
                     let is_bow = w >= 3 && d.dot(light.sun.apparent) < 0.0;
                     if is_disc || is_bow {
                         continue;
@@ -130,8 +130,8 @@ fn agrees_with_pictures(mut host: Host) {
                     let pixel = drawn[(row + 1) * SIZE as usize - 1 - column];
                     let want = [0, 1, 2].map(|k| f64::from(pixel[k]));
                     let off = (luminance(&texel) / luminance(&want) - 1.0).abs();
-                    // Of rain, a picture leaves to drops what those near the eye hide. A thousandth or two are those of
-                    // light that is looked up.
+                    // A picture leaves out the extinction of the drops near the eye, which are drawn one by one. Light
+                    // from tables differs by one or two thousandths.
                     let documented = if w == 5 { 0.02 } else { 4e-3 };
                     assert!(
                         off < documented,
@@ -162,7 +162,7 @@ fn one_face_a_frame_is_drawn_and_all_where_light_leaps() {
         picture(host, id, 2, 2.0, flags);
         host.view.report().passes
     };
-    // Without the cube, with it; the tables stand after the first frame.
+    // Frames without the cube map, then with it. The tables are complete after the first frame.
     passes(&mut host, 1, FrameFlags::NO_HISTORY);
     let without = passes(&mut host, 2, FrameFlags(0));
     let bytes = host.view.report().bytes;
@@ -171,7 +171,7 @@ fn one_face_a_frame_is_drawn_and_all_where_light_leaps() {
     let (one, all) = (1 + 4 + 6, 6 * (1 + 4 + 6));
     assert_eq!(passes(&mut host, 3, FrameFlags(0)), without + all, "the first frame draws all of it");
     assert_eq!(host.view.report().bytes, bytes + 8 * 6 * (5461 + 5456));
-    // One after the other: each face's light is wiped by a new scale where it is drawn alone.
+    // Each of the next frames draws one face.
     for id in 4..10 {
         assert_eq!(passes(&mut host, id, FrameFlags(0)), without + one);
     }
@@ -202,7 +202,7 @@ fn faces_follow_one_after_the_other() {
     let mut before = read(&mut host);
     let mut seen = BTreeSet::new();
     for id in 2..8 {
-        // Too little for a leap, enough for other halves.
+        // A change too small for a jump, but large enough for other half floats.
         place_lights(&mut host.context, 40.0 + 0.5 * (id as f64 - 1.0), -30.0);
         picture(&mut host, id, 0, 2.0, FrameFlags(0));
         let now = read(&mut host);
@@ -214,8 +214,8 @@ fn faces_follow_one_after_the_other() {
     assert_eq!(seen.len(), 6, "{seen:?}");
 }
 
-/// What a rough mirror shows, by brute force over all texels of level 0 (Karis 2013): each direction `l` with its
-/// cosine, and the density of reflections there.
+/// Returns the reflection of a rough mirror by brute force over all texels of level 0 (Karis 2013): each direction `l`
+/// with its cosine, and the density of reflections there.
 fn mirror(level: &Level, n: DVec3, roughness: f64) -> [f64; 3] {
     let a2 = roughness.powi(4);
     let (mut sum, mut weight) = ([0.0; 3], 0.0);
@@ -250,9 +250,9 @@ fn levels_are_what_rough_mirrors_show() {
         let white = mean(&finest);
         for number in 1..LEVELS {
             let level = Level::read(&host.device, &map, number);
-            // A mirror's lobe turns light over, and loses none on the mean.
+            // The filter redistributes light and loses none on average.
             let kept = mean(&level) / white;
-            // The sum over texels is no truth for a lobe as narrow as one.
+            // For a lobe as narrow as a texel the sum over texels is not accurate.
             let roughness = f64::from(number) / f64::from(LEVELS - 1);
             let off = |(n, _, texel): (DVec3, f64, [f64; 3])| {
                 let want = luminance(&mirror(&finest, n, roughness));
@@ -260,7 +260,7 @@ fn levels_are_what_rough_mirrors_show() {
             };
             let worst = if number > 1 { level.all().step_by(7).map(off).fold(0.0, f64::max) } else { 0.0 };
             println!("{name}, sun {sun_deg}, level {number}: {kept:.4} kept, {worst:.4} off");
-            // Few texels are no mean.
+            // The mean of few texels is not accurate.
             assert!(number > 4 || (kept - 1.0).abs() < 0.03, "{name}, sun {sun_deg}, level {number}: {kept}");
             assert!(worst < 0.16, "{name}, sun {sun_deg}, level {number}: {worst}");
         }

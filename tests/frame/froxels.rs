@@ -1,4 +1,4 @@
-//! The textures for the host's transparent shaders say what the composition does.
+//! The textures for the host's transparent shaders agree with the composition.
 
 use welkin::{
     frame::{Exposure, Frame, Stages},
@@ -8,7 +8,7 @@ use welkin_support::frame_host::{Host, SIZE, camera};
 
 use crate::spaces::{EXPOSURE, veil};
 
-/// The published snippet's lookup, by hand: bilinear within a tile, linear between slices.
+/// The published snippet's look-up on the CPU: bilinear within a tile, linear between slices.
 fn sample(texels: &[[f32; 4]], uv: [f64; 2], distance: f64) -> [f64; 3] {
     let s = ((distance / 20.0 + 1.0).ln() * 3.639_611_2).clamp(0.0, 31.0);
     let near = s.floor().min(30.0);

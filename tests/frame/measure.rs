@@ -1,4 +1,4 @@
-//! What each effect of a frame costs: measured when the host asks, near the whole, and nothing otherwise.
+//! Costs of the effects of a frame: measured on request, together about the whole, and absent otherwise.
 
 use std::time::Instant;
 
@@ -47,7 +47,7 @@ fn effects_add_up_to_the_whole_and_what_did_not_run_costs_nothing() {
     }
 }
 
-/// The clock outside says the same: stages recorded one by one and waited for, without measuring.
+/// The sum agrees with an outside clock around stages that are recorded and waited for one by one, without MEASURE.
 #[test]
 fn the_sum_is_what_waiting_for_each_stage_takes() {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
@@ -92,7 +92,7 @@ fn a_measured_picture_is_the_same_to_rounding() {
         let (measured, costs) = picture(FrameFlags::MEASURE);
         let worst = plain.as_flattened().iter().zip(measured.as_flattened()).map(|(a, b)| (a - b).abs());
         assert!(worst.clone().fold(0.0, f32::max) < step, "{format:?}: {}", worst.fold(0.0, f32::max));
-        // Tone mapping of what eight bits cannot hold is not taken apart.
+        // With 8 bits a channel, tone mapping is not drawn separately.
         let fused = format == wgpu::TextureFormat::Rgba8Unorm && space == ColorSpace::SceneLinear;
         assert!(none.is_none() && (costs.unwrap().ms(CostItem::Composition) > 0.0) == fused, "{format:?} {costs:?}");
     }

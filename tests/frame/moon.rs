@@ -21,7 +21,8 @@ fn drawn_and_asked(sun: (f64, f64), moon: (f64, f64)) -> (f64, f64) {
     let with = night.picture(&camera);
     night.context.set_moon(given((moon.0, -60.0))).unwrap();
     let without = night.picture(&camera);
-    // Near the moon's disc the sky is drawn at every pixel; elsewhere its grid may be looked up, within a thousandth.
+    // Near the moon's disc the sky is drawn at every pixel; elsewhere it may be interpolated from the coarse grid,
+    // within a thousandth.
     let differs = |a: [f32; 4], b: [f32; 4]| (0..3).any(|c| (a[c] - b[c]).abs() > 3e-3 * b[c]);
     let changed = (0..with.len()).filter(|i| differs(with[*i], without[*i])).count();
     assert!(changed < 800, "the disc has some 600 pixels, and {changed} are not those of a sky without it");

@@ -89,8 +89,8 @@ pub fn light(picture: &[[f32; 4]], less: &[[f32; 4]], camera: &Camera, (width, h
     (0..picture.len()).map(texel).sum()
 }
 
-/// What `light` should be: that of every star of the catalogue and of the planets, through the air, on the picture, and
-/// the camera's limit.
+/// Returns the expected result of `light`: the light of every star of the catalogue and of the planets in the picture,
+/// after the air; and the camera's limit.
 fn expected_light(night: &Night, camera: &Camera, (width, height): (u32, u32)) -> f64 {
     let scene = night.context.scene_at(camera.position, 0.0).unwrap();
     let settings = StarSettings::default();
@@ -198,7 +198,8 @@ fn by_day_in_fog_and_under_a_deck_there_are_no_stars() {
     let same = |night: &mut Night, name: &str, is_same: bool| {
         night.without_stars(false);
         let with = night.picture(&camera);
-        // The composition's, and two of the weather's grid where nothing in the picture is fine; else the layer's.
+        // One pass is the composition. Two draw the coarse grid if nothing in the picture is fine; otherwise one draws
+        // the layer.
         assert_eq!(night.view.report().passes, if is_same { 3 } else { 2 }, "{name}");
         night.without_stars(true);
         let without = night.picture(&camera);

@@ -38,7 +38,7 @@ fn visibility_between_two_points_is_the_reported_one() {
     }
 }
 
-/// Over a bank of fog rain takes what it takes without one, and the fog is no deeper for it.
+/// Above a bank of fog rain has the same extinction as without fog, and it does not make the fog deeper.
 #[test]
 fn rain_falls_through_fog_and_above_it() {
     let mut host = host();
@@ -63,7 +63,7 @@ fn rain_falls_through_fog_and_above_it() {
     assert!(inside.abs() < 0.01 * through[0][1].abs(), "{through:?}");
 }
 
-/// Against a sum of the optical depths of short pieces of the way, each asked for alone.
+/// Compares with the sum of the optical depths of short pieces of the way, each queried alone.
 #[test]
 fn a_black_object_is_seen_as_far_as_a_plain_sum_of_the_way_leaves_5_percent() {
     let mut host = host();
@@ -144,8 +144,8 @@ fn ambient_light_agrees_with_the_light_on_level_ground() {
     }
 }
 
-/// Under a layer that lets no beam through a host must not cast shadows, and its ground gets what the layer's own
-/// solution lets down; above the layer nothing is taken.
+/// Under a layer without direct light a host must not cast shadows, and its ground gets the light that the layer's own
+/// solution transmits. Above the layer no light is lost.
 #[test]
 fn fog_and_dust_take_the_sun_from_the_ground() {
     let mut host = host();
@@ -197,8 +197,7 @@ fn a_saved_context_goes_on_alike_and_channels_agree() {
     assert!(ContextDesc::default().world.validate().is_ok());
 }
 
-/// What is asked of a time to come is, to the bit, what the context says when that time is there; and of a time past,
-/// what it said then.
+/// A query about a future or past time returns, bit for bit, what the context returns or returned at that time.
 #[test]
 fn every_time_answers_as_the_present_did_or_will() {
     let at = DVec3::new(300.0, -200.0, 40.0);

@@ -65,7 +65,7 @@ impl Sky {
     }
 }
 
-/// The same pairs for the cube map that the last picture brought up to date.
+/// Returns such pairs for the cube map that the last picture updated.
 fn cube_pairs(sky: &mut Sky, at: DVec3) -> Vec<(DVec3, [f64; 3], [f64; 3])> {
     let map = sky.view.environment().unwrap();
     let level = Level::read(&sky.device, &map, 0);
@@ -107,7 +107,7 @@ impl Errors {
         }
     }
 
-    /// Holds median, 95th percentile and worst against what docs/reflections.md says: what does not agree.
+    /// Compares median, 95th percentile and worst with docs/reflections.md. Returns the disagreements.
     fn hold(mut self, name: &str, documented: [f64; 3]) -> Vec<String> {
         self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
         let found = [0.5, 0.95, 1.0].map(|share| self.0[((self.0.len() - 1) as f64 * share) as usize].clone());
@@ -153,7 +153,7 @@ fn radiance_asked_for_is_the_radiance_drawn() {
                     &mut night
                 };
                 errors.add(&from, sky.pairs(&camera(height_m, elevation_deg)));
-                // By night the cube's glow is even.
+                // By night the cube map's glow is uniform.
                 if height_m < 10.0 && sun_deg > -4.0 {
                     cube.add(&from, cube_pairs(&mut sky, DVec3::new(0.0, 0.0, height_m)));
                 }
@@ -169,8 +169,8 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     assert!(faults.iter().all(Vec::is_empty), "{faults:#?}");
 }
 
-/// How far the light that is told is from what is seen of skies of these visibilities over ground under so much snow,
-/// at worst.
+/// Returns the largest error of the queried light against the drawn skies of these visibilities over ground with this
+/// much snow.
 fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
     let mut sky = Sky::new();
     let mut worst = 0.0f64;

@@ -24,7 +24,7 @@ struct Host {
 }
 
 impl Host {
-    /// With the default sky.
+    /// Creates the views with the default sky.
     fn new(views: usize) -> Self {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
         let shared = std::sync::Arc::new(Shared::new(&device).unwrap());

@@ -27,7 +27,7 @@ fn what_is_refused_is_named_and_neither_submits_nor_changes_anything() {
     let all = Stages::ALL;
     let cases = [
         ("color must be given", Frame { color: None, ..good() }, all),
-        // Also while there is nothing to draw: it would fail with the first rain else.
+        // Refused even while there is nothing to draw; otherwise it would fail with the first rain.
         ("color must be given", Frame { color: None, ..good() }, Stages::PARTICLES),
         ("color.format: R8Unorm", Frame { color: Some(&red), ..good() }, all),
         ("color.format: Depth32Float", Frame { color: Some(&depth), ..good() }, all),
@@ -48,7 +48,7 @@ fn what_is_refused_is_named_and_neither_submits_nor_changes_anything() {
         assert!(!e.to_string().contains("TextureUsages"), "{e}");
         assert_eq!((device.submissions(), *host.view.report()), before, "{name}");
     }
-    // The frame that comes then is the first one: it is what a view draws that was never refused anything.
+    // The next frame is the view's first one, and equals that of a view without refused frames.
     for host in [&mut host, &mut fresh] {
         host.clear([100.0, 2000.0, 300.0, 1.0], 1e-4);
         host.record(5, Stages::ALL).unwrap();

@@ -1,4 +1,4 @@
-//! The three colour spaces of a host, masks, samples and orientation: each against what the scene-linear frame says.
+//! The three colour spaces of a host, masks, samples and orientation, each compared with the scene-linear frame.
 
 use glam::{DMat3, DVec3};
 use welkin::{

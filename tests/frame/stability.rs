@@ -1,5 +1,5 @@
-//! Where frames break elsewhere: turning, teleports, far origins, standing time, a sun in the picture, banding,
-//! changing air.
+//! Situations in which frames of other systems have faults: turning, teleports, far origins, time at rest, a sun in the
+//! picture, banding, changing air.
 
 use glam::DVec3;
 use welkin::{

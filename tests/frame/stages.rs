@@ -1,4 +1,4 @@
-//! Stages: what each draws, their order, and what is refused.
+//! Stages of a frame: the pixels that each changes, their order, and refused calls.
 
 use glam::DVec3;
 use welkin::{

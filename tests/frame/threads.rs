@@ -64,7 +64,7 @@ fn a_lost_device_answers_so_and_a_new_one_works() {
     for error in [view.frame_textures().err(), View::new(&lost).err(), lost.ambient_at(DVec3::ZERO, 0.0).err()] {
         assert_eq!(error.unwrap().status, welkin::Status::DeviceLost);
     }
-    // What needs no device answers on.
+    // Queries that need no device still work.
     assert!(lost.light_at(DVec3::ZERO, 0.0).unwrap().arriving.total_lux > 1e3);
     let fresh = Device::headless(&DeviceOptions::default()).unwrap();
     let shared = Arc::new(Shared::new(&fresh).unwrap());

@@ -83,7 +83,7 @@ fn differ_by_roundings(tier_0: &[[f64; 4]], tier_1: &[[f64; 4]], place: &str) {
     assert!(large * 1000 < 3 * tier_0.len(), "{place}: {large} channels");
 }
 
-/// What a frame takes over from those before it: a sky that fades into another, and clouds that are followed.
+/// History that a frame takes over from earlier frames: a sky that fades into another, and clouds that are followed.
 #[test]
 fn tier_0_carries_the_same_from_frame_to_frame() {
     let mut hosts = hosts();

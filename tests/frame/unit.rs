@@ -6,7 +6,7 @@ use welkin::frame::{ColorSpace, Frame, Stages, View};
 use welkin_support::frame_host::{Host, camera};
 
 thread_local! {
-    /// Of this test alone: others record at the same time.
+    /// Warnings of this test's thread; other tests record at the same time.
     static WARNINGS: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -24,7 +24,7 @@ impl log::Log for Listener {
     fn flush(&self) {}
 }
 
-/// What a new view of the host hears whose ground has `value` at `unit` in six frames.
+/// Returns the warnings of six frames of a new view whose host draws ground of `value` at `unit`.
 fn heard(host: &mut Host, space: ColorSpace, value: f64, unit: f64, sky_first: bool) -> Vec<String> {
     WARNINGS.take();
     host.view = View::new(&host.context).unwrap();

@@ -1,4 +1,4 @@
-//! A view whose formats, models and lamps change all the time: what is compiled for them is given back.
+//! A view whose formats, models and lamps change all the time: memory for compiled variants is released.
 
 use glam::{DMat3, DVec3};
 use welkin::{

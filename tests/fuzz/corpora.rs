@@ -1,4 +1,5 @@
-//! The committed inputs that the fuzzers found worth keeping, each answered as it was: `make fuzz` finds more.
+//! The committed inputs that the fuzzers found worth keeping. Each has the result that it had before; `make fuzz` finds
+//! more inputs.
 
 use std::{fs, path::Path};
 
@@ -34,7 +35,7 @@ fn inputs_that_fuzzers_found_are_answered() {
     }
 }
 
-/// The targets tell good from bad: what the repository's own files say is read.
+/// The fuzz targets accept the repository's own files.
 #[test]
 fn own_files_are_read() {
     targets::states().iter().for_each(|state| targets::state(state));

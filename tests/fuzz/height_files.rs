@@ -1,4 +1,5 @@
-//! Damaged files of heights: each is read or refused by its place, and what is read holds together.
+//! Damaged files of heights: each is read, or refused with the place of the fault; heights that are read are
+//! consistent.
 
 use welkin::heights::{HeightSettings, RawHeights};
 use welkin_support::fuzz::{
@@ -24,7 +25,7 @@ fn damage_words(dice: &mut Dice, file: &mut [u8]) {
     }
 }
 
-/// Checksums that fit their chunks again, so that damage within a PNG reaches what reads it.
+/// Corrects the checksums of the chunks, so that damage within a PNG reaches the decoder.
 fn mend_checksums(file: &mut [u8]) {
     let mut at = 8;
     while let Some(head) = file.get(at..at + 8) {

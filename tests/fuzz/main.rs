@@ -1,5 +1,5 @@
 //! Random sequences of calls over the whole C interface, on the backend that needs no GPU: no crash, no internal error,
-//! no refusal that names nothing a host knows, no answer that is no number.
+//! no error without a name that a host knows, no result that is not a number.
 //!
 //! Seeded: `WELKIN_FUZZ_SEED=N` plays sequence N again and prints its calls.
 
@@ -27,7 +27,7 @@ use welkin_support::{
 /// Calls of one sequence.
 const LENGTH: usize = 120;
 
-/// How often functions were called and answered, and what was wrong.
+/// Counts of calls and of accepted calls for each function, and the faults found.
 #[derive(Default)]
 struct Tally {
     answered: BTreeMap<&'static str, [usize; 2]>,
@@ -36,7 +36,7 @@ struct Tally {
 }
 
 impl Tally {
-    /// Keeps what is wrong with an answer, one of each kind: numbers in a message make no new fault.
+    /// Keeps the fault of an answer, one of each kind: messages that differ only in numbers are the same kind.
     fn note(&mut self, function: &str, seed: u64, step: usize, answer: Answer, judge: &Judge) {
         for fault in answer.faults.into_iter().chain(judge.fault(function, answer.status)) {
             let kind = format!("{function}: {}", fault.replace(|c: char| c.is_ascii_digit() || "+-.".contains(c), ""));
@@ -52,7 +52,7 @@ impl Tally {
 
 /// Plays one sequence.
 fn play(seed: u64, judge: &Judge, tally: &mut Tally, aloud: bool) {
-    // After a crash this file says which sequence to play again.
+    // After a crash this file names the sequence to replay.
     fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz-sequence.txt"), seed.to_string()).expect("writable");
     let mut dice = Dice::new(seed);
     let mut world = World::on_noop();
@@ -102,7 +102,7 @@ fn random_calls_are_answered_by_name() {
             }
             play(seed, &judge, &mut tally, false);
         }
-        // A table in which nothing is ever accepted tests nothing; what needs a window or a host's own device is not.
+        // Every function must be accepted at least once, except those that need a window or a host's own device.
         let never = |f: &&&str| tally.answered.get(**f).is_none_or(|n| n[1] == 0);
         let refused: Vec<_> = CALLS.iter().map(|c| &c.0).filter(never).collect();
         let hosts = [
@@ -135,7 +135,7 @@ fn damaged_texts_are_read_or_refused_by_name() {
     let mut dice = Dice::new(1);
     let mut world = World::on_noop();
     let call = |name: &str| CALLS.iter().find(|c| c.0 == name).expect("in the table").1;
-    // Something worth damaging: a state and a plan that were saved in the middle of things.
+    // The texts to damage: a state and a plan that were saved in the middle of a sequence.
     for _ in 0..300 {
         let (function, call) = dice.pick(CALLS);
         if function.starts_with("wk_context_set") || function == "wk_context_update" || function == "wk_view_record" {
@@ -159,8 +159,8 @@ fn damaged_texts_are_read_or_refused_by_name() {
     tally.assert_clean();
 }
 
-/// Every call answers on a device that is lost, by its status or as if nothing had happened; all can be destroyed, and
-/// a new device works beside it.
+/// On a lost device every call returns, with the device's status or as usual. All objects can be destroyed, and a new
+/// device works beside the lost one.
 #[test]
 fn a_lost_device_is_answered_by_every_call() {
     let judge = Judge;
@@ -182,8 +182,8 @@ fn a_lost_device_is_answered_by_every_call() {
     }
 }
 
-/// Three threads call at random on the same objects, exclusive ones too, and destroy what the others use: each call is
-/// answered.
+/// Three threads call at random on the same objects, exclusive ones too, and destroy objects that the others use. Each
+/// call returns.
 #[test]
 fn threads_that_break_the_rules_are_answered() {
     let judge = Judge;

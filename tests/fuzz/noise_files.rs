@@ -1,4 +1,4 @@
-//! Damaged files of noise: each is read or refused, and what is read holds together.
+//! Damaged files of noise: each is read or refused; noise that is read is consistent.
 
 use welkin::noise::{NoiseImage, NoiseSettings};
 use welkin_support::fuzz::{dice::Dice, texts::damage};

@@ -25,7 +25,7 @@ pub fn filled<T: bytemuck::Pod>(gl: &glow::Context, internal: u32, size: Size, t
         gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 1);
         let data = glow::PixelUnpackData::Slice(Some(bytemuck::cast_slice(&rows)));
         gl.tex_image_2d(glow::TEXTURE_2D, 0, internal as i32, size.0 as i32, size.1 as i32, 0, format, ty, data);
-        // Without them a sampler without mipmaps finds the texture incomplete.
+        // Without these filters a texture without mipmaps is incomplete.
         gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MIN_FILTER, glow::NEAREST as i32);
         gl.bind_texture(glow::TEXTURE_2D, None);
         gl.pixel_store_i32(glow::UNPACK_ALIGNMENT, 4);
@@ -59,7 +59,7 @@ impl Canvas {
         }
     }
 
-    /// What the host sees; rows from the top.
+    /// Returns the picture as the host sees it; rows from the top.
     pub fn pixels(&self, gl: &glow::Context) -> Vec<[u8; 4]> {
         let mut pixels = vec![[0_u8; 4]; (self.size.0 * self.size.1) as usize];
         // SAFETY: the host's context is current, and there is room for every pixel.
@@ -94,7 +94,7 @@ pub fn wet_picture(
 ) -> Vec<[u8; 4]> {
     let canvas = Canvas::new(&host.gl, size);
     let mut target = canvas.target();
-    // OpenGL gives the names of what was deleted again.
+    // OpenGL reuses the names of deleted objects.
     target.generation = frame_id;
     change(&mut target);
     let frame = wk_frame { target: (&raw const target).cast(), ..still_frame(frame_id, size) };

@@ -89,7 +89,7 @@ fn c_hosts_get_the_same_picture_in_both_modes() {
         let scene = Scene::new(device);
         let _ = picture(&host, &scene, fbo, &target(color, depth), 0);
         let got = picture(&host, &scene, fbo, &target(color, depth), 1);
-        // Another driver: its last bits differ.
+        // Another driver, whose last bits differ.
         assert_same(&got, &wanted, 3);
         scene.destroy();
         // SAFETY: a live handle.
@@ -204,8 +204,8 @@ fn a_framebuffer_of_another_size_than_told_is_refused() {
     ok(unsafe { wk_device_destroy(device) });
 }
 
-/// OpenGL reuses names: an image made anew under an old one is drawn into whether the host says so or not, also where a
-/// framebuffer of Welkin's held on to the old one; a number that falls is a mistake.
+/// OpenGL reuses names: an image created anew under an old name is drawn into, whether the host reports that or not,
+/// also where a framebuffer of Welkin's held on to the old one; a generation that falls is an error.
 #[test]
 fn an_image_made_anew_under_its_old_name_is_the_one_drawn_into() {
     // In the compatibility profile a host may choose names itself.
@@ -298,7 +298,7 @@ fn the_veil_has_names_that_the_host_can_bind() {
         let room = glow::PixelPackData::Slice(Some(bytes(&mut texels)));
         host.gl.get_tex_image(glow::TEXTURE_2D, 0, glow::RGBA, glow::FLOAT, room);
         assert_eq!(host.gl.get_error(), glow::NO_ERROR);
-        // Near the eye the air is clear; everywhere something between nothing and all gets through.
+        // Near the eye the air is clear; everywhere the transmittance is between 0 and 1.
         assert!(texels[0][..3].iter().all(|t| *t > 0.99 && *t <= 1.0), "{:?}", texels[0]);
         assert!(texels.iter().flat_map(|t| &t[..3]).all(|t| (0.0..=1.0).contains(t)));
         assert!(texels.last().unwrap()[2] < texels[0][2], "the far air lets less through");

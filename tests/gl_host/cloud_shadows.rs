@@ -38,7 +38,7 @@ fn snippet() -> &'static str {
     }
 }
 
-/// The shares of the square's places, as the host's shader finds them; rows to the north.
+/// Shares of direct light at the places of a square, as the host's shader computes them; rows run to the north.
 fn drawn(host: &Host, api: Api, map: &wk_cloud_shadows) -> Vec<f64> {
     let gl = &host.gl;
     let side = SIDE as i32;

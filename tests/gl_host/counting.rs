@@ -1,5 +1,5 @@
-//! A host that calls Welkin while its rendering is conditional or one of its queries counts, in its own context and
-//! beside it.
+//! A host that calls Welkin while its rendering is conditional or one of its queries is active, with Welkin in the
+//! host's own context and in a second one.
 
 use std::{
     ffi::{CStr, c_char, c_void},
@@ -35,7 +35,7 @@ fn begin_nothing(host: &Host) -> glow::Query {
     }
 }
 
-/// Ends it; it was the host's own still.
+/// Ends conditional rendering, and checks that it was still active.
 fn end_nothing(host: &Host, query: glow::Query) {
     // SAFETY: the host's context is current.
     unsafe {
@@ -47,7 +47,7 @@ fn end_nothing(host: &Host, query: glow::Query) {
 }
 
 unsafe extern "system" fn refuse_to_begin(_: u32, _: u32) {
-    // SAFETY: no arguments; where nothing was begun this raises GL_INVALID_OPERATION, and does nothing else.
+    // SAFETY: no arguments; if none was begun this raises GL_INVALID_OPERATION and does nothing else.
     unsafe { function::<unsafe extern "system" fn()>("glEndConditionalRender")() };
 }
 
@@ -62,7 +62,7 @@ unsafe extern "C" fn without_trials(user: *mut c_void, name: *const c_char) -> *
     }
 }
 
-/// Asks for a device of the host's context.
+/// Requests a device on the host's context.
 fn create(host: &Host) -> (wk_status, *mut wk_device) {
     let desc = wk_opengl_host_desc {
         get_proc: Some(get_proc),
@@ -108,7 +108,7 @@ fn a_frame_inside_a_conditional_render_is_refused_and_the_next_one_is_right() {
     }
 }
 
-/// The table's first texel tells.
+/// The table's first texel shows it.
 #[test]
 fn tables_that_were_never_drawn_are_noticed_where_a_trial_tells_nothing() {
     let wanted = own_picture(SIZE, 0.001, 1);

@@ -1,4 +1,4 @@
-//! Work that makes wgpu's backend touch as much of OpenGL's state as Welkin ever will.
+//! Work that makes wgpu's backend change at least as much of OpenGL's state as Welkin does.
 
 use welkin::gpu::gl::{GlDevice, GlTarget};
 
@@ -64,7 +64,7 @@ pub fn run(adopted: &GlDevice, target: &GlTarget) {
     if adopted.device.caps().tier > 0 {
         compute(adopted);
     }
-    // What was imported can be copied like any other texture.
+    // An imported texture can be copied like any other.
     let source = &target.color;
     if source.usage().contains(wgpu::TextureUsages::COPY_SRC) {
         let copy = adopted.device.device.create_texture(&wgpu::TextureDescriptor {
@@ -290,8 +290,7 @@ fn draw(adopted: &GlDevice) {
     encoder.copy_texture_to_texture(first.as_image_copy(), second.as_image_copy(), first.size());
     queue.submit([encoder.finish()]);
     let texels = read_back(adopted, &second);
-    // Outside of the scissor is the clear colour: exactly what was asked for, whatever the host's clamps and scales
-    // say.
+    // Outside of the scissor is the clear colour: exactly the requested one, whatever the host's clamps and scales are.
     assert_eq!(texels[..4], [128, 64, 191, 255], "the clear colour");
 }
 

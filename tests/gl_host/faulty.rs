@@ -1,4 +1,5 @@
-//! Drivers that deliver other bytes in blocks than were written, or never finish: a device is refused by name, in time.
+//! Drivers whose blocks contain other bytes than were written, or that never finish: the device is refused in time,
+//! with the driver's name.
 
 use std::{
     cell::Cell,
@@ -23,12 +24,12 @@ use crate::{
     images::{framebuffer, image_of, texture},
 };
 
-/// How the driver is broken.
+/// Faults of the driver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Broken {
     /// Bytes of this value in place of those written through mapped memory.
     mapped: Option<u32>,
-    /// Likewise by `glBufferSubData`.
+    /// Bytes of this value in place of those written by `glBufferSubData`.
     sub_data: Option<u32>,
     /// The GPU does not finish.
     hangs: bool,
@@ -121,7 +122,7 @@ unsafe extern "C" fn broken_proc(user: *mut c_void, name: *const c_char) -> *con
     }
 }
 
-/// Asks for a device; its status, the message, and how long it took.
+/// Requests a device. Returns the status, the message, the device and the time taken.
 fn create(host: &Host, broken: Broken) -> (wk_status, String, *mut wk_device, Duration) {
     let shared = host.mode == GlMode::Shared;
     let desc = wk_opengl_host_desc {
@@ -144,7 +145,7 @@ fn create(host: &Host, broken: Broken) -> (wk_status, String, *mut wk_device, Du
     (status, text, device, took)
 }
 
-/// The bits of 5.8e-6, which as a number of turns never end.
+/// The bits of 5.8e-6, with which a loop would practically never end.
 const FLOAT_BITS: u32 = 918_728_397;
 
 const HOSTS: [(Api, GlMode); 4] = [
@@ -169,7 +170,7 @@ fn a_driver_with_other_bytes_in_blocks_is_refused_by_name() {
             }
             assert!(text.len() < 300 && took < Duration::from_secs(10), "{took:?} {text}");
         }
-        // The context is as good as before: a driver that is mended serves.
+        // The context still works: with a driver without the fault a device is created.
         let (status, text, device, _) = create(&host, Broken::default());
         assert_eq!(status, WK_OK, "{text}");
         // SAFETY: a live handle.
@@ -210,8 +211,8 @@ fn a_driver_that_never_finishes_is_given_up() {
     }
 }
 
-/// A driver that draws what is known, and then hangs in the first table: the frame that asked for it answers, and all
-/// can be destroyed.
+/// A driver that passes the test of known answers and then hangs in the first table: the frame that needed the table
+/// returns, and all objects can be destroyed.
 #[test]
 fn a_driver_that_hangs_in_the_first_table_loses_the_device_by_name() {
     let host = Host::new(Api::Core(4, 5), Window::None, GlMode::Shared);

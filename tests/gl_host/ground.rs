@@ -1,5 +1,5 @@
-//! The terrain's water in an OpenGL host's own shaders: the cells that the CPU's copy has, the right way up, and
-//! between them what the queries say.
+//! The terrain's water in an OpenGL host's own shaders: at the nodes the cells of the CPU's copy, the right way up, and
+//! between the nodes the values of the queries.
 
 use glow::HasContext;
 use welkin::capi::{
@@ -22,8 +22,7 @@ use crate::{
 /// Samples a texel this often along either side.
 const FINE: u32 = 4;
 
-/// What the host's fragment shader writes: of the texture as it is filtered, or how it looks by the published
-/// functions.
+/// Output of the host's fragment shader: the filtered texture, or the result of the published functions.
 const SAMPLED: &str = "colour = texture(ground, uv);";
 const LOOK: &str = "WelkinGround w = welkin_ground(ground, uv); colour = vec4(w.soaked, w.film, w.pool, w.ice);";
 const MATERIAL: &str = "WelkinGround w = welkin_ground(ground, uv);
@@ -43,7 +42,7 @@ fn looking(gl: &glow::Context, api: Api, writes: &str) -> glow::Program {
     program(gl, matches!(api, Api::Es(..)), CORNERS, &fragment)
 }
 
-/// Draws what `writes` says of the texture, `fine` pixels a texel along either side; rows from the south.
+/// Draws the output `writes` over the texture, `fine` pixels a texel along either side; rows from the south.
 fn drawn(host: &Host, api: Api, from: &wk_ground_texture, fine: u32, writes: &str) -> Vec<[f32; 4]> {
     let gl = &host.gl;
     let (width, height) = ((fine * from.width) as i32, (fine * from.height) as i32);
@@ -93,8 +92,8 @@ fn drawn(host: &Host, api: Api, from: &wk_ground_texture, fine: u32, writes: &st
     pixels
 }
 
-/// Where pixel `i` of a picture with `fine` pixels a texel lies, in nodes; none in the outer half of the border's
-/// texels.
+/// Returns the place of pixel `i` of a picture with `fine` pixels a texel, in nodes; `None` in the outer half of the
+/// border's texels.
 fn place(from: &wk_ground_texture, fine: u32, i: usize) -> Option<[f64; 2]> {
     let width = (fine * from.width) as usize;
     let at = [i % width, i / width].map(|p| (p as f64 + 0.5) / f64::from(fine) - 0.5);
@@ -110,21 +109,21 @@ fn water_at(scene: &Scene, at: [f64; 2]) -> wk_ground {
     ground
 }
 
-/// Everything that can be said of the texture at this moment.
+/// Checks everything about the texture at this moment.
 #[track_caller]
 fn assert_shown(host: &Host, api: Api, scene: &Scene, from: &wk_ground_texture) {
     let (cells, revision) = cells(scene, (from.width * from.height) as usize);
     assert_eq!(from.revision, revision);
     let texels = drawn(host, api, from, 1, SAMPLED);
     assert_cells(&texels, &cells);
-    // Its coordinates are those of the nodes in the host's world.
+    // The texture's coordinates correspond to the nodes in the host's world.
     let place_of = |at: [f64; 2]| [ORIGIN[0] + at[0] * CELL_M, ORIGIN[1] + at[1] * CELL_M, ORIGIN[2], 1.0];
     for (at, wanted) in [([0.0, 0.0], [0.5, 0.5]), ([3.0, 4.5], [3.5, 5.0])] {
         let uv = from.uv_from_world.map(|row| row.iter().zip(place_of(at)).map(|(a, b)| a * b).sum::<f64>());
         let texel = [uv[0] * f64::from(from.width), uv[1] * f64::from(from.height)];
         assert!((texel[0] - wanted[0]).abs() + (texel[1] - wanted[1]).abs() < 1e-9, "{texel:?} {wanted:?}");
     }
-    // Between them the sampler gives what the queries answer, as finely as it filters.
+    // Between nodes the sampler agrees with the queries, within the precision of filtering.
     let steepest = texels.iter().map(|t| t[0] + t[2].abs()).fold(0.0, f32::max) / 128.0 + 1e-4;
     for (i, pixel) in drawn(host, api, from, FINE, SAMPLED).iter().enumerate() {
         let Some(at) = place(from, FINE, i) else { continue };
@@ -134,7 +133,7 @@ fn assert_shown(host: &Host, api: Api, scene: &Scene, from: &wk_ground_texture) 
     }
 }
 
-/// How it looks at the nodes and between them, by the published functions and by the queries.
+/// Compares the appearance at the nodes and between them by the published functions and by the queries.
 fn assert_looks(host: &Host, api: Api, scene: &Scene, from: &wk_ground_texture) {
     let smooth = |low: f64, high: f64, x: f64| {
         let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
@@ -161,7 +160,7 @@ fn assert_looks(host: &Host, api: Api, scene: &Scene, from: &wk_ground_texture) 
         let ground = water_at(scene, at);
         assert!(ground.in_puddle == 1 || pixel[2] == 0.0, "{at:?}: {pixel:?}");
         assert!(ground.water_mm - ground.film_mm < 2.01 || pixel[2] == 1.0, "{at:?}: {pixel:?}");
-        // Soaked ground is as dark as Angstrom says: 0.1 becomes 0.051 in what shines out, 0.5 becomes 0.32.
+        // Soaked ground is darkened by Angstrom's law: an albedo of 0.1 becomes 0.051, and 0.5 becomes 0.32.
         let wet = |albedo: f32| albedo * (1.0 - 0.0664) * (1.0 - 0.4746) / (1.0 - 0.4746 * albedo);
         for (k, albedo) in [0.1, 0.5].into_iter().enumerate() {
             let wanted = albedo + look[0] * (wet(albedo) - albedo);
@@ -237,7 +236,7 @@ fn what_a_frame_draws_from_is_what_the_host_samples() {
     let frame = wk_frame { target: (&raw const target).cast(), ..frame(1) };
     // SAFETY: live handles.
     ok(unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) });
-    // Not asked for again: the frame has uploaded the water once for both.
+    // The texture is not requested again: the frame has uploaded the water once for both.
     let (cells, revision) = cells(&scene, 54);
     assert_cells(&drawn(&host, api, &before, 1, SAMPLED), &cells);
     let after = texture(&scene);

@@ -9,13 +9,13 @@ use welkin::gpu::{
 };
 use welkin_support::egl::{self, Api, Context, Window};
 
-/// What the callbacks get.
+/// Argument of the callbacks.
 pub struct Contexts {
     pub host: Context,
     pub welkin: Option<Context>,
-    /// How often `make_current` was called.
+    /// Number of calls of `make_current`.
     pub switches: AtomicU32,
-    /// `make_current` answers this instead of switching, when it is not 0.
+    /// Value that `make_current` returns instead of switching, if it is not 0.
     pub refusal: AtomicU32,
 }
 
@@ -78,24 +78,24 @@ impl Host {
     }
 }
 
-/// The device goes, and enters the host's context for that by itself.
+/// Drops the device, which enters the host's context by itself for that.
 pub fn close(adopted: GlDevice) {
     assert_eq!(std::sync::Arc::strong_count(&adopted.device), 1);
     drop(adopted);
 }
 
-/// What the small picture reads.
+/// Input that the small picture reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     None,
     One,
-    /// Per sample, at sample rate.
+    /// Depth per sample, at sample rate.
     Many,
-    /// No depth but the red of the picture as it was.
+    /// The red of the picture as it was, instead of depth.
     OldColor,
-    /// The same per sample.
+    /// The red of the picture as it was, per sample.
     OldColors,
-    /// No depth but the mask.
+    /// The mask, instead of depth.
     Mask,
 }
 
@@ -179,7 +179,7 @@ impl Picture {
                 compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
                 buffers: &[],
             },
-            // The turn of y makes the front face clockwise: culling the back must leave the picture.
+            // The reversed y makes the front face clockwise: culling back faces must keep the picture.
             primitive: wgpu::PrimitiveState {
                 front_face: wgpu::FrontFace::Cw,
                 cull_mode: Some(wgpu::Face::Back),

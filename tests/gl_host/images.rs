@@ -167,7 +167,7 @@ pub fn read(gl: &glow::Context) -> Vec<[u8; 4]> {
     bytes.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect()
 }
 
-/// Same, of a float format.
+/// Reads as [`read`] does, from a float format.
 pub fn read_floats(gl: &glow::Context) -> Vec<[u8; 4]> {
     let mut bytes = vec![0u8; (WIDTH * HEIGHT * 16) as usize];
     // SAFETY: the host's context is current and there is room for every texel.
@@ -188,7 +188,7 @@ pub fn read_floats(gl: &glow::Context) -> Vec<[u8; 4]> {
     bytes.chunks_exact(16).map(texel).collect()
 }
 
-/// What the blue of the picture should be.
+/// Expected blue of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blue {
     /// 0.25 everywhere.

@@ -1,4 +1,4 @@
-//! Every kind of image a host can hand over: formats, samples, copies, and the refusal of what cannot be served.
+//! Every kind of image a host can hand over: formats, samples, copies, and errors for unsupported images.
 
 use glow::HasContext;
 use welkin::{
@@ -318,7 +318,7 @@ fn depth_goes_back_to_the_window_when_asked() {
     }
 }
 
-/// What the target says about `desc`.
+/// Returns the error of the target for `desc`.
 fn refusal(host: &Host, desc: &GlTargetDesc) -> welkin::Error {
     let adopted = host.adopt();
     let error = {

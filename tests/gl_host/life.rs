@@ -1,4 +1,5 @@
-//! Beginnings and ends: what makes no device, two devices, every order of destruction, and what is left behind.
+//! Creation and destruction of devices: contexts that give none, two devices, every order of destruction, and objects
+//! left behind.
 
 use std::{
     ffi::{CStr, c_char, c_void},
@@ -18,7 +19,7 @@ use crate::{
     images::*,
 };
 
-/// What making a device of `desc` says.
+/// Returns the error of creating a device of `desc`.
 fn refusal(desc: &GlHostDesc) -> welkin::Error {
     // SAFETY: the callbacks are those of these tests.
     match unsafe { adopt(desc) } {
@@ -60,17 +61,18 @@ extern "system" fn old_es(_: u32) -> *const u8 {
     c"OpenGL ES 2.0 Ancient".as_ptr().cast()
 }
 
-/// What some drivers of Windows answer for a function that they have not.
+/// Results of some Windows drivers for a function that does not exist.
 const NO_FUNCTIONS: [isize; 4] = [1, 2, 3, -1];
 
-/// A loader as wglGetProcAddress is on them: `user` for what is not there, and for the functions of OpenGL 1.1.
+/// A loader like wglGetProcAddress on these drivers: it returns `user` for missing functions and for the functions of
+/// OpenGL 1.1.
 unsafe extern "C" fn answers_numbers(user: *mut c_void, name: *const c_char) -> *const c_void {
     // SAFETY: the name is NUL-terminated.
     let (name, found) = unsafe { (CStr::from_ptr(name), get_proc(null_mut(), name)) };
     if found.is_null() || name == c"glClear" { user } else { found }
 }
 
-/// As above, with the functions of OpenGL 1.1 and without all that a driver may leave out.
+/// A loader as above, but with the functions of OpenGL 1.1 and without all functions that a driver may leave out.
 unsafe extern "C" fn has_the_least(user: *mut c_void, name: *const c_char) -> *const c_void {
     const LEFT_OUT: [&str; 2] = ["ClipControl", "PolygonOffsetClamp"];
     // SAFETY: the name is NUL-terminated.
@@ -88,7 +90,7 @@ fn a_number_in_place_of_a_function_is_none() {
         let error = refusal(&GlHostDesc { get_proc: Some(answers_numbers), user, ..bare(GlMode::HostContext) });
         assert_eq!(error.status, Status::InvalidArgument, "{number}: {error}");
         assert!(error.to_string().contains("got NULL for glClear"), "{number}: {error}");
-        // What may be missing is missing, and all the rest draws.
+        // With all optional functions missing, the device draws.
         let desc = GlHostDesc { get_proc: Some(has_the_least), user, ..bare(GlMode::HostContext) };
         // SAFETY: the callbacks are those of this file, the context is live.
         let adopted = unsafe { adopt(&desc) }.unwrap_or_else(|e| panic!("{number}: {e}"));
@@ -290,12 +292,12 @@ fn any_thread_may_draw_if_the_context_is_current_there() {
     close(adopted);
 }
 
-/// Names of each kind that are alive in the current context.
+/// Returns the live names of each kind in the current context.
 fn census(gl: &glow::Context) -> [Vec<u32>; 5] {
     let alive = |is: &str| {
         // SAFETY: the context is current and the type is that of every `glIs..`.
         let is: unsafe extern "system" fn(u32) -> u8 = unsafe { egl::function(is) };
-        // SAFETY: any name may be asked for.
+        // SAFETY: any name may be queried.
         (1..200).filter(|n| unsafe { is(*n) } != 0).collect()
     };
     // SAFETY: the context is current.
@@ -329,7 +331,7 @@ fn nothing_is_left_behind_and_nothing_of_the_host_goes() {
         let others = ["glIsFramebuffer", "glIsVertexArray"].map(|is| {
             // SAFETY: the context is current and the type is that of every `glIs..`.
             let is: unsafe extern "system" fn(u32) -> u8 = unsafe { egl::function(is) };
-            // SAFETY: any name may be asked for.
+            // SAFETY: any name may be queried.
             (1..100).filter(|n| unsafe { is(*n) } != 0).count()
         });
         assert_eq!(others, [0, 0], "framebuffers and vertex arrays");
@@ -367,7 +369,7 @@ fn a_target_is_made_once_and_again_when_the_host_makes_it_anew() {
         let error = adopted.host.target(&adopted.device.device, &later).unwrap_err();
         assert!(error.to_string().contains("32 x 16"), "{error}");
     }
-    // Many targets: the cache does not grow without end, and the first comes back.
+    // Many targets: the size of the cache is limited, and the first target can be used again.
     for _ in 0..40 {
         let name = texture(gl, glow::RGBA8);
         id(&desc(image_of(name), None));
@@ -416,7 +418,7 @@ fn a_host_that_destroys_its_context_first_is_survived() {
             close(adopted);
             drop(contexts);
         }
-        // A context made afterwards serves as usual.
+        // A context made afterwards works as usual.
         let host = Host::new(Api::Core(3, 3), Window::None, mode);
         let adopted = host.adopt();
         draws(&host, &adopted);

@@ -1,5 +1,5 @@
-//! Hosts that draw with OpenGL: real contexts without a window, in which a small picture is drawn through wgpu and
-//! looked at with the host's own OpenGL.
+//! Hosts that draw with OpenGL: real contexts without a window, in which a small picture is drawn through wgpu and read
+//! with the host's own OpenGL.
 #![cfg(target_os = "linux")]
 
 mod canvas;

@@ -1,4 +1,5 @@
-//! Images of surface classes and normals of an OpenGL host: the picture that an own device draws with them.
+//! An OpenGL host's images of surface classes and normals: the picture is the one that a device of Welkin's own draws
+//! with them.
 
 use welkin::capi::device::*;
 use welkin::gpu::gl::GlMode;

@@ -1,6 +1,6 @@
 //! Every kind of image, format, sample count and colour space that a host can hand over, in both modes, drawn into by
-//! wk_view_record with all stages in rain, while the host's OpenGL is in a state that nobody expects: each as a device
-//! of Welkin's own with Vulkan draws it.
+//! wk_view_record with all stages in rain, while the host's OpenGL is in an unusual state. Each picture must equal that
+//! of Welkin's own Vulkan device.
 
 use std::{cell::RefCell, collections::HashMap, ptr::null_mut};
 
@@ -45,14 +45,15 @@ pub fn rain(scene: &Scene) {
     }
 }
 
-/// The frame of all cases: nothing of earlier ones shows.
+/// Returns the frame of all cases, which shows nothing of earlier frames.
 pub fn the_frame(color_space: wk_color_space) -> wk_frame {
     let mut frame = frame(7);
     frame.flags |= WK_FRAME_NO_HISTORY;
     wk_frame { color_space, cd_m2_per_unit: 2e4, ..frame }
 }
 
-/// Records the frame; its number comes again for each case, since dither follows it, so that another lies between.
+/// Records the frame. Every case uses the same frame number, because dither depends on it, so another frame is recorded
+/// in between.
 pub fn record(scene: &Scene, frame: &wk_frame, stages: wk_stage_flags) -> wk_status {
     let other = wk_frame { frame_id: frame.frame_id + 1, target: std::ptr::null(), ..*frame };
     // SAFETY: live handles and targets, the caller says.
@@ -62,7 +63,7 @@ pub fn record(scene: &Scene, frame: &wk_frame, stages: wk_stage_flags) -> wk_sta
     }
 }
 
-/// What a Vulkan device of Welkin's own draws for each format and colour space, drawn when first asked for.
+/// Pictures of Welkin's own Vulkan device for each format and colour space, drawn at the first request.
 pub struct Truth {
     device: *mut wk_device,
     scene: Scene,
@@ -91,7 +92,7 @@ impl Truth {
         self.drawn.borrow_mut().entry((format, space)).or_insert_with(draw).clone()
     }
 
-    /// The scene has in it what the cases are to show.
+    /// Checks that the scene contains everything that the cases test.
     fn assert_shows_all(&self) {
         let whole = self.of(glow::RGBA8, WK_COLOR_DISPLAY_SRGB);
         for without in [WK_STAGE_SURFACE, WK_STAGE_PARTICLES] {
@@ -186,7 +187,7 @@ fn delete(painter: &Painter, host: &Host, image: GlImage) {
     });
 }
 
-/// Compares with the truth; the largest difference and how many pixels differ by more than `most`.
+/// Compares with the truth: at most `few` pixels may differ by more than `most`.
 #[track_caller]
 pub fn assert_close(got: &Picture, wanted: &Picture, most: f32, few: usize, what: &str) {
     let far = got
@@ -305,7 +306,7 @@ fn every_image_is_drawn_as_an_own_device_draws_it() {
     let few = [(glow::RGBA8, 1), (glow::RGBA16F, 1)];
     // OpenGL ES allocates an image without alpha in one way only.
     let few_es = [(glow::RGBA8, 1), (glow::RGB8, 1), (glow::RGBA16F, 1)];
-    // What a format's neighbour shows as well takes its time in the long run only.
+    // Formats that hardly differ from another one are tested in the long run only.
     let most: Vec<_> = ALL.into_iter().filter(|f| !matches!(f.0, glow::RGB8 | glow::RGBA32F)).collect();
     for (api, mode, formats) in [
         (Api::Core(4, 5), GlMode::Shared, &most[..]),

@@ -1,5 +1,5 @@
-//! Memory that runs out: what the driver cannot give is refused as that, nothing is lost, and what fits is drawn as
-//! before. The limit is on the whole process, so each case runs in one of its own.
+//! Memory that runs out: an allocation that the driver refuses gives an error that says so, nothing is lost, and frames
+//! that fit are drawn as before. The limit applies to the whole process, so each case runs in a process of its own.
 
 use std::ptr::null_mut;
 
@@ -23,7 +23,7 @@ use crate::{
     host::Host,
 };
 
-/// Makes textures until one is refused; how many there were.
+/// Creates textures until one is refused. Returns them.
 fn fill(device: *mut wk_device, desc: &wk_texture_desc) -> Vec<*mut wk_texture> {
     let mut made = Vec::new();
     for _ in 0..4096 {
@@ -58,7 +58,7 @@ fn runs_out(backends: wk_backend_flags) {
         many.iter().for_each(|t| ok(wk_texture_destroy(*t)));
         ok(wk_device_get_status(own.device));
     }
-    // Reading takes memory too, of the GPU and of the process; whichever ends first.
+    // Reading needs memory of the GPU and of the process; either may run out first.
     let large = wk_texture_desc { width: 8192, height: 7168, ..desc };
     let mut texture = null_mut();
     // SAFETY: live handles with the sizes given.
@@ -102,7 +102,7 @@ fn textures_that_do_not_fit_are_refused_on_an_own_opengl_device() {
     }
 }
 
-/// A frame whose target leaves no room for what Welkin needs beside it.
+/// Records a frame whose target leaves no memory for Welkin's own textures.
 fn frame_runs_out(backends: wk_backend_flags) {
     let mut own = Own::new(backends);
     if !is_limited(own.device) {
@@ -123,8 +123,7 @@ fn frame_runs_out(backends: wk_backend_flags) {
         // SAFETY: live handles.
         let status = unsafe { wk_view_record(view, &frame, WK_STAGE_ALL) };
         assert_eq!(status, WK_ERROR_OUT_OF_MEMORY, "{}", message());
-        // The frame may come again, now or when there is room.
-        // SAFETY: live handles.
+        // The frame can be recorded again, now or when there is memory. SAFETY: live handles.
         let status = unsafe { wk_view_record(view, &frame, WK_STAGE_ALL) };
         assert_eq!(status, WK_ERROR_OUT_OF_MEMORY, "{}", message());
     }

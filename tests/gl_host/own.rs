@@ -52,7 +52,8 @@ fn every_texture_of_an_own_device_serves_or_is_refused_by_name() {
     for &(color_format, color) in &textures {
         for (depth_format, depth) in with_none() {
             for (mask_format, mask) in with_none() {
-                // Each format of colour with one depth, one with all depths and masks: what is drawn is compiled first.
+                // Each format of colour with one depth, one with all depths and masks: every draw compiles pipelines
+                // first.
                 let plain = depth_format == WK_FORMAT_R32_FLOAT && mask.is_null();
                 if !(plain || color_format == WK_FORMAT_RGBA8_UNORM || depth == color || mask == color) {
                     continue;

@@ -8,9 +8,9 @@ use welkin_support::egl::{Api, Context};
 
 /// Distance of the depth value 1, m: the near plane of `c_scene::frame`.
 const NEAR_M: f64 = 0.1;
-/// Of the eye over the ground, m.
+/// Height of the eye over the ground, m.
 const EYE_M: f64 = 2.0;
-/// What the host painted: its numbers as stored, red, green, blue.
+/// Red, green and blue of the ground that the host painted, as stored.
 pub const GROUND: [u8; 3] = [102, 77, 51];
 
 /// Reversed depth of the level ground in row `y` from the bottom, 0 above the horizon.
@@ -93,8 +93,8 @@ impl Painter {
         Self { context, gl, es, ground, wall, vertices }
     }
 
-    /// Does `work` with the painter's context, then makes the host's current again; either sees what the other has
-    /// done.
+    /// Calls `work` with the painter's context current, then makes the host's context current again. Each context sees
+    /// the other's changes.
     fn with<T>(&self, host: &Host, work: impl FnOnce(&glow::Context) -> T) -> T {
         // SAFETY: the contexts are current in turn.
         unsafe {
@@ -158,7 +158,8 @@ impl Painter {
         }
     }
 
-    /// What an image of format `internal` holds, 1 being white, samples averaged as stored; row 0 at the bottom.
+    /// Returns the texels of an image of format `internal`, 1 being white, samples averaged as stored; row 0 at the
+    /// bottom.
     pub fn read(&self, host: &Host, color: welkin::gpu::gl::GlImage, internal: u32) -> Vec<[f32; 4]> {
         self.with(host, |gl| {
             let from = framebuffer(gl, color, None);

@@ -11,7 +11,7 @@ use crate::{
 
 const MODES: [GlMode; 2] = [GlMode::Shared, GlMode::HostContext];
 
-/// Draws the picture over what the host cleared, and answers what the host reads.
+/// Clears as a host does, draws the picture over it, and checks the result that the host reads.
 pub fn draw(host: &Host, desc: &GlTargetDesc, depth: Depth) {
     let adopted = host.adopt();
     {

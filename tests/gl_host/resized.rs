@@ -1,5 +1,5 @@
-//! Targets that change their size between the frames of a view: each picture is that of a view that never saw another
-//! size.
+//! Targets that change their size between the frames of a view: each picture equals that of a view that never had
+//! another size.
 
 use std::ptr::{null, null_mut};
 
@@ -18,7 +18,7 @@ use crate::{SIZE, canvas::wet_picture, capi::device, host::Host};
 /// Larger, smaller, one pixel, one column, and back.
 const SIZES: [Size; 6] = [SIZE, (200, 113), (33, 19), (1, 1), (1, 40), SIZE];
 
-/// The same picture by `scene`'s view, which has seen other sizes, and by a new view of the same context.
+/// Checks that `scene`'s view, which has drawn other sizes, and a new view of the same context draw the same picture.
 fn assert_as_new(scene: &Scene, size: Size, mut picture: impl FnMut(*mut wk_view) -> Vec<[u8; 4]>) {
     let got = picture(scene.view);
     let mut view = null_mut();
@@ -37,7 +37,7 @@ fn draws_any_size(backends: wk_backend_flags) {
     for (id, size) in SIZES.into_iter().enumerate() {
         assert_as_new(&scene, size, |view| own.wet_picture(view, id as u64, size, WK_STAGE_ALL, |_, _| ()));
     }
-    // With history too every size is drawn.
+    // Every size is drawn with history too.
     for (id, size) in SIZES.into_iter().enumerate() {
         let color = own.image(WK_FORMAT_RGBA8_UNORM, size, &grey_ground(size));
         let depth = own.image(WK_FORMAT_R32_FLOAT, size, &ground_depths(size));

@@ -1,4 +1,5 @@
-//! The sky's tables built ahead in a host's contexts: the host's own is its own again at every tell of progress.
+//! The sky's tables built ahead of time in a host's contexts: at every call of the progress callback the host's own
+//! context and state are restored.
 
 use std::sync::Arc;
 
@@ -28,8 +29,8 @@ fn builds_ahead(mode: GlMode) {
         let built = context.build_sky(&mut |_| {
             told += 1;
             assert!(host.contexts.host.is_current());
-            // The bar's own drawing: state that must be as the host left it the last time.
-            // SAFETY: the host's context is current.
+            // The callback's own drawing, with state that must be as the host left it at the last call. SAFETY: the
+            // host's context is current.
             unsafe {
                 let [red, ..] = {
                     let mut color = [0.0; 4];

@@ -1,4 +1,4 @@
-//! Everything OpenGL tells about a context's state, as text, so that two moments can be compared.
+//! Everything that OpenGL reports of a context's state, as text, so that two moments can be compared.
 
 use std::ffi::c_void;
 
@@ -60,7 +60,7 @@ impl Readers {
     }
 }
 
-/// One line a value that the context knows: name, then what it answers.
+/// One line for each value that the context knows: its name, then the value.
 pub struct Snapshot(Vec<(String, String)>);
 
 struct Taker<'a> {
@@ -202,7 +202,7 @@ const TEXTURE_PARAMETERS: &[u32] = &[
 
 impl Snapshot {
     pub fn take(gl: &glow::Context, objects: &Objects) -> Self {
-        // SAFETY: the context is current; an error the host left is the test's business and must not hide values.
+        // SAFETY: the context is current. Errors of earlier calls are cleared, so that they do not hide values.
         while unsafe { gl.get_error() } != 0 {}
         let mut taker = Taker { gl, readers: Readers::new(), lines: Vec::new() };
         taker.ints(INTS);
@@ -253,7 +253,7 @@ impl Snapshot {
 }
 
 impl Taker<'_> {
-    /// What is bound to every texture unit.
+    /// Adds the bindings of every texture unit.
     fn units(&mut self) {
         let units = self.limit(0x8B4D, 96);
         let (mut active, mut set_active) = (0, None);

@@ -1,4 +1,4 @@
-//! No leak in, no leak out: a host with an unusual state gets the right picture and its state back.
+//! A host with an unusual state gets the right picture, and its state back.
 
 use glow::HasContext;
 use welkin::gpu::gl::GlMode;
@@ -98,8 +98,8 @@ fn old_contexts_keep_their_state() {
     }
 }
 
-/// Drivers answer with the latest version they have, whatever a host asks for. This one can be told to be old: the
-/// tests that ask for no more run again in a process of which it knows nothing else.
+/// Drivers give the latest version that they have, whatever a host requests. An environment variable makes this driver
+/// an old one: tests that need no more run again in a process with that variable.
 #[test]
 fn an_old_driver_keeps_the_state() {
     let hidden = [

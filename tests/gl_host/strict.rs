@@ -1,4 +1,5 @@
-//! Strict drivers of OpenGL ES below 3.2: functions of later versions are there by their extensions' names alone.
+//! Strict drivers of OpenGL ES below 3.2: they have functions of later versions only under the names of their
+//! extensions.
 
 use std::{
     cell::{Cell, RefCell},
@@ -20,8 +21,8 @@ use crate::{
     images::{framebuffer, image_of, texture},
 };
 
-/// Functions that came with OpenGL ES 3.2, and those that came with 3.1 (Khronos' registry, gl.xml), of which wgpu and
-/// Welkin may ask.
+/// Functions that came with OpenGL ES 3.2, and those that came with 3.1 (Khronos' registry, gl.xml), that wgpu and
+/// Welkin may request.
 const SINCE_3_2: &[&str] = &[
     "glBlendBarrier",
     "glBlendEquationSeparatei",
@@ -79,12 +80,12 @@ const SINCE_3_1: &[&str] = &[
 
 thread_local! {
     static MINOR: Cell<u32> = const { Cell::new(1) };
-    /// Whether a function that the version has not is NULL, or raises an error as ANGLE's do.
+    /// Whether a function that the version lacks is NULL; if not, it raises an error, as ANGLE's do.
     static IS_NULL: Cell<bool> = const { Cell::new(false) };
     static WRONG: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Stands for any function that this version has not.
+/// Stands for any function that this version lacks.
 unsafe extern "system" fn not_here() {
     WRONG.with_borrow_mut(|wrong| wrong.push("a function of a later version was called".to_owned()));
     // SAFETY: an enumerant that nobody knows raises an error and does nothing else.

@@ -1,4 +1,4 @@
-//! A host that leaves OpenGL in a state that nobody expects.
+//! A host that leaves OpenGL in an unusual state.
 
 use std::ffi::c_void;
 
@@ -39,8 +39,8 @@ unsafe fn buffer(gl: &glow::Context, target: u32) -> glow::Buffer {
     }
 }
 
-/// Sets everything to what it is not in a fresh context; answers the objects whose own state must not change either.
-/// A transform feedback is left running.
+/// Sets everything to values other than those of a fresh context. Returns the objects whose own state must not change
+/// either. A transform feedback is left running.
 pub fn set(host: &Host, api: Api) -> Objects {
     let gl = &host.gl;
     let es = matches!(api, Api::Es(..));
@@ -166,7 +166,7 @@ unsafe fn raster(gl: &glow::Context, es: bool, version: (u32, u32)) {
     }
 }
 
-/// What only the compatibility profile has.
+/// Sets state that only the compatibility profile has.
 unsafe fn compatibility() {
     // SAFETY: the caller's context is current; each is the named function's type.
     unsafe {
@@ -268,7 +268,7 @@ unsafe fn bindings(gl: &glow::Context, es: bool, version: (u32, u32), objects: &
     }
 }
 
-/// Something on many texture units, samplers and image units.
+/// Binds objects to many texture units, samplers and image units.
 unsafe fn textures(gl: &glow::Context, later: bool, objects: &mut Objects) {
     // SAFETY: the caller's context is current.
     unsafe {
@@ -311,7 +311,7 @@ unsafe fn feedback(gl: &glow::Context, objects: &Objects) {
     }
 }
 
-/// Puts back what would keep the host from looking at a picture.
+/// Restores the state that would keep the host from reading a picture.
 pub fn calm(host: &Host, api: Api) {
     let gl = &host.gl;
     // SAFETY: the host's context is current.

@@ -1,5 +1,5 @@
-//! The veil in an OpenGL host's own shader, compiled from the published text and run: glass before the sky shows what
-//! Welkin draws before an opaque thing at its place.
+//! The veil in an OpenGL host's own shader, compiled from the published text and run: glass in front of the sky has the
+//! same veil as an opaque object at its place.
 
 use glow::HasContext;
 use welkin::capi::{device::*, frame::*, veil::*, view::*};

@@ -1,5 +1,6 @@
-//! Several windows whose contexts share objects, served by one device: calls come back to the window they came from, on
-//! one thread or on one each; a host that forgets which is told so.
+//! Several windows whose contexts share objects, served by one device: after a call the context of the calling window
+//! is current again, with one thread or one for each window; a host whose callback selects another window gets an
+//! error.
 
 use std::{
     cell::Cell,
@@ -32,7 +33,7 @@ thread_local! {
 struct Windows {
     contexts: [Context; 2],
     welkin: Context,
-    /// Answers this window whatever the thread draws in, when not u32::MAX.
+    /// Window that the callback makes current whatever the thread draws in, if not u32::MAX.
     stubborn: AtomicU32,
     switches: AtomicU32,
 }
@@ -77,7 +78,7 @@ impl Windows {
     }
 }
 
-/// What one window draws into, with its own functions.
+/// Framebuffer of one window, with the window's own functions.
 struct Canvas {
     gl: glow::Context,
     fbo: glow::Framebuffer,
@@ -93,7 +94,7 @@ impl Canvas {
         Self { gl, fbo, target: target(color, depth) }
     }
 
-    /// Clears with `blue`, records, and answers the status with the picture.
+    /// Clears with `blue`, records, and returns the status and the picture.
     fn draw(&self, scene: &Scene, id: u64, blue: f32) -> (wk_status, Vec<[u8; 4]>) {
         let frame = wk_frame { target: (&raw const self.target).cast(), ..frame(id) };
         let mut pixels = vec![[0_u8; 4]; (SIZE.0 * SIZE.1) as usize];
@@ -134,11 +135,12 @@ fn calls_come_back_to_the_window_that_they_came_from() {
             }
         }
     }
-    // From one window alone the host is asked for two switches a call, no more.
+    // Calls from one window need two switches each, no more.
     let before = windows.switches.load(Ordering::Relaxed);
     assert_eq!(canvases[1].draw(&scenes[1], 9, 0.5).0, WK_OK);
     assert_eq!(windows.switches.load(Ordering::Relaxed) - before, 2);
-    // A host that always answers the first window: told at the first call from the second, which draws nothing.
+    // A host whose callback always selects the first window: the first call from the second window gives the error and
+    // draws nothing.
     windows.stubborn.store(0, Ordering::Relaxed);
     windows.enter(0);
     assert_eq!(canvases[0].draw(&scenes[0], 10, 0.5).0, WK_OK, "{}", message());
@@ -148,22 +150,22 @@ fn calls_come_back_to_the_window_that_they_came_from() {
     let wanted = "make_current must, asked for WK_OPENGL_CONTEXT_HOST, make the context current that was current";
     assert!(message().contains(wanted), "{}", message());
     assert_eq!(field(), "make_current");
-    // One that changes its mind in the middle is told at that call as well.
+    // If the callback selects another window during a call, that call gives the error as well.
     windows.stubborn.store(u32::MAX, Ordering::Relaxed);
     windows.enter(0);
     assert_eq!(canvases[0].draw(&scenes[0], 12, 0.5).0, WK_OK, "{}", message());
     windows.stubborn.store(1, Ordering::Relaxed);
     assert_eq!(canvases[0].draw(&scenes[0], 13, 0.5).0, WK_ERROR_WRONG_ORDER);
     assert!(windows.contexts[1].is_current() && message().contains("another window's"), "{}", message());
-    // And served again once it knows.
+    // Later calls succeed again once the callback is right.
     windows.stubborn.store(u32::MAX, Ordering::Relaxed);
     windows.enter(0);
     assert_eq!(canvases[0].draw(&scenes[0], 14, 0.5).0, WK_OK, "{}", message());
     scenes.into_iter().for_each(Scene::destroy);
     // SAFETY: a live handle.
     ok(unsafe { wk_device_destroy(device) });
-    // Nothing of Welkin's stays in the window that it was made and closed in.
-    // SAFETY: the type is that of every `glIs..`; any name may be asked for.
+    // No object of Welkin's stays in the window in which the device was created and destroyed. SAFETY: the type is that
+    // of every `glIs..`; any name may be queried.
     let arrays = unsafe {
         let is: unsafe extern "system" fn(u32) -> u8 = function("glIsVertexArray");
         (1..100).filter(|n| is(*n) != 0).count()
@@ -206,7 +208,7 @@ fn each_window_may_have_a_thread_of_its_own() {
 
 /// Handles may be used from any thread, one at a time.
 struct SendScene<'a>(&'a Scene);
-// SAFETY: numbers in pointers' clothing.
+// SAFETY: the handles are numbers in the form of pointers.
 unsafe impl Send for SendScene<'_> {}
 
 impl<'a> SendScene<'a> {

@@ -1,5 +1,5 @@
-//! Depth that is written: every kind of image that a host hands over gets back what was drawn into it, and Welkin reads
-//! it at once.
+//! Depth that is written: every kind of image that a host hands over receives the depth drawn into it, and Welkin reads
+//! that depth at once.
 
 use glow::HasContext;
 use welkin::{
@@ -47,7 +47,7 @@ fn depths(host: &Host, fbo: Option<glow::Framebuffer>, samples: i32) -> Vec<f32>
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
-/// What `clear` left, and the card before its upper left.
+/// Checks the depths and colours of `clear`, with the card in front of their upper left.
 fn assert_card(depths: &[f32], reds: &[[u8; 4]]) {
     for (i, (depth, red)) in depths.iter().zip(reds).enumerate() {
         let (left, upper) = (i as u32 % WIDTH < WIDTH / 2, i as u32 / WIDTH >= HEIGHT / 2);
@@ -63,7 +63,8 @@ fn assert_card(depths: &[f32], reds: &[[u8; 4]]) {
     }
 }
 
-/// Draws the card into a target, looks at its depth through Welkin's eyes into its own colour, and hands all back.
+/// Draws the card into a target, draws the depth that Welkin reads into the target's colour, and returns the host's
+/// depths.
 fn draw_and_look(host: &Host, desc: &GlTargetDesc, copied: bool) -> Vec<f32> {
     let adopted = host.adopt();
     {

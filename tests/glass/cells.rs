@@ -1,4 +1,4 @@
-//! The cells: the same bits as their twin, at any frame rate, on any view; arrivals as the flux has them.
+//! The cells: the same bits as their twin, at any frame rate, on any view; drops arrive at the rate of the flux.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -24,7 +24,7 @@ fn glass(host: &Host) -> Cells {
     host.view.windscreen_cells().unwrap().expect("wet glass")
 }
 
-/// What the host's windscreen comes to.
+/// Returns the conditions of a step for the host's windscreen.
 fn acting(rate_mm_h: f64) -> StepConditions {
     StepConditions {
         cell_m: 0.004,
@@ -41,7 +41,7 @@ fn acting(rate_mm_h: f64) -> StepConditions {
     }
 }
 
-/// The same under the host's own weather, to the bit.
+/// Returns these conditions from the host's own weather, with the same bits.
 pub fn acting_on(host: &Host, rate_mm_h: f64) -> StepConditions {
     let weather = host.context.conditions_at(DVec3::new(0.0, 0.0, 3.0), 0.0).unwrap();
     let rain = DropSizes::new(&weather.precipitation, factor_in(&weather.air, 0.0));
@@ -60,7 +60,7 @@ pub fn wiper(position: f64) -> WiperArm {
     }
 }
 
-/// Another, to the left of it: their sectors overlap.
+/// Returns a second wiper to the left of the first; their sectors overlap.
 fn other_wiper(position: f64) -> WiperArm {
     WiperArm { pivot_m: [0.08, -0.04], length_m: 0.2, parked_deg: 150.0, far_deg: 15.0, ..wiper(position) }
 }
@@ -101,7 +101,7 @@ fn has_the_bits_of_the_twin(mut host: Host) {
 
 #[test]
 fn drops_arrive_as_the_flux_says() {
-    // Four seconds on 960 cm^2, from dry glass in saturated air, with no weight: nothing runs, nothing dries.
+    // Four seconds on 960 cm^2, from dry glass in saturated air, without gravity: nothing runs, nothing dries.
     let acts = StepConditions { relative_humidity: 1.0, down: DVec2::ZERO, ..acting(20.0) };
     let (mut tables, size) = (Tables::default(), [100, 60]);
     let mut cells = Cells::dry(size);
@@ -119,7 +119,7 @@ fn drops_arrive_as_the_flux_says() {
     assert!((water / due - 1.0).abs() < 4.0 * 15.0 / expected.sqrt(), "{water} of {due} m^3, {hits} drops");
 }
 
-/// What the report counts is what a query for a surface in the pane's place answers.
+/// The report's counts agree with a query for a surface in the pane's place.
 #[test]
 fn drops_land_on_the_pane_as_the_query_for_such_a_surface_says() {
     let mut host = Host::new(FORMAT, SMALL, 12.0);
@@ -222,7 +222,7 @@ fn a_blade_clears_what_it_passes_and_beads_come_back() {
     }
     let stroke = glass(&host);
     let report = host.view.windscreen_report().unwrap().unwrap();
-    // What the blade passed last has had 0.1 s of rain.
+    // The part that the blade passed last has had 0.1 s of rain.
     let (fresh, _) = in_sector(&stroke, 130.0, 155.0);
     assert!((fresh as f64) < 0.02 * before as f64, "{fresh} of {before}");
     let (after, _) = in_sector(&stroke, 30.0, 150.0);
@@ -242,7 +242,7 @@ fn two_blades_clear_both_their_sectors() {
     host.view.set_windscreen(Some(&screen(0.0))).unwrap();
     host.at(30.0, Stages::PREPARE, FrameFlags(0)).unwrap();
     let sectors = |cells: &Cells| {
-        // What only one of them reaches, and the rest.
+        // Parts of the pane that only one wiper reaches, and the rest.
         let own = [(0.08, 95.0, 155.0), (0.32, 25.0, 85.0)].map(|(x, a, b)| in_sector_of(&arm(x, 0.0), cells, a, b).0);
         (own, cells.water() - own[0] - own[1])
     };

@@ -70,7 +70,7 @@ impl Host {
         self.device.queue.write_texture(self.color.as_image_copy(), &bytes, layout, self.color.size());
     }
 
-    /// Records at a time.
+    /// Records a frame at a simulation time.
     pub fn at(&mut self, time_s: f64, stages: Stages, flags: FrameFlags) -> welkin::Result<()> {
         self.context.update(time_s)?;
         self.frame_id += 1;

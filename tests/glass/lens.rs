@@ -14,7 +14,7 @@ use crate::host::{Host, camera, upright};
 const SIZE: (u32, u32) = (320, 180);
 const PLAIN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Where a point of the upright pane lies in the picture, pixels.
+/// Returns the position of a point of the upright pane in the picture, pixels.
 fn pixel([x, y]: [f64; 2]) -> [f64; 2] {
     let clip = camera().projection * DVec3::new(x - 0.2, y - 0.12, -0.3).extend(1.0);
     [(0.5 + 0.5 * clip.x / clip.w) * f64::from(SIZE.0), (0.5 - 0.5 * clip.y / clip.w) * f64::from(SIZE.1)]
@@ -92,7 +92,7 @@ fn mist_is_cleared_from_below() {
         host.view.set_windscreen(Some(&Windscreen { pane, fogging: 0.9, demist, ..upright() })).unwrap();
         host.at(1.0, Stages::LENS, FrameFlags(0)).unwrap();
         let drawn = host.pixels();
-        // How much the mist changes each row.
+        // Change of each row by the mist.
         let change = |i: usize| f64::from((painted[i][0] - drawn[i][0]).abs());
         let width = SIZE.0 as usize;
         let changes: Vec<f64> = (0..SIZE.1 as usize).map(|y| (y * width..(y + 1) * width).map(change).sum()).collect();
@@ -111,7 +111,7 @@ fn mist_is_cleared_from_below() {
     assert!(last == 0.0);
 }
 
-/// Ridges of the film lie in arcs about the pivot of the arm that wiped there, not about the other's.
+/// Ridges of the film lie in arcs around the pivot of the arm that wiped there, not around the other arm's.
 #[test]
 fn film_lies_in_arcs_about_each_pivot() {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, SIZE, 0.3);
@@ -130,7 +130,7 @@ fn film_lies_in_arcs_about_each_pivot() {
         host.view.set_windscreen(Some(&screen(f64::from(i) / 4.0))).unwrap();
         host.at(20.0 + f64::from(i) / 60.0, Stages::PREPARE, FrameFlags(0)).unwrap();
     }
-    // Brighter to the right: what the film changes is how far it bends the view sideways.
+    // The picture is brighter to the right, so that a change of brightness is the sideways refraction by the film.
     let ramp = |i: u32| f64::from(i % SIZE.0) / f64::from(SIZE.0);
     let texels = (0..SIZE.0 * SIZE.1).flat_map(|i| [half::f16::from_f64(ramp(i)); 4]);
     let bytes: Vec<u8> = texels.flat_map(|v| v.to_bits().to_le_bytes()).collect();
@@ -139,7 +139,8 @@ fn film_lies_in_arcs_about_each_pivot() {
     let at = 20.0 + 4.0 / 60.0;
     host.at(at, Stages::LENS, FrameFlags(0)).unwrap();
     let pixels = host.pixels();
-    // Mean square of the bend's means over arcs, of its whole: near 1 where the bend is the same along each arc.
+    // Share of the refraction's mean square that is left in the means over arcs: near 1 if the refraction is the same
+    // along each arc.
     let along_arcs = |centre: f64, own: f64| {
         let mut bins = std::collections::BTreeMap::<i32, (f64, f64, f64)>::new();
         for (a, r) in (0..90).flat_map(|a| (0..110).map(move |r| (a, r))) {
@@ -152,7 +153,7 @@ fn film_lies_in_arcs_about_each_pivot() {
             }
             let i = py as u32 * SIZE.0 + px as u32;
             let bend = (f64::from(pixels[i as usize][0]) - ramp(i)) / d.x * r;
-            // Beads bend it far more.
+            // Beads refract far more.
             if bend.abs() > 0.05 {
                 continue;
             }

@@ -1,5 +1,4 @@
-//! Water on the windscreen: the cells against their twin and the flux, and what the lens makes of a picture. One
-//! binary.
+//! Water on the windscreen: the cells against their twin and the flux, and the lens over a picture. One binary.
 
 pub mod cells;
 mod host;

@@ -1,4 +1,4 @@
-//! Pictures to look at: WELKIN_GLASS_PICTURES=<folder> writes them; without it a few are drawn and checked.
+//! Pictures for people to look at: WELKIN_GLASS_PICTURES=<folder> writes them; without it a few are drawn and checked.
 
 use glam::DVec3;
 use half::f16;
@@ -69,7 +69,7 @@ struct WindscreenScene {
     fogging: f64,
     demist: f64,
     seconds: f64,
-    /// Metres to the glass.
+    /// Distance to the glass, m.
     near_m: f64,
 }
 

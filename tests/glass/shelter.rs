@@ -1,4 +1,4 @@
-//! Glass below what keeps rain off: boxes, maps, and their edges across the pane.
+//! Glass below shelters: boxes, maps, and their edges across the pane.
 
 use std::sync::Arc;
 
@@ -68,12 +68,12 @@ fn under_a_box_no_drops_land_and_the_own_cab_is_no_box() {
     assert!(hits[0] == 0 && hits[1] > 0 && hits[2] < hits[1] + hits[1] / 10, "{hits:?}");
 }
 
-/// Over all that lies to the left of the camera.
+/// Returns a roof over everything to the left of the camera.
 fn left_roof() -> Shelter {
     shelter(DVec3::new(-15.0, 0.0, 8.0), DVec3::new(15.0, 30.0, 0.5))
 }
 
-/// From above, texels of 1.6 cm: roofs 8 m up wherever `roofed` says so of east and north.
+/// Returns an occluder map from above with texels of 1.6 cm: roofs 8 m up where `roofed` is true for (east, north).
 fn map_of(host: &Host, roofed: impl Fn(DVec2) -> bool) -> (wgpu::Texture, Taken) {
     const SIDE: u32 = 512;
     let taken = Taken::parallel(DVec3::new(0.0, 0.0, 30.0), DVec3::NEG_Z, [4.0; 2], 40.0);
@@ -88,8 +88,8 @@ fn map_of(host: &Host, roofed: impl Fn(DVec2) -> bool) -> (wgpu::Texture, Taken)
     (depth_texture(&host.device, (SIDE, SIDE), &depths), taken)
 }
 
-/// The declared glass, what half a second later has landed in each column, and the drops a second that are reported;
-/// below a roof, and below the map of one where `mapped` says so of east and north.
+/// Returns the declared glass, the water that has landed in each column half a second later, and the reported drops a
+/// second: below a roof, and below an occluder map that has a roof where `mapped` is true for (east, north).
 fn columns(
     device: &Arc<Device>,
     roof: Option<Shelter>,
@@ -121,7 +121,7 @@ fn a_pane_half_below_an_edge_gets_rain_on_its_open_half_by_boxes_and_by_maps() {
         for (roof, mapped) in [(Some(left_roof()), None), (None, Some((|p: DVec2| p.x < 0.0) as fn(DVec2) -> bool))] {
             let by = if roof.is_some() { "a box" } else { "a map" };
             let (declared, hits, reported) = columns(&device, roof, mapped);
-            // Nodes lie 6.7 cells apart, texels 4: what is nearer to the edge gets a part.
+            // Nodes lie 6.7 cells apart, texels 4: columns nearer to the edge get a part of the drops.
             for (i, (a, b)) in declared.unwrap().cells.iter().zip(&open.cells).enumerate() {
                 let x = i % SIZE[0] as usize;
                 assert!(x > 38 || (a[0] == 0 && a[3] & 4095 == 0), "by {by}: {a:?} in column {x}");

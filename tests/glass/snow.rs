@@ -1,4 +1,4 @@
-//! Snow on the glass: the same bits as its twin; it gathers, wipers take it, heat melts it, and it hides the picture.
+//! Snow on the glass: the same bits as its twin; it gathers, wipers remove it, heat melts it, and it hides the picture.
 
 use welkin::{
     frame::{FrameFlags, Stages},
@@ -40,7 +40,7 @@ fn host(options: &DeviceOptions, rate_mm_h: f64, temperature_c: f64) -> Host {
     host
 }
 
-/// Leads a host's glass from time 0 on, half a second a frame.
+/// Draws a host's glass over a range of time, half a second a frame.
 fn run(host: &mut Host, screen: &Windscreen, [from_s, to_s]: [f64; 2]) {
     host.view.set_windscreen(Some(screen)).unwrap();
     let frames = ((to_s - from_s) / 0.5).round() as u32;
@@ -106,7 +106,7 @@ fn snow_gathers_as_the_flux_says_and_stays_in_the_cold() {
     println!("{gathered:.4} kg/m^2 in two minutes, {want:.4} by the flux");
     // Thousands of flakes: their number varies by 2 %.
     assert!((gathered / want - 1.0).abs() < 0.1, "{gathered} {want}");
-    // It stops snowing: nothing is done, and nothing goes.
+    // The snowfall ends: no flakes are added, and no snow is removed.
     host.context.set_weather(&snowfall(0.0, -5.0), 121.0, 0.0).unwrap();
     run(&mut host, &screen, [121.5, 123.0]);
     let before = snow_kg_m2(&host);

@@ -1,4 +1,4 @@
-//! What is made of what: natural ground hardly changes, paved ground darkens and mirrors.
+//! Materials of the ground: wet natural ground hardly changes, wet paved ground darkens and mirrors.
 
 use glam::{DMat3, DVec2, DVec3};
 use welkin::{
@@ -46,7 +46,7 @@ fn overcast(host: &mut Host, state: SurfaceState) {
     host.context.set_weather(&weather, host.context.time_s(), 0.0).unwrap();
 }
 
-/// A host that has said nothing of its ground.
+/// Returns a host that has set no material of its ground.
 fn silent() -> Host {
     let mut host = Host::new();
     host.context.set_default_surface_class(SurfaceClass::Unspecified);
@@ -116,7 +116,8 @@ fn the_near_plane_does_not_change_wet_ground() {
     assert!(worst < 3.0, "{worst} of 255");
 }
 
-/// Largest step from a pixel to the next one in its row of how far two pictures are apart, silhouettes left out.
+/// Returns the largest step, from a pixel to the next one in its row, of the difference of two pictures, silhouettes
+/// left out.
 fn largest_step(a: &[[f64; 3]], b: &[[f64; 3]], eye: DVec3, hits: &[Option<DVec3>]) -> f64 {
     let off = |i: usize| (0..3).map(|c| a[i][c] - b[i][c]).sum::<f64>() / 3.0;
     let range = |i: usize| hits[i].map_or(f64::NAN, |p| (p - eye).length());
@@ -142,7 +143,7 @@ fn smooth_shaded_hills_do_not_show_their_triangles() {
             let step = largest_step(&by_depth, &by_normals, EYE, &hits);
             assert!(step < 1.0, "{weather}, {name}: a step of {step} of 255");
         }
-        // All of it paved: the terrain's heights give the normals that the depth has not.
+        // All ground is paved. The terrain's heights give normals that the depth cannot.
         host.context.set_ground_grid(Some(hills::grid(|_| SurfaceClass::Paved))).unwrap();
         let by_terrain = shoot(&mut host, camera, &hits, |_| ASPHALT, SurfaceImages::default());
         let by_normals = shoot(&mut host, camera, &hits, |_| ASPHALT, given);
@@ -236,7 +237,7 @@ fn hosts_water_stays_bit_for_bit_and_roofs_have_no_puddles() {
     assert!(paved > 0.05 && roof < 0.03 && soil < 0.01, "{paved} {roof} {soil}");
 }
 
-/// Level ground of one luminance, with what the host says of it.
+/// Draws level ground of one luminance, with the host's classes.
 fn level(host: &mut Host, classes: Option<&wgpu::Texture>) -> Vec<[f32; 4]> {
     let eye = DVec3::new(0.0, 0.0, 12.0);
     let camera = look(eye, 0.0, -90.0, 0.9);
@@ -289,7 +290,7 @@ fn the_image_counts_before_the_terrain_and_the_terrain_before_the_default() {
     let at = |host: &Host, x: f64| host.context.ground_at(DVec3::new(x, 0.0, 0.0)).unwrap().surface_class;
     let there = [-5.0, 5.0, 500.0].map(|x| at(&host, x));
     assert_eq!(there, [SurfaceClass::Soil, SurfaceClass::Rock, SurfaceClass::Rock]);
-    // Heights that are set already keep their water, whatever they are made of by now.
+    // Setting the same heights again keeps the water, even with other classes.
     let revision = host.context.ground_revision();
     host.context.set_ground_grid(Some(grid(|_| SurfaceClass::Paved))).unwrap();
     assert_eq!((at(&host, -5.0), host.context.ground_revision()), (SurfaceClass::Paved, revision));

@@ -1,4 +1,4 @@
-//! What gets dark, what does not, and what stays as it was.
+//! Wet surfaces in pictures: which become darker, which do not, and which stay unchanged.
 
 use std::f64::consts::PI;
 
@@ -63,13 +63,13 @@ fn patches_darken_by_the_law_of_wet_albedo() {
     let light = host.context.scene_at(EYE, 0.0).unwrap().ground;
     let camera = look(EYE, 0.0, -90.0, 0.5);
     let total = |c: usize| light.sun_lux[c] * 40f64.to_radians().sin() + light.sky_lux[c];
-    // Soil's colour: no plant's.
+    // The colour of soil, not of plants.
     let mut shown = |albedo: f64| {
         let luminance = [0, 1, 2].map(|c| albedo * total(c) / PI);
         let pixels = host.shoot(camera, Stages::SURFACE, |d| ground(EYE, d, luminance));
         pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / pixels.len() as f64 * PI / total(1)
     };
-    // What the surface mirrors is the same over all of them.
+    // The reflection is the same over all of these albedos.
     let mirrored = shown(0.0);
     assert!((0.002..0.03).contains(&mirrored), "{mirrored}");
     for albedo in [0.1, 0.2, 0.3, 0.5, 0.8] {
@@ -155,7 +155,7 @@ fn no_seam_runs_along_silhouettes() {
         }
     }
     assert!(compared > 4000 && bare != boxed);
-    // The box's own edges: its front is one wall, from its first column to its last.
+    // The box's front is one wall, from its first column to its last.
     let row = (SIZE.1 / 2 + 4) * SIZE.0;
     let front: Vec<f32> = (0..SIZE.0)
         .filter(|x| with_box(ray(&camera, *x, SIZE.1 / 2 + 4), [1.0; 3], [200.0; 3]).is_some_and(|h| h.1[0] == 1.0))
@@ -181,8 +181,7 @@ fn sky_and_masked_pixels_stay_and_one_call_equals_the_stages_one_by_one() {
     }
     for (a, b) in whole.iter().zip(host.pixels()) {
         for c in 0..3 {
-            // On a software driver each call looks up what it finds even, within a thousandth of it and of what is near
-            // white.
+            // On a software driver each call interpolates smooth parts, within a thousandth of the value and of white.
             assert!((a[c] - b[c]).abs() <= 2e-3 * a[c].abs() + 1e-3, "{a:?} {b:?}");
         }
     }

@@ -37,7 +37,7 @@ fn facets(at: DVec2) -> f64 {
     }
 }
 
-/// The same ground as the host would tell Welkin of it.
+/// Returns the same ground as a grid that the host sets.
 pub fn grid(class: impl Fn(DVec2) -> SurfaceClass) -> GroundGrid {
     let nodes =
         || (0..NODES * NODES).map(|i| corner() + DVec2::new(f64::from(i % NODES), f64::from(i / NODES)) * FACET_M);
@@ -77,7 +77,7 @@ pub const MAPPING: DepthMapping = DepthMapping {
     clip: welkin::scene::ClipSpace::ZeroToOne,
 };
 
-/// Where the ray of each pixel meets the triangles, if it does.
+/// Returns the point at which the ray of each pixel meets the triangles, if any.
 pub fn hits(camera: &Camera) -> Vec<Option<DVec3>> {
     let rays = ViewRays::new(camera, &MAPPING).unwrap();
     let pixels = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
@@ -153,7 +153,7 @@ fn encoded(v: f64) -> f64 {
     if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Writes a picture for who wants to look at it, where a folder is named.
+/// Writes a picture to look at, if the environment names a folder.
 pub fn save(name: &str, pixels: &[[f64; 3]]) {
     let Ok(folder) = std::env::var("WELKIN_PICTURES") else { return };
     let bytes = pixels.iter().flat_map(|p| p.map(|v| v.round() as u8)).collect::<Vec<_>>();

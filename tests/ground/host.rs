@@ -1,4 +1,4 @@
-//! A host that draws its pictures on the CPU: what each pixel's ray meets, exactly.
+//! A host that draws its pictures on the CPU, exactly, by the ray of each pixel.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ const DEPTH_SHADER: &str = "
 }
 ";
 
-/// What a ray meets: metres along it, luminance.
+/// Point that a ray meets: distance along it, m, and luminance.
 pub type Hit = Option<(f64, [f64; 3])>;
 
 pub struct Host {
@@ -49,7 +49,7 @@ pub fn ray(camera: &Camera, x: u32, y: u32) -> DVec3 {
     rays(camera).view_ray(ndc(x, y)).direction
 }
 
-/// A saved state that was changed, under a checksum that fits: what lies behind that must hold too.
+/// Returns a changed saved state with a correct checksum, so that later checks must find the change.
 pub fn resealed(state: &str) -> Vec<u8> {
     let body = state.split_once('\n').unwrap().1;
     let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -81,7 +81,7 @@ impl Host {
         let mut context =
             Context::new(device.clone(), shared, ContextDesc { sky: coarse_sky(), ..ContextDesc::default() }).unwrap();
         context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 40.0 })).unwrap();
-        // What most tests ask of is asphalt.
+        // Most tests need asphalt.
         context.set_default_surface_class(SurfaceClass::Paved);
         let view = View::new(&context).unwrap();
         let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba32Float, 1);

@@ -1,4 +1,5 @@
-//! Leaps in time: stepped by parts to the same state, whatever is set meanwhile, and shown as far as they have come.
+//! Leaps in time: updates in several calls lead to the same state, whatever is set meanwhile, and pictures show the
+//! state as far as it has advanced.
 
 use std::time::Duration;
 
@@ -38,7 +39,7 @@ fn cells(context: &Context) -> Vec<GroundCell> {
     context.ground_cells().unwrap().collect()
 }
 
-/// Everything that the water depends on, set to something else.
+/// Sets everything on which the water depends to other values.
 fn set_other(context: &mut Context, with_grid: bool) {
     context.set_shelters(&[roof([5.0, 10.0, 3.0], [6.0, 6.0, 0.2])]).unwrap();
     context.set_rain_areas(&[RainArea { rate_mm_h: 90.0, at_s: context.time_s(), ..RainArea::default() }]).unwrap();
@@ -98,7 +99,8 @@ fn what_is_not_there_yet_is_shown_as_far_as_it_has_come() {
     assert_eq!(context.ground_water(), behind.ground_water());
     assert!(cells(&context) == cells(&behind) && context.ground_at(at).unwrap() == behind.ground_at(at).unwrap());
     assert!(context.rain_at(at, 7000.0).is_ok());
-    // There is no state to save, a later time is not taken, an earlier one is refused, and a load ends it.
+    // While steps remain no state can be saved, a later time is not reached, an earlier one is refused, and a load ends
+    // the update.
     for e in [context.save().unwrap_err(), context.state_hash().unwrap_err()] {
         assert!(
             e.status == Status::WrongOrder
@@ -114,7 +116,7 @@ fn what_is_not_there_yet_is_shown_as_far_as_it_has_come() {
     other.load(&behind.save().unwrap()).unwrap();
     assert_eq!(other.save().unwrap(), behind.save().unwrap());
     assert_eq!(other.state_time_s(), 1200.0);
-    // The later time comes in the end.
+    // The later time is reached in the end.
     context.update(9000.0).unwrap();
     behind.update(9000.0).unwrap();
     assert_eq!((context.time_s(), context.state_time_s()), (9000.0, 9000.0));
@@ -130,7 +132,7 @@ fn what_is_not_there_yet_is_shown_as_far_as_it_has_come() {
 fn a_leap_of_more_than_a_day_begins_a_day_before_its_end() {
     let host = Host::new();
     let (a_day, rainy) = (86_400.0, rain(20.0, 3.0));
-    // Soaked and dry before: what was is not asked, for level ground and for the terrain alike.
+    // After a long leap the earlier wetness does not matter, for level ground and for the terrain.
     let leapt = |from: &Weather, to_s: f64| {
         let mut context = simulated(&host);
         context.set_weather(from, 0.0, 0.0).unwrap();

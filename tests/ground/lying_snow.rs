@@ -1,5 +1,5 @@
-//! Snow on the ground: the same however time goes, kept by a saved state, laid fast, ploughed, pressed, thawed into
-//! water, and drawn.
+//! Snow on the ground: independent of the steps of time, kept by a saved state, fast-forwarded, ploughed, compacted,
+//! thawed into water, and drawn.
 
 use std::time::Duration;
 
@@ -58,7 +58,7 @@ fn thirty_sixty_and_144_pictures_a_second_lay_the_same_snow() {
     for end in [130.0, 1300.0] {
         whole.update(end).unwrap();
         for (hz, context) in &mut by_rate {
-            // Not all of the time picture by picture: steps end where they end.
+            // Only a part of the time is updated at the frame rate; the steps end at their own times.
             let begin = (context.time_s() * *hz) as u64;
             let last = (end * *hz) as u64;
             let stride = if last - begin > 20_000 { 7 } else { 1 };
@@ -278,7 +278,7 @@ fn an_overcast_sky_is_brighter_over_snow() {
     // Back and forth between albedos of 0.2 or 0.82 and the clouds' own: (1 - 0.2 a) / (1 - 0.82 a).
     assert!((1.4..2.6).contains(&more), "{more}");
     assert!(white.adaptation_cd_m2 > more * bare.adaptation_cd_m2);
-    // What lights flakes from below, too.
+    // The snow also lights flakes from below.
     let albedo = |depth_m: f64| {
         let mut context = context(&host, LyingSnowModel::Simulated);
         let surface = Surface { snow_depth_m: depth_m, ..Surface::default() };
@@ -337,6 +337,6 @@ fn the_walls_of_a_track_face_the_sun_and_away_from_it() {
         "depths {depths:.2?} m; {open:.0} in the open, {sunny:.0}, {floor:.0} and {shady:.0} cd/m^2 across the track"
     );
     assert!(depths[2] < 0.7 * depths[0], "{depths:?}");
-    // The sun stands in the south-east: what faces east is brighter.
+    // The sun stands in the south-east, so surfaces that face east are brighter.
     assert!(sunny > 1.05 * open && shady < 0.95 * open && (floor / open - 1.0).abs() < 0.1);
 }

@@ -1,4 +1,4 @@
-//! Water on the ground: as it is drawn onto a host's picture. One binary, so that it links once.
+//! Water on the ground, as it is drawn onto a host's picture. One binary, so that it links once.
 
 mod classes;
 mod drawn;

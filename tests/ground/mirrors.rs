@@ -1,4 +1,4 @@
-//! What water mirrors: the sky by Fresnel's law, lamps without end.
+//! Reflections in water: the sky by Fresnel's law, and lamps at any distance.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -14,7 +14,7 @@ use welkin::{
 
 use crate::host::{Host, SIZE, ground, look, ray};
 
-/// A place in the middle of a puddle, deep enough that all round it is under water.
+/// Returns a place in the middle of a puddle, deep enough that everything around it is under water.
 fn puddle(host: &Host) -> DVec2 {
     let level = normal_quantile(1.0 - 0.3);
     let deep = |at: DVec2| host.context.hollows().depth(at) - level;
@@ -85,8 +85,8 @@ fn the_sun_in_a_puddle_is_bright_and_finite() {
 
 #[test]
 fn a_rough_film_spreads_the_suns_light_and_keeps_its_sum() {
-    // The mirrored lamp's light over all directions is what the film mirrors of its illuminance: here from straight
-    // above, sum of L cos over a wide look down = F(0) E.
+    // The mirrored lamp's light over all directions equals the reflected share of its illuminance. Here the lamp is
+    // straight above, and the sum of L cos over a wide view downwards is F(0) E.
     let mut host = Host::new();
     host.ground_is(SurfaceState::Wet);
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: 90.0 })).unwrap();
@@ -128,7 +128,7 @@ fn rings_follow_time_and_rate() {
         let picture = |host: &mut Host| host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [0.0; 3]));
         let first = picture(&mut host);
         assert_eq!(first, picture(&mut host), "time stands");
-        // The light against that of water without rings a column away: 0 without rings.
+        // Compares the light with that of water without rings in the next column; without rings the difference is 0.
         let differs = |a: &[f32; 4], b: &[f32; 4]| (a[1] - b[1]).abs() > 0.02 * a[1];
         let rough = first.windows(2).filter(|p| differs(&p[0], &p[1])).count();
         roughness.push(rough as f64 / first.len() as f64);
@@ -152,7 +152,7 @@ fn a_lamp_shines_in_a_puddle_by_the_law_of_glitter_and_not_on_grass() {
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
     let at = puddle(&host);
     let eye = at.extend(0.0) + DVec3::new(0.0, -1.2, 0.9);
-    // Where a mirror at the puddle's middle sees it.
+    // The lamp is placed where a mirror at the puddle's middle reflects it to the eye.
     let lamp = HostLight {
         position_m: at.extend(0.0) + DVec3::new(0.0, 4.0, 3.0),
         direction: DVec3::new(0.0, -4.0, -3.0),
@@ -197,7 +197,7 @@ fn a_lamp_shines_in_a_puddle_by_the_law_of_glitter_and_not_on_grass() {
     assert!(compared >= 9 && brightest > 100.0, "{compared} {brightest}");
 }
 
-/// The picture's light of a lamp alone: what the eye gets of it by the ground, cd/m^2, pixel by pixel.
+/// Returns the luminance by the lamp's light alone, reflected by the ground, cd/m^2, pixel by pixel.
 fn of_lamp(host: &mut Host, camera: Camera, lamp: HostLight) -> Vec<f64> {
     let eye = camera.position;
     let mut picture = |lamps: &[HostLight]| {
@@ -239,16 +239,16 @@ fn a_lamp_above_wet_paving_has_its_image_below_it_by_fresnels_law_and_none_on_dr
             sum += lux;
             place = [place[0] + lux * f64::from(x), place[1] + lux * f64::from(y)];
         }
-        // What a plane mirror sends: the lamp three metres away, times Fresnel's share.
+        // A plane mirror gives the illuminance of a lamp three metres away, times Fresnel's reflectance.
         let want = lamp.intensity_cd[1] * fresnel_water(sin) / 9.0;
         assert!((sum / want - 1.0).abs() < 0.02, "{elevation}: {sum} lux, want {want}");
-        // It stands where the image below the ground is seen: in the middle of the picture.
+        // The image appears at the lamp's mirrored place below the ground: in the middle of the picture.
         let off = [place[0] / sum - f64::from(SIZE.0) / 2.0, place[1] / sum - f64::from(SIZE.1) / 2.0];
         assert!(off[0].abs() < 1.0 && off[1].abs() < 1.0, "{elevation}: {off:?}");
         host.ground_is(SurfaceState::Dry);
         assert!(of_lamp(&mut host, camera, lamp).iter().all(|l| *l == 0.0), "{elevation}: dry ground mirrors no lamp");
     }
-    // A film: the image is wide, and to the side of the lamp there is nothing of it.
+    // In a film the image is long, and beside the lamp's direction there is none of its light.
     host.ground_is(SurfaceState::Wet);
     let eye = at + DVec3::new(0.0, -6.0, 2.0);
     let position_m = at + DVec3::new(0.0, 6.0, 2.0);

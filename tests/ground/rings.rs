@@ -1,4 +1,5 @@
-//! Rings of drops on standing water: as many as the flux of their drops brings, each drawn where it is, and no others.
+//! Rings of drops on standing water: their number follows from the flux of drops, each is drawn at its place, and no
+//! others are drawn.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -21,7 +22,7 @@ const LIFE_S: f64 = 0.36;
 const LAYERS: u32 = 4;
 const SPEED_M_S: f64 = 0.22;
 
-/// A ring that stands: its middle in the world, and how long it has.
+/// A visible ring: its centre in the world, and its age.
 struct Ring {
     at: DVec2,
     age_s: f64,
@@ -32,7 +33,8 @@ fn chances([x, y]: [u32; 2], slot: u32) -> [f64; 3] {
     random3([x, y, slot]).map(|v| f64::from(v >> 8) / 16_777_216.0)
 }
 
-/// Rings that stand at a time in cells between two corners of the world, each slot of a cell taken by this chance.
+/// Returns the visible rings at a time in cells between two corners of the world. Each slot of a cell has a ring with
+/// this probability.
 fn standing(time_s: f64, chance: f64, low: DVec2, high: DVec2) -> Vec<Ring> {
     let slots = time_s / SLOT_S;
     let mut rings = Vec::new();
@@ -56,7 +58,7 @@ fn standing(time_s: f64, chance: f64, low: DVec2, high: DVec2) -> Vec<Ring> {
     rings
 }
 
-/// Standing water within 6 m of the origin, gathered from round it, under rain.
+/// Returns a host with rain and with standing water within 6 m of the origin.
 fn pond(rate_mm_h: f64, showers: bool) -> (Host, f64) {
     let mut host = Host::new();
     let away = |i: u32| i.abs_diff(20) as f32;
@@ -81,7 +83,7 @@ fn pond(rate_mm_h: f64, showers: bool) -> (Host, f64) {
     let c = host.context.conditions_at(DVec3::ZERO, 0.0).unwrap();
     let sizes = DropSizes::new(&c.precipitation, factor_in(&c.air, 0.0));
     let slowest = sizes.speed_m_s(RING_DIAMETER_MM);
-    // The flux of the drops that make them, by small steps of their sizes.
+    // The flux of drops that make rings, summed over small steps of drop size.
     let step = 1e-3;
     let flux = (0..4200)
         .map(|i| RING_DIAMETER_MM + (f64::from(i) + 0.5) * step)
@@ -96,7 +98,7 @@ fn rings_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
     for (rate, showers) in [(1.5, false), (6.0, false), (1.5, true)] {
         let (mut host, flux) = pond(rate, showers);
         let chance = flux * CELL_M * CELL_M * SLOT_S / f64::from(LAYERS);
-        // All that stand on 32 x 32 m at times far apart, against flux x area x life.
+        // Number of rings on 32 x 32 m at times far apart, against flux x area x life.
         let corner = DVec2::splat(16.0);
         let inside = |r: &&Ring| r.at.abs().max_element() < 16.0;
         let moments = 12;
@@ -104,7 +106,7 @@ fn rings_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
         let counted: usize = (0..moments).map(stand).sum();
         let want = flux * LIFE_S * 1024.0 * f64::from(moments);
         assert!((counted as f64 - want).abs() < 4.0 * want.sqrt(), "{rate} mm/h: {counted} stand, flux x area {want}");
-        // Still water from above, .9 x .5 m of it; what it mirrors without rings is the median of all times.
+        // Still water from above, .9 x .5 m of it; its reflection without rings is the median over all times.
         let eye = DVec3::new(1.0, -2.0, 1.0);
         let camera = look(eye, 0.0, -90.0, 0.5);
         let half = DVec2::new(0.255 * 16.0 / 9.0, 0.255);

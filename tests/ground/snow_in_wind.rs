@@ -48,7 +48,7 @@ fn after(
         ..WindFieldDesc::default()
     };
     context.set_wind_field(Some(&field), 0.0).unwrap();
-    // Of a time more than a minute away a field knows nothing.
+    // A field holds for a minute around its time only.
     for half_minute in 1..=(hours * 120.0) as u32 {
         context.update(30.0 * f64::from(half_minute)).unwrap();
     }
@@ -59,7 +59,7 @@ fn lies(context: &Context, x: f64, y: f64) -> f64 {
     context.snow_at(DVec3::new(x, y, 0.0)).unwrap().mass_kg_m2
 }
 
-/// Mean of what lies along a line to the east.
+/// Returns the mean depth of snow along a line to the east.
 fn along(context: &Context, [from, to]: [i32; 2], y: f64) -> f64 {
     (from..to).map(|x| lies(context, f64::from(x), y)).sum::<f64>() / f64::from(to - from)
 }
@@ -102,7 +102,8 @@ fn flakes_blow_under_a_windward_porch_and_leave_that_to_the_lee_bare() {
         "2 h of 2 mm/h: under the windward porch {windward:.2}, the lee one {lee:.2}, in the open {open:.2} kg/m^2"
     );
     assert!((open / 4.0 - 1.0).abs() < 0.02 && lee < 0.02 * open && windward > 0.5 * open);
-    // The calm behind the house lets flakes fall steeply, so that its shadow is shorter than by the wind of the open.
+    // In the calm behind the house flakes fall steeply, so that its snow shadow is shorter than with the undisturbed
+    // wind.
     let behind: Vec<_> = (7..40).map(|x| lies(&context, f64::from(x), 0.0)).collect();
     println!("behind it: {behind:.1?}");
 }

@@ -1,5 +1,5 @@
-//! Snow on terrain in tiles, through a context: as on a grid of the same heights, the same however time goes, kept by a
-//! saved state and by tiles that change, drawn.
+//! Snow on terrain in tiles, through a context: equal to that on a grid of the same heights, independent of the steps
+//! of time, kept by a saved state and by tiles that change, and drawn.
 
 use std::time::Duration;
 
@@ -124,7 +124,7 @@ fn it_lies_on_tiles_as_on_a_grid_of_the_same_heights() {
     assert!(b.blown_in_kg > 0.0 && b.blown_out_kg > 0.0 && b.ran_off_kg > 0.0 && b.fallen_kg > 0.0, "{b:?}");
 }
 
-/// Makes a hole and fills it again, takes a tile away, and takes another away and brings it back.
+/// Makes a hole and fills it again, removes a tile, and removes another one and adds it again.
 fn change(context: &mut Context) {
     for class in [None, Some(SurfaceClass::Rock)] {
         let classes = [class; 30];
@@ -171,7 +171,7 @@ fn tiles_that_change_keep_the_snow_of_cells_that_stay_and_account_for_the_rest()
     assert_eq!(context.snow_at(at(8.0, 11.0)).unwrap().depth_m, 0.0, "no snow is left of a hole");
     let raised = context.snow_at(at(21.0, 21.0)).unwrap();
     assert_eq!((raised.mass_kg_m2, raised.surface.z > 7.0), (at_raised.mass_kg_m2, true));
-    // Where the tile was lies the world's own ground.
+    // At the place of the removed tile there is the world's own ground.
     assert_eq!(context.snow_at(at(-20.0, -20.0)).unwrap().depth_m, country.depth_m);
     context.update(9000.0).unwrap();
     assert!(is_balanced(&context.snow_balance().unwrap()));
@@ -220,7 +220,7 @@ fn a_saved_snow_on_tiles_goes_on_as_if_nothing_had_been() {
     assert_eq!(first.state_hash().unwrap(), second.state_hash().unwrap());
     assert!(first.save().unwrap() == second.save().unwrap());
     assert_eq!(first.snow_balance(), second.snow_balance());
-    // Snow alone is in the hash.
+    // The hash covers the snow too.
     first.take_snow(&SnowStrip { points: vec![at(-9.0, -9.0), at(-9.0, -5.0)], width_m: 1.0 }, 0.0).unwrap();
     assert_ne!(first.state_hash().unwrap(), second.state_hash().unwrap());
 }
@@ -247,7 +247,7 @@ fn the_tiles_snow_is_drawn_where_it_lies() {
     };
     let (side, middle) = (bright(&pixels, SIZE.1 - 3), bright(&pixels, SIZE.1 / 2));
     assert!(side > 4.0 * middle && (middle / 900.0 - 1.0).abs() < 0.3, "{side} {middle}");
-    // What the plough leaves later shows, and what a view that never saw it otherwise shows is the same.
+    // A later change by the plough is drawn, and a new view draws the same.
     host.context.take_snow(&SnowStrip { points: vec![at(-20.0, -27.5), at(20.0, -27.5)], width_m: 7.0 }, 0.0).unwrap();
     let again = shoot(&mut host);
     assert!(again != pixels && bright(&again, SIZE.1 - 3) < 0.5 * side, "{}", bright(&again, SIZE.1 - 3));

@@ -1,4 +1,4 @@
-//! The ground's water over time: the same by steps of any size, kept by a saved state, gone when it has dried.
+//! The ground's water over time: the same with updates of any length, kept by a saved state, and gone after drying.
 
 use glam::DVec3;
 use welkin::{
@@ -45,7 +45,7 @@ fn steps_of_any_size_come_to_the_same_water() {
             assert_eq!(context.ground_at(at).unwrap(), whole.ground_at(at).unwrap(), "steps of {dt} s to {end} s");
             assert_eq!(context.state_hash().unwrap(), whole.state_hash().unwrap(), "steps of {dt} s to {end} s");
         }
-        // Standing time changes nothing.
+        // An update to the same time changes nothing.
         let now = whole.ground_water();
         whole.update(end).unwrap();
         assert_eq!(whole.ground_water(), now);
@@ -72,7 +72,7 @@ fn a_saved_ground_goes_on_as_if_nothing_had_been() {
     let broken = text.replacen("film_mm = ", "film_mm = -", 1);
     let e = second.load(&resealed(&broken)).unwrap_err();
     assert!(text != broken && e.status == Status::Parse && e.to_string().contains("ground must be"), "{e}");
-    // A context without simulation says nothing of the ground in what it saves.
+    // A context without simulation saves nothing about the ground.
     assert!(!String::from_utf8(reported.save().unwrap()).unwrap().contains("film_mm"));
     assert!(reported.ground_water().is_none());
 }
@@ -103,7 +103,7 @@ fn a_shower_wets_the_ground_and_the_sun_dries_it() {
     again.update(1800.0).unwrap();
     let under = places.filter(|p| again.ground_at(*p).unwrap().in_puddle).count() as f64 / 400.0;
     assert!((under - wet.puddles).abs() < 0.15, "{under} {}", wet.puddles);
-    // Where nothing is paved, none is drawn, and none is there.
+    // Without paved ground no puddles are drawn, and queries find none.
     again.set_default_surface_class(SurfaceClass::Unspecified);
     for i in 0..400 {
         let at = again.ground_at(DVec3::new(f64::from(i) * 0.3, 5.0, 0.0)).unwrap();

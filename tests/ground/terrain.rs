@@ -1,5 +1,5 @@
-//! Water on the host's terrain: where it falls, stands and stays away, the same however time goes, kept by a saved
-//! state.
+//! Water on the host's terrain: where it falls, stands and is absent; independent of the steps of time, and kept by a
+//! saved state.
 
 use glam::{DMat3, DVec3};
 use welkin::{
@@ -117,7 +117,7 @@ fn a_saved_terrain_goes_on_as_if_nothing_had_been() {
     second.update(1800.0).unwrap();
     assert!(cells(&first) == cells(&second));
     assert_eq!(first.save().unwrap(), second.save().unwrap());
-    // Damage is refused, and what runs goes on.
+    // A damaged state is refused, and the running context continues.
     let text = String::from_utf8(saved).unwrap();
     let line = text.lines().find(|l| l.starts_with("water = [")).unwrap();
     for (from, to) in [
@@ -133,7 +133,7 @@ fn a_saved_terrain_goes_on_as_if_nothing_had_been() {
         assert!(e.status == Status::Parse && e.to_string().contains("terrain"), "{e}");
     }
     assert!(cells(&first) == cells(&second));
-    // A state without a terrain takes it away; set again, it begins as the ground is.
+    // A state without a terrain removes it. A terrain that is set again begins as wet as the level ground.
     let mut third = shower(&host);
     let mut bare = simulated(&host);
     bare.set_weather(&rain(12.0, 4.0), 0.0, 0.0).unwrap();
@@ -168,7 +168,8 @@ fn it_is_dry_under_a_roof_but_for_the_wet_wedge_on_the_windward_side() {
         edge.iter().any(|w| *w > 0.0 && *w < 0.95 * open),
         "thirds of the rain come along slants of their own: {edge:?}"
     );
-    // What drives by keeps nothing dry, and what has stood there longer than the rain does.
+    // A truck that drives by keeps nothing dry. A box that has stood there longer than the rain keeps the ground below
+    // it dry.
     let mut truck = roof([-12.0, 15.0, 2.0], [3.0, 3.0, 2.0]);
     truck.velocity_m_s = DVec3::new(5.0, 0.0, 0.0);
     context.set_shelters(&[truck]).unwrap();
@@ -304,7 +305,7 @@ fn in_real_hills_water_stands_in_their_closed_hollows_alone() {
     assert!(tops.iter().all(|p| of(p).standing_mm == 0.0 && of(p).film_mm > 0.5), "tops shed");
     let share = water.iter().filter(|c| c.standing_mm > 0.0).count() as f64 / water.len() as f64;
     assert!((0.005..0.2).contains(&share), "{share}");
-    // Of 15 mm a cell no more stands than fell, and a good part of it has run out of the grid.
+    // 15 mm have fallen on each cell. No more water stands than fell, and a good part of it has left the grid.
     let standing = water.iter().map(|c| f64::from(c.standing_mm)).sum::<f64>() / water.len() as f64;
     assert!(standing > 0.5 && standing < 14.0, "{standing} mm");
     println!("{} pits, {share:.3} of the ground under water, {standing:.2} mm over all of it", pits.len());
@@ -387,7 +388,7 @@ fn large_grids_are_set_stepped_and_saved_soon() {
     }
 }
 
-/// Radiance of the ground below the eye at a point of it, over what the host drew there.
+/// Returns the radiance of the ground divided by the radiance that the host drew.
 fn shown(host: &mut Host, eye: DVec3, azimuth_deg: f64, elevation_deg: f64) -> Vec<f32> {
     let camera = look(eye, azimuth_deg, elevation_deg, 1.0);
     let pixels = host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [2000.0; 3]));
@@ -413,7 +414,7 @@ fn the_picture_is_dark_where_the_terrain_is_wet_and_dry_under_a_roof() {
     context.set_weather(&dry, 3600.0, 0.0).unwrap();
     context.update(3700.0).unwrap();
     host.context = context;
-    // Straight down from 20 m: the ground's own darkening, and the little that is mirrored.
+    // Straight down from 20 m: the darkening of the ground, and a little reflection.
     let pixel = |pixels: &[f32], x: u32, y: u32| pixels[(y * SIZE.0 + x) as usize];
     let middle = |host: &mut Host, x: f64, y: f64| {
         let pixels = shown(host, DVec3::new(x, y, 20.0), 0.0, -90.0);
@@ -422,7 +423,7 @@ fn the_picture_is_dark_where_the_terrain_is_wet_and_dry_under_a_roof() {
     let [sheltered, open, pool] = [-8.0, -17.0 + 16.0, 8.0].map(|x| middle(&mut host, x, 15.0));
     assert_eq!(sheltered, 1.0, "no drop came there, though the rain's slant of this moment is not asked");
     assert!((0.4..0.9).contains(&open) && (0.4..0.9).contains(&pool), "{open} {pool}");
-    // What stands on the terrain is not the terrain's: a deck above the puddle has the world's water.
+    // A surface above the terrain does not have the terrain's water: a deck above the puddle has that of level ground.
     let deck = |host: &mut Host| {
         let eye = DVec3::new(8.0, 15.0, 26.0);
         let pixels = host.shoot(look(eye, 0.0, -90.0, 1.0), Stages::SURFACE, |d| Some((-20.0 / d.z, [2000.0; 3])));

@@ -66,7 +66,7 @@ fn it_has_the_cells_and_stays_until_another_grid_comes() {
         let wet = assert_shown(&mut context);
         assert!(wet.texture == dry.texture && wet.generation == dry.generation && wet.revision != dry.revision);
         assert!(cells(&context).iter().any(|c| c[2] > 50.0) && cells(&context).iter().any(|c| c[1] == 0.0));
-        // A state that is taken up on the same grid is the same texture, with other water.
+        // Loading a state on the same grid keeps the texture and changes its water.
         let saved = context.save().unwrap();
         context.update(3600.0).unwrap();
         assert_shown(&mut context);
@@ -123,7 +123,7 @@ fn one_upload_serves_all_views_and_the_host() {
     let eye = glam::DVec3::new(6.0, 12.0, 20.0);
     let camera = look(eye, 0.0, -90.0, 1.0);
     let first = host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [2000.0; 3]));
-    // What it draws from is what the host was given, up to date.
+    // The drawn water is that of the texture that the host got, up to date.
     assert_cells(&readback::rgba(&host.device, &asked.texture).unwrap(), &cells(&host.context));
     std::mem::swap(&mut host.view, &mut other);
     let second = host.shoot(camera, Stages::SURFACE, |d| ground(eye, d, [2000.0; 3]));
@@ -231,7 +231,7 @@ fn the_published_functions_find_water_where_the_queries_do() {
             let (x, y) = (i as u32 % (4 * NODES[0]), i as u32 / (4 * NODES[0]));
             let uv = [f64::from(x) + 0.5, f64::from(y) + 0.5];
             let uv = [uv[0] / f64::from(4 * NODES[0]), uv[1] / f64::from(4 * NODES[1])];
-            // Level and true to north: the rows are those of a scale and a shift.
+            // The grid is level and aligned to north, so the matrix is a scale and an offset.
             let place = [0, 1].map(|k| (uv[k] - from.uv_from_world[k].w) / from.uv_from_world[k][k]);
             let at = context.ground_at(glam::DVec3::new(place[0], place[1], 0.0)).unwrap();
             let inside = (-20.0..=19.0).contains(&place[0]) && (0.0..=29.0).contains(&place[1]);

@@ -1,5 +1,5 @@
-//! Terrain in tiles through a context: stepped in parts, saved and loaded, changed meanwhile, drawn as a grid of the
-//! same heights is.
+//! Terrain in tiles through a context: updated in several calls, saved and loaded, changed meanwhile, and drawn like a
+//! grid of the same heights.
 
 use std::time::Duration;
 
@@ -94,7 +94,7 @@ fn day(host: &Host) -> Context {
     context
 }
 
-/// Digs, takes a tile away and brings another back, changed.
+/// Digs, removes a tile, and adds another one again with changes.
 fn change(context: &mut Context) {
     dig(context, KEYS[3], [0, 12], -0.15);
     dig(context, KEYS[1], [20, 4], 0.3);
@@ -157,7 +157,8 @@ fn saved_tiles_go_on_where_the_host_has_set_them() {
     second.update(2500.0).unwrap();
     assert!(water(&first) == water(&second));
     assert_eq!(first.save().unwrap(), second.save().unwrap());
-    // A state of before the tiles leaves them, as wet as level ground; a grid's does not fit beside them.
+    // A state saved without tiles keeps the tiles, as wet as level ground. A state with a grid does not fit a context
+    // with tiles.
     let mut bare = simulated(&host);
     bare.set_weather(&rain(12.0, 4.0), 0.0, 0.0).unwrap();
     bare.update(1000.0).unwrap();
@@ -185,11 +186,11 @@ fn it_is_dry_under_a_roof_and_wet_in_hollows_over_borders() {
     let deep = [-0.5, 0.5].map(|y| at(3.0, y));
     assert!(deep.iter().all(|g| g.in_puddle), "{deep:?}");
     assert!(deep[0].puddles > 0.01 && deep[0].puddles < 0.6, "{deep:?}");
-    // High above it, and beside it, lies the world's ground.
+    // High above it, and beside it, queries return the world's ground.
     assert!(context.ground_at(DVec3::new(3.0, -4.4, 9.0)).unwrap().surface_class == SurfaceClass::Unspecified);
     let beside = context.ground_at(DVec3::new(40.0, 0.0, 0.0)).unwrap();
     assert_eq!(beside.film_mm, context.ground_water().unwrap().film_mm);
-    // What is reported, not simulated, lies on tiles as on level ground.
+    // A reported ground, which is not simulated, is the same on tiles as on level ground.
     let mut reported = Host::new();
     set_tiles(&mut reported.context);
     reported.context.set_weather(&rain(20.0, 0.0), 0.0, 0.0).unwrap();
@@ -271,10 +272,10 @@ fn a_window_follows_the_camera_and_what_is_dug() {
     dig(&mut host.context, KEYS[1], [0, 14], 0.3);
     let dug = host.shoot(camera, surface, asphalt);
     assert!(dug != before, "a raised rectangle shows");
-    // A view that never saw it otherwise shows the same.
+    // A new view draws the same.
     host.view = View::new(&host.context).unwrap();
     assert!(dug == host.shoot(camera, surface, asphalt), "what is uploaded by rectangles is all that there is");
-    // Gone with its tile, and from a place far off nothing is seen of it.
+    // The water is gone with its tile, and is not drawn from far away.
     host.context.remove_terrain_tile(KEYS[1]).unwrap();
     assert!(dug != host.shoot(camera, surface, asphalt));
 }

@@ -1,4 +1,4 @@
-//! What pictures of flashes hold.
+//! Pictures of flashes.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ struct Night {
 
 const NEAR_M: f64 = 0.1;
 const FOV_Y: f64 = 1.0;
-/// What the host's ground reflects.
+/// Albedo of the host's ground.
 const ALBEDO: f64 = 0.15;
 
 impl Night {
@@ -65,7 +65,7 @@ impl Night {
         Camera::look_to(self.eye, self.forward, DVec3::Z, FOV_Y, aspect, NEAR_M)
     }
 
-    /// Gives the host's depth: of what `range` says of a ray, m along it.
+    /// Sets the host's depth from `range`, the distance along a ray, m.
     fn set_depth(&mut self, range: impl Fn(DVec3) -> f64) {
         let camera = self.camera();
         let (w, h) = self.size;
@@ -196,7 +196,7 @@ fn without_a_flash_nothing_is_drawn_and_nothing_is_paid() {
     let all = stormy.context.flashes_near(DVec3::ZERO, (0.0, 60.0), 50_000.0).unwrap();
     let shines = |t: f64| all.iter().any(|f| (f.time_s - 0.2..f.time_s + 4.1).contains(&t));
     let dark = (0..600).map(|i| f64::from(i) * 0.1).find(|t| !shines(*t));
-    // Of many cells one shines nearly always somewhere: a single one has its pauses.
+    // With many cells one nearly always flashes somewhere; a single cell has pauses.
     let cell = StormCell { position: DVec3::ZERO, radius_m: 3000.0, flashes_per_minute: 2.0 };
     let own = LightningSettings { cells: vec![cell], ..Default::default() };
     let dark_s = dark.unwrap_or_else(|| {
@@ -256,7 +256,7 @@ fn rain_and_wet_ground_are_lit() {
     assert!(ground_lit > 5.0 * ground && drops_lit > 5.0 * drops, "{ground} {ground_lit}, {drops} {drops_lit}");
 }
 
-/// Wet plants mirror nothing, and a flash that shines in the sky changes nothing of that.
+/// Wet plants do not mirror, and a flash in the sky does not change that.
 #[test]
 fn a_flash_leaves_wet_plants_dark() {
     let wet = Surface { state: Some(SurfaceState::Wet), ..Surface::default() };
@@ -280,7 +280,7 @@ fn a_flash_leaves_wet_plants_dark() {
     }
 }
 
-/// Rises and falls by more than a tenth of the brighter luminance, and when each ends.
+/// Returns the times at which rises and falls by more than a tenth of the brighter luminance end.
 fn changes(luminances: &[(f64, f64)]) -> Vec<f64> {
     let (mut out, mut low, mut high) = (Vec::new(), luminances[0].1, luminances[0].1);
     let mut rising = None;
@@ -397,7 +397,7 @@ fn a_flash_lights_the_clouds_about_it_and_not_the_gaps_between_them() {
         night.context.trigger_flash(&at(time_s, flash, FlashKind::InCloud)).unwrap();
         let (dark, lit) = (night.pure(time_s - 0.5), night.pure(time_s + 0.01));
         let glow: Vec<f64> = lit.iter().zip(&dark).map(|(lit, dark)| luminance(lit) - luminance(dark)).collect();
-        // Where the glow lies on the mean: its brightest pixel is that of some edge.
+        // The mean direction of the glow; its brightest pixel would be that of some edge.
         let of = |(i, glow): (usize, &f64)| ray(&camera, (i as u32 % 96, i as u32 / 96), night.size) * glow.max(0.0);
         let toward: DVec3 = glow.iter().enumerate().map(of).sum();
         let bearing = |v: DVec3| v.x.atan2(v.y).to_degrees();
@@ -415,7 +415,7 @@ fn a_flash_lights_the_clouds_about_it_and_not_the_gaps_between_them() {
         bearings.push([bearing(toward), bearing(flash)]);
         assert!(at(0.1) < 0.01 && at(0.5) < 0.05, "{} {}", at(0.1), at(0.5));
     }
-    // Clouds stand where they stand: on the mean the glow lies where the flash is, and goes with it from one to the
+    // Single clouds shift the glow. On average it lies in the direction of the flash, and moves from one flash to the
     // next.
     let off = bearings.iter().map(|[glow, flash]| glow - flash).sum::<f64>() / 3.0;
     assert!(off.abs() < 15.0 && bearings.windows(2).all(|pair| pair[1][0] > pair[0][0] + 5.0), "{off}: {bearings:?}");

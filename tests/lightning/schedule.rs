@@ -1,4 +1,4 @@
-//! Flashes as a host asks for them.
+//! Flashes in a host's queries.
 
 use std::sync::Arc;
 
@@ -108,7 +108,8 @@ fn roof(center: DVec3, half_size_m: DVec3) -> Shelter {
     }
 }
 
-/// A hall of 600 by 600 m amid a cell: nothing ends inside it, and what would strike its ground strikes its roof.
+/// A hall of 600 by 600 m in a cell: no flash ends inside it, and a flash that would strike the ground below strikes
+/// its roof.
 #[test]
 fn no_flash_strikes_inside_a_shelter() {
     let half = DVec3::new(300.0, 300.0, 10.0);
@@ -128,7 +129,7 @@ fn no_flash_strikes_inside_a_shelter() {
     let sheltered = strikes(&context);
     assert_eq!(sheltered.iter().filter(|p| inside(p)).count(), 0);
     assert!(sheltered.iter().filter(|p| within(p)).all(|p| p.z > 19.9), "the roof takes them");
-    // A flash that the host wants inside of it ends on its roof, too.
+    // A flash that the host triggers inside the hall ends on its roof, too.
     let flash = FlashTrigger {
         time_s: 5.0,
         position: DVec3::new(10.0, 20.0, 1.0),
@@ -187,7 +188,7 @@ fn triggered_flashes_and_settings_are_saved_and_hashed() {
     let strikes = hour(&one);
     let own = strikes.iter().find(|f| f.time_s == 12.0).expect("the triggered flash");
     assert!((own.position - flash.position).length() < 1e-6, "it strikes where it was wanted");
-    // It is kept until its thunder has been heard, and the past is refused.
+    // A triggered flash is kept until its thunder has been heard; a trigger in the past is refused.
     other.update(100.0).unwrap();
     assert_eq!(other.trigger_flash(&flash).unwrap_err().status, Status::WrongOrder);
     assert!(hour(&other).iter().any(|f| f.time_s == 12.0));
@@ -223,7 +224,7 @@ fn worlds_of_all_kinds_have_flashes_where_their_host_wants_them() {
         let all = context.flashes_near(position, (0.0, 2.0), 100.0).unwrap();
         assert_eq!(all.len(), 1);
         assert!((all[0].position - position).length() < 0.5, "{kind:?} {:?} {position:?}", all[0].position);
-        // It comes from above.
+        // The light comes from above.
         let light = context.lightning_at(position + DVec3::X, 1.0 + 1e-4, 0.0).unwrap();
         assert!(light.direction.z > 0.4 && light.level_lux > 0.0, "{kind:?} {light:?}");
     }

@@ -12,8 +12,8 @@ fn drawn(device: &Arc<Device>, size: [u32; 3], settings: &NoiseSettings) -> Nois
 #[test]
 fn presets_have_the_cover_of_their_names() {
     let device = Device::headless(&DeviceOptions::default()).unwrap();
-    // In hundredths, as three other ways to make this noise gave them: cover in the mean of 8 seeds, and of each; mean
-    // opacity, with one hundredth more to each side for what 8 seeds leave to chance.
+    // In hundredths, by three other implementations of this noise: mean cover of 8 seeds, cover of each seed, and mean
+    // opacity, with a margin of one hundredth for the chance of 8 seeds.
     for (preset, cover, each, opacity) in [
         (CloudPreset::Overcast, 98..=99, 0.95..=1.0, 84..=89),
         (CloudPreset::Broken, 80..=83, 0.72..=0.89, 59..=63),
@@ -29,7 +29,7 @@ fn presets_have_the_cover_of_their_names() {
             assert!(each.contains(&covered), "{preset:?}, seed {seed}: {covered}");
             means[0] += covered / 8.0;
             means[1] += opacity / 8.0;
-            // Far away the clouds are as dense as near by.
+            // The smallest mip level has the same density as the largest one.
             let far = f64::from(opacities.levels().last().unwrap()[0]) / 255.0;
             assert!((far - opacity).abs() < 0.02, "{preset:?}, seed {seed}: {far} of {opacity}");
         }

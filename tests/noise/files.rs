@@ -1,4 +1,4 @@
-//! Noise in files: what is written comes back, and what is no noise is refused by name.
+//! Noise in files: written noise is read back, and files that are no noise are refused by name.
 
 use welkin::noise::{NoiseImage, NoiseKind, NoiseSettings};
 use welkin::{Error, Status};
@@ -38,7 +38,7 @@ fn other_programs_read_what_is_written() {
             assert_eq!(dds.get_num_mipmap_levels() as usize, image.levels().len());
             let format = dds.get_dxgi_format();
             assert_eq!(format, is_dx10.then_some(ddsfile::DxgiFormat::R8_UNorm));
-            // It reads no masks of luminance, and so knows no L8 by its name.
+            // The crate does not read masks of luminance, and so does not know L8.
             let pixel = &dds.header.spf;
             let is_l8 = pixel.flags.contains(ddsfile::PixelFormatFlags::LUMINANCE) && pixel.rgb_bit_count == Some(8);
             assert_ne!(is_l8, is_dx10);
@@ -83,12 +83,12 @@ fn files_of_other_programs_are_read() {
         reads(&legacy(image, 0x2, [0, 0xff]), image);
         reads(&legacy(image, 0x2_0000, [0xff, 0]), image);
         reads(&changed(&image.to_dds_dx10(), &[(128, 65)]), image);
-        // As NVIDIA's exporter writes it.
+        // A header as NVIDIA's exporter writes it.
         reads(&changed(&image.to_dds_dx10(), &[(132, 0)]), image);
         reads(&[&image.to_dds()[..], b"more"].concat(), image);
         reads(&changed(&image.to_ktx2(), &[(32, 1)]), image);
     }
-    // One level alone, in words that say so and in those of older programs.
+    // A single level, with and without the field that says so, as in files of older programs.
     for levels in [0, 1] {
         let one = NoiseImage::from_bytes(&changed(&plane.to_dds(), &[(28, levels)])[..128 + 128]).unwrap();
         assert_eq!((one.levels(), one.size()), (&plane.levels()[..1], plane.size()));

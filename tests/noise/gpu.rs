@@ -22,7 +22,7 @@ fn settings(kind: NoiseKind, frequency: [u32; 3], octaves: u32, seed: u64) -> No
     NoiseSettings { kind, frequency, octaves, seed, ..Default::default() }
 }
 
-/// Asserts that no texel of any level differs by more than one level of 255, and answers which share differs at all.
+/// Asserts that no texel of any level differs by more than one level of 255, and returns the share that differs at all.
 fn assert_alike(drawn: &NoiseImage, expected: &NoiseImage, what: &str) -> f64 {
     assert_eq!(drawn.size(), expected.size());
     assert_eq!(drawn.levels().len(), expected.levels().len());
@@ -94,7 +94,7 @@ fn a_texture_drawn_in_small_steps_is_the_same() {
             let mut steps = 0;
             while !parts.is_drawn() {
                 let mut encoder = device.device.create_command_encoder(&Default::default());
-                // Not a multiple of anything.
+                // A step that is not a multiple of the width or of a slice.
                 parts.step(&mut encoder, 1777);
                 device.submit(encoder);
                 steps += 1;
@@ -122,7 +122,7 @@ fn bytes_given_to_the_gpu_come_back() {
             assert!(texture.is_drawn());
             assert_eq!(texture.read(&device, 0).unwrap(), image);
         }
-        // As files may have it: no power of two, no mip levels.
+        // An image as files may contain it: no power of two, no mip levels.
         let odd = NoiseImage::from_bytes(&without_levels([9, 5, 3])).unwrap();
         let texture = NoiseTexture::from_image(&device, &odd).unwrap();
         assert_eq!(texture.read(&device, 0).unwrap(), odd);

@@ -1,11 +1,11 @@
-//! Files of noise in OpenSceneGraph's own reader, as a host with it would load them.
+//! Files of noise read by OpenSceneGraph's own reader, as an OpenSceneGraph host would load them.
 #![cfg(target_os = "linux")]
 
 use std::{path::Path, process::Command};
 
 use welkin::noise::{NoiseImage, NoiseSettings};
 
-/// FNV-1a, as the reader has it.
+/// Hash of bytes by FNV-1a, the same as in osg_reader.cpp.
 fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }

@@ -1,4 +1,5 @@
-//! Noise: its properties, the GPU's against the CPU's, its files, and the cover of the source's presets.
+//! Noise: its properties, the GPU's noise against the CPU's, its files, and the cover of the presets of Tarantilis
+//! (2004).
 
 mod cover;
 mod files;

@@ -1,4 +1,4 @@
-//! What noise must be, whatever it is drawn with.
+//! Properties of noise, for any implementation.
 
 use glam::{DVec2, DVec3, UVec2, UVec3};
 use welkin::noise::{
@@ -30,7 +30,7 @@ fn noise_repeats_after_its_period_along_each_axis() {
                 largest = largest.max(step.abs());
             }
         }
-        // It does not repeat before.
+        // The noise does not repeat earlier.
         let half = p + DVec3::X;
         assert!((gradient_3d(half, period, 7) - gradient_3d(p, period, 7)).abs() > 1e-9);
     }
@@ -167,8 +167,8 @@ fn one_octave_is_the_noise_itself_and_more_are_a_sum() {
     let at = |settings: &NoiseSettings, p| noise_at(settings, size, p);
     let two = NoiseSettings { octaves: 2, ..one };
     for p in points(200, 1.0) {
-        // At most 0.5 + 0.25: nothing is clamped. The second octave is the first one's at twice the frequency but for
-        // its key.
+        // At most 0.5 + 0.25: nothing is clamped. The second octave is the first one at twice the frequency, with
+        // another key.
         let second = at(&two, p) - at(&one, p);
         assert!((0.0..=0.26).contains(&second), "{second}");
         let corner = (p * 6.0).floor() / 6.0;
@@ -176,7 +176,7 @@ fn one_octave_is_the_noise_itself_and_more_are_a_sum() {
     }
 }
 
-/// Of two images, -1 to 1.
+/// Returns the correlation of two images, -1 to 1.
 fn correlation(a: &NoiseImage, b: &NoiseImage) -> f64 {
     let values = |i: &NoiseImage| i.levels()[0].iter().map(|n| f64::from(*n)).collect::<Vec<_>>();
     let (a, b) = (values(a), values(b));

@@ -1,4 +1,4 @@
-//! One planner on two devices: what each of them showed decides, and no table of another.
+//! One planner on two devices: the plan follows the times of the device itself, not a table of another device.
 
 use welkin::{
     frame::{FrameFlags, PARTS},
@@ -55,7 +55,8 @@ fn place(name: &str) -> usize {
 }
 
 impl Profile {
-    /// Milliseconds of a picture of which `share` is the host's, with as many `drops`, with parts at these rungs.
+    /// Returns the time of a picture, ms, in whose share `share` the host drew, with this many `drops`, and parts at
+    /// these rungs.
     fn ms(&self, share: f64, drops: f64, there: &[bool], rungs: &[usize]) -> f64 {
         let drawn = |name| there[place(name)] && rungs[place(name)] + 1 < PARTS[place(name)].rungs.len();
         let cost = |is_drawn, work: f64| if is_drawn { work } else { 0.0 };
@@ -71,12 +72,12 @@ impl Profile {
     }
 }
 
-/// The rung that is paid while a part fades.
+/// Returns the rung that determines the cost while a part fades.
 fn paid(part: &PartPlan) -> usize {
     ((1.0 - part.share) * (part.part.rungs.len() - 1) as f32) as usize
 }
 
-/// What is missed with parts at these rungs: as plan::choice has it.
+/// Returns the loss with parts at these rungs, as plan::choice defines it.
 fn loss(plan: &Plan, rungs: &[usize]) -> f64 {
     plan.parts.iter().zip(rungs).map(|(part, rung)| part.part.importance * part.worth[*rung].p95).sum()
 }
@@ -89,14 +90,14 @@ fn all_rungs(there: &[bool]) -> Vec<Vec<usize>> {
     })
 }
 
-/// What a device's frames settle to.
+/// Result of a device's frames once the plan has settled.
 struct Settled {
     plan: Plan,
     ms: f64,
     drops: f64,
 }
 
-/// Draws frames of a view that has seen nothing yet, by the clock of a device.
+/// Draws frames of a new view, with the times of a device.
 fn settled(bench: &mut Bench, shot: &PlanScene, profile: &Profile, budget_ms: f64, frames: u32) -> Settled {
     bench.start_anew();
     bench.view.set_budget(Budget { milliseconds: Some(budget_ms), ..Budget::default() }).unwrap();
@@ -136,13 +137,13 @@ fn is_best(name: &str, profile: &Profile, share: f64, budget_ms: f64, of: &Settl
 fn each_device_leaves_out_what_is_missed_least_by_its_own_costs() {
     let mut bench = Bench::new();
     let mut differ = Vec::new();
-    // Parts that are worth much take 128 frames to fade.
+    // Important parts take 128 frames to fade.
     for (weather, far_m, frames) in [("rain", 300.0, 64), ("heavy_rain", 2000.0, 64), ("mist", 600.0, 160)] {
         let shot = PlanScene { weather, far_m, particles: true, pitch_deg: -3.0, ..PlanScene::yard() };
         bench.set(&shot);
         let share = bench.share_of_objects();
         let whole = [&SOFTWARE, &GPU].map(|device| settled(&mut bench, &shot, device, 1000.0, 16).ms);
-        // Of the time that everything takes there.
+        // Share of the time that all parts take.
         for time in [0.64, 0.5, 0.35] {
             let rungs = [(&SOFTWARE, whole[0]), (&GPU, whole[1])].map(|(device, whole)| {
                 let got = settled(&mut bench, &shot, device, time * whole, frames);
@@ -155,7 +156,7 @@ fn each_device_leaves_out_what_is_missed_least_by_its_own_costs() {
                 differ.push(format!("{weather} {time}"));
             }
         }
-        // A budget that the fast one has time to spare in.
+        // A budget that leaves the fast device time to spare.
         let [slow, fast] = [&SOFTWARE, &GPU].map(|device| settled(&mut bench, &shot, device, 1.25 * whole[1], frames));
         assert!(fast.plan.gave_way == GaveWay::Nothing && fast.plan.rungs().iter().all(|r| *r == 0), "{:?}", fast.plan);
         assert_eq!(slow.plan.gave_way, GaveWay::Time);

@@ -1,4 +1,4 @@
-//! Plans kept as text: another view that loads one draws the same parts, and nothing else moves it.
+//! Plans as text: another view that loads one draws the same parts, and nothing else changes its plan.
 
 use welkin::{
     frame::FrameFlags,
@@ -28,7 +28,7 @@ fn another_view_that_loads_a_plan_draws_the_same_parts_at_once() {
     assert_eq!(bench.everything(&near), planned, "the other channel draws alike in its first frame");
     assert_eq!(bench.plain.plan().rungs(), plan.rungs());
     assert_eq!(bench.plain.save_plan().unwrap(), text);
-    // Whatever comes: a jump, another weather.
+    // The plan stays after a jump and in another weather.
     let fog = PlanScene { weather: "fog", ..near.clone() };
     bench.set(&fog);
     bench.draw(&fog, false, FrameFlags::CUT);
@@ -55,7 +55,7 @@ fn a_plan_that_is_no_plan_changes_nothing() {
     bench.set(&near);
     let (before, plan) = bench.planned(&near, SETTLED);
     let text = bench.view.save_plan().unwrap();
-    // The benches' sky has 4 orders, and a plan for one with the default's 5 would not look alike.
+    // The benches' sky has 4 orders of scattering; with a plan for the default's 5 the picture would differ.
     for (from, to, says) in [
         ("version = 3", "version = 4", "plan.version must be 3, got 4"),
         ("air = \"none\"", "", "plan.drawn.air"),

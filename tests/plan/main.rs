@@ -1,4 +1,5 @@
-//! The plan against pictures: what it leaves out is within the tolerance, what it keeps is needed.
+//! The plan against pictures: the parts that it leaves out change the picture within the tolerance, and the parts that
+//! it keeps are needed.
 
 mod devices;
 mod kept;
@@ -9,16 +10,17 @@ mod time;
 use scenes::{Bench, PlanScene};
 use welkin::plan::{Budget, GaveWay, PartWish, Reason, difference, estimate::WORST};
 
-/// Frames until a gauge has answered and what it chose has faded.
+/// Frames until a gauge has a result and the fade to the plan's choice has ended.
 const SETTLED: u64 = 22;
 
-/// Whether a picture keeps a tolerance, as the documentation of `plan::estimate` has it.
+/// Whether a picture keeps a tolerance, as the documentation of `plan::estimate` defines it.
 fn keeps(picture: &[f64], everything: &[f64], tolerance: f64) -> bool {
     let d = difference(picture, everything, 1.0).unwrap();
     d.p95 <= tolerance && d.worst <= WORST * tolerance
 }
 
-/// Clouds of a volume take some frames: at their edges a few pixels differ from the picture that is marched at once.
+/// Clouds drawn as a volume need several frames to be complete: at their edges a few pixels differ from a picture that
+/// is marched in one frame.
 #[test]
 fn planned_pictures_with_clouds_as_a_volume_are_sufficient() {
     let mut bench = Bench::new();
@@ -41,7 +43,7 @@ fn planned_pictures_with_clouds_as_a_volume_are_sufficient() {
 #[test]
 fn planned_pictures_are_sufficient_and_minimal() {
     let mut bench = Bench::new();
-    // Every preset once, or four times over.
+    // 28 scenes use every preset once, 112 four times.
     let scenes = if std::env::var_os("WELKIN_ACCEPT").is_some() { 112 } else { 28 };
     let (mut left_out, mut planned_less, mut exceeded, mut needless) = (0, 0, 0, Vec::new());
     for seed in 0..scenes {
@@ -62,7 +64,7 @@ fn planned_pictures_are_sufficient_and_minimal() {
             plan.work / plan.work_of_everything,
             plan.parts.iter().map(|p| (p.share, p.reason, p.last().p95)).collect::<Vec<_>>()
         );
-        // The gauge sees every ninth of these pixels.
+        // The gauge measures every ninth of these pixels.
         let kept = d.p95 <= shot.tolerance && d.worst <= 1.2 * WORST * shot.tolerance;
         assert!(kept, "{}: {d:?} {plan:?}", shot.name);
         planned_less += u32::from(plan.work < plan.work_of_everything);
@@ -70,13 +72,14 @@ fn planned_pictures_are_sufficient_and_minimal() {
         for (i, part) in plan.parts.iter().enumerate() {
             match part.reason {
                 Reason::WithinTolerance => left_out += 1,
-                // Stars are taken to be worth what the clear sky is: the gauge's few pixels would miss the points. They
-                // may stay in needlessly.
+                // The plan assumes that stars matter as much as the clear sky: the gauge's few pixels would miss single
+                // stars. So the plan may draw stars that are not needed.
                 Reason::Needed if part.part.name == "stars" => {}
                 Reason::Needed if part.work > 0.02 * plan.work => {
                     let mut fewer = plan.rungs();
                     fewer[i] += 1;
-                    // A tenth of hysteresis and the bound's own width lie between the choice and the tolerance.
+                    // The plan chooses with a tenth of hysteresis and with the width of its error bound: a choice may
+                    // be well below the tolerance.
                     if keeps(&bench.pinned(&shot, &fewer), &everything, 0.8 * shot.tolerance) {
                         needless.push(format!("{} {}", shot.name, part.part.name));
                     }
@@ -147,7 +150,7 @@ fn a_budget_of_time_is_kept_by_leaving_out_and_room_brings_parts_back() {
     let mut bench = Bench::new();
     let yard = PlanScene { weather: "mist", tolerance: 0.05, ..PlanScene::yard() };
     bench.set(&yard);
-    // A fake clock: every part's work takes its share of 10 ms, then of 20 ms, then of 10 ms again.
+    // By a fake clock all parts together take 10 ms, then 20 ms, then 10 ms again, each its share.
     let budget = Budget { milliseconds: Some(12.0), ..Budget::default() };
     bench.view.set_budget(budget).unwrap();
     let mut shares = Vec::new();

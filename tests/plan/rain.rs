@@ -12,11 +12,11 @@ use crate::{
     scenes::{Bench, PlanScene, SIZE},
 };
 
-/// Its place among the parts, and its rungs.
+/// Index of the rain among the parts; the constants below are its rungs.
 const RAIN: usize = 3;
 const CONES: usize = 1;
 const VEIL: usize = 2;
-/// The other parts in full.
+/// Rungs with the rain at `rung` and all other parts drawn in full.
 const fn rain_at(rung: usize) -> [usize; 4] {
     [0, 0, 0, rung]
 }
@@ -27,14 +27,15 @@ fn rainy(seed: u64) -> PlanScene {
     let weather = RAINY[seed as usize % RAINY.len()];
     let tolerance = [0.002, 0.005, 0.01, 0.02][(seed / 6) as usize % 4];
     let shot = PlanScene::seeded(seed);
-    // High up none falls.
+    // No rain falls high above the ground.
     let height_m = shot.height_m.min(30.0);
     let name = format!("{weather} seed {seed}");
     let far_m = shot.far_m.min(2000.0);
     PlanScene { name, weather, tolerance, height_m, far_m, particles: true, ..shot }
 }
 
-/// Mean and deviation from pixel to pixel of blocks of 24 x 18 pixels, over their mean and a hundredth of white.
+/// Mean and deviation from pixel to pixel of blocks of 24 x 18 pixels, divided by the block's mean plus a hundredth of
+/// white.
 fn textures(pictures: &[Vec<f64>]) -> Vec<[f64; 2]> {
     let (across, down) = (SIZE.0 as usize / 24, SIZE.1 as usize / 18);
     let block = |picture: &[f64], b: usize| {
@@ -51,7 +52,7 @@ fn textures(pictures: &[Vec<f64>]) -> Vec<[f64; 2]> {
     (0..across * down).map(over).collect()
 }
 
-/// 95th percentile over blocks of how far two textures are apart.
+/// 95th percentile over blocks of the difference of two textures.
 fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut all: Vec<f64> =
         a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) / (b[0] + 0.01)).collect();
@@ -85,7 +86,7 @@ fn rain_is_drawn_as_the_picture_needs_it() {
         } else if worth.bound < 0.5 * shot.tolerance {
             panic!("{}: streaks that nobody sees are drawn, {plan:?}", shot.name);
         }
-        // The closed form knows no splash and no single streak.
+        // The closed form covers neither splashes nor single streaks.
         if d.p95 > 0.001 {
             assert!((0.75..1.4).contains(&(worth.p95 / d.p95)), "{}: {d:?} {worth:?}", shot.name);
         }
@@ -105,7 +106,7 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
         let shot =
             PlanScene { tolerance: 0.01, height_m: 2.0, sun_deg: 30.0, far_m: 80.0, fov_deg: 50.0, ..rainy(seed) };
         bench.set(&shot);
-        // Both at the same moments: curtains of rain go by.
+        // Both at the same moments, because curtains of rain pass.
         let mut pictures = [vec![], vec![]];
         for _ in 0..8 {
             bench.pass(1.3);
@@ -122,7 +123,7 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
     }
 }
 
-/// A contrast gain makes streaks worth more, and the plan knows by how much.
+/// A contrast gain makes streaks matter more, and the plan accounts for it.
 #[test]
 fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
     let mut bench = Bench::new();
@@ -161,9 +162,9 @@ fn a_model_of_the_hosts_own_choice_is_not_the_plans() {
     let (_, plan) = bench.planned(&shot, 3 * SETTLED);
     assert_eq!(plan.parts[RAIN].reason, Reason::WithinTolerance, "{plan:?}");
     assert!(bench.view.report().rain.drops == 0 && plan.parts[RAIN].share == 0.0);
-    // Nothing of it at all: the fog's share of it too.
+    // No rain at all: the fog omits the rain's extinction too.
     assert_eq!(plan.parts[1].reason, Reason::WithinTolerance);
-    // A picture that depends on nothing before it has all.
+    // A picture that may not depend on earlier frames is drawn with every part.
     bench.draw(&shot, true, FrameFlags::NO_HISTORY);
     assert!(bench.view.report().rain.drops > 0);
 }

@@ -26,15 +26,15 @@ pub struct PlanScene {
     pub height_m: f64,
     pub pitch_deg: f64,
     pub fov_deg: f64,
-    /// Nothing of the host's world is farther.
+    /// Greatest distance of anything in the host's world.
     pub far_m: f64,
-    /// Whether what falls is drawn too.
+    /// Whether precipitation is drawn too.
     pub particles: bool,
     pub has_depth: bool,
     pub tolerance: f64,
 }
 
-/// Uniform in [0, 1): SplitMix64 of seed and draw.
+/// Number in [0, 1), evenly distributed: SplitMix64 of the seed and the number of the draw.
 fn chance(seed: u64, draw: u64) -> f64 {
     let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(draw.wrapping_mul(0xd1b5_4a32_d192_ed03));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -75,7 +75,7 @@ impl PlanScene {
         Camera::look_to(eye, DVec3::new(0.0, c, s), DVec3::Z, self.fov_deg.to_radians(), aspect, 0.1)
     }
 
-    /// Distance and albedo of what the host drew in a pixel: a plain with ridges and posts, up to `far_m`.
+    /// Distance and albedo of what the host draws in a direction: a plain with ridges and posts, up to `far_m`.
     fn hit(&self, direction: DVec3) -> Option<(f64, f64)> {
         let ground = if direction.z < 0.0 { self.height_m / -direction.z } else { f64::INFINITY };
         let level = direction.truncate().length();
@@ -103,7 +103,7 @@ pub struct Bench {
     depth: wgpu::Texture,
     time_s: f64,
     frame_id: u64,
-    /// cd/m^2 that shows as white.
+    /// Luminance that the exposure shows as white, cd/m^2.
     white: f64,
     host: (Vec<[u16; 4]>, Vec<f32>),
 }
@@ -114,7 +114,8 @@ impl Bench {
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context =
             Context::new(device.clone(), shared, ContextDesc { sky: coarse_sky(), ..Default::default() }).unwrap();
-        // What the planner says of a volume is held by a test of its own here, and by tests/clouds/plan.rs.
+        // Other tests check what the planner does with clouds as a volume: one in this binary, and
+        // tests/clouds/plan.rs.
         context.set_cloud_model(CloudModel::Deck);
         let (view, plain) = (View::new(&context).unwrap(), View::new(&context).unwrap());
         let color = texture(&device, SIZE, wgpu::TextureFormat::Rgba16Float, 1);
@@ -123,17 +124,17 @@ impl Bench {
         Self { device, context, view, plain, color, depth, time_s: 0.0, frame_id: 0, white: 1.0, host }
     }
 
-    /// A planned view that has seen nothing yet.
+    /// Replaces the planned view by a new one, which has no history.
     pub fn start_anew(&mut self) {
         self.view = View::new(&self.context).unwrap();
     }
 
-    /// Draws clouds as a volume from now on.
+    /// Draws clouds as a volume in all later pictures.
     pub fn draw_volumes(&mut self) {
         self.context.set_cloud_model(CloudModel::Volume);
     }
 
-    /// Weather, light and the host's picture of a scene; the tables are brought to it whole.
+    /// Sets the weather, the light and the host's picture of a scene, and builds the sky's tables for it completely.
     pub fn set(&mut self, shot: &PlanScene) {
         self.time_s += 10.0;
         let weather = Weather::preset(shot.weather).unwrap();
@@ -155,7 +156,7 @@ impl Bench {
                 let seen = DVec3::new(ndc(x, SIZE.0) * aspect * half, -ndc(y, SIZE.1) * half, -1.0).normalize();
                 let direction = to_world * seen;
                 let (range, albedo) = shot.hit(direction).unwrap_or((f64::INFINITY, 0.0));
-                // Reversed, infinite: near over the distance from the camera's plane.
+                // Reversed infinite depth: the near distance over the distance from the camera's plane.
                 self.host.1.push((0.1 / (range * -seen.z)) as f32);
                 let v = half::f16::from_f64(albedo * lit).to_bits();
                 self.host.0.push([v, v, v, half::f16::ONE.to_bits()]);
@@ -189,7 +190,7 @@ impl Bench {
             ..Frame::new(self.frame_id, shot.camera(), &self.color, shot.has_depth.then_some(&self.depth))
         };
         let view = if planned { &mut self.view } else { &mut self.plain };
-        // What a plan decides on.
+        // The stages whose parts a plan decides on.
         let stages = Stages::PREPARE.with(Stages::BACKGROUND).with(Stages::MEDIUM);
         let stages = if shot.particles { stages.with(Stages::PARTICLES) } else { stages };
         view.record(&self.context, &frame, stages).unwrap();
@@ -198,18 +199,18 @@ impl Bench {
         pixels.iter().map(luminance).collect()
     }
 
-    /// The picture with everything in it.
+    /// Draws the picture with all parts.
     pub fn everything(&mut self, shot: &PlanScene) -> Vec<f64> {
         self.draw(shot, false, FrameFlags::NO_HISTORY)
     }
 
-    /// Time goes on.
+    /// Advances the host's time.
     pub fn pass(&mut self, seconds: f64) {
         self.time_s += seconds;
         self.context.update(self.time_s).unwrap();
     }
 
-    /// The picture that the planned view draws after so many frames.
+    /// Draws `frames` frames with the planned view; returns the last picture and its plan.
     pub fn planned(&mut self, shot: &PlanScene, frames: u64) -> (Vec<f64>, Plan) {
         self.view.set_budget(Budget { tolerance: Some(shot.tolerance), ..Budget::default() }).unwrap();
         let mut picture = self.draw(shot, true, FrameFlags(0));
@@ -219,17 +220,17 @@ impl Bench {
         (picture, self.view.plan().clone())
     }
 
-    /// The picture of a host without a budget.
+    /// Draws the picture of a host that sets no budget; returns its plan too.
     pub fn unplanned(&mut self, shot: &PlanScene) -> (Vec<f64>, Plan) {
         (self.draw(shot, true, FrameFlags(0)), self.view.plan().clone())
     }
 
-    /// A picture that may not depend on earlier ones.
+    /// Draws a picture that may not depend on earlier ones.
     pub fn pure(&mut self, shot: &PlanScene) -> Vec<f64> {
         self.draw(shot, true, FrameFlags::NO_HISTORY)
     }
 
-    /// The picture with its parts at just these rungs.
+    /// Draws the picture with its parts at these rungs.
     pub fn pinned(&mut self, shot: &PlanScene, rungs: &[usize]) -> Vec<f64> {
         self.view.set_budget(Budget::pinned(rungs)).unwrap();
         self.draw(shot, true, FrameFlags(0))

@@ -1,4 +1,4 @@
-//! Predicted times and errors against what they were, by a fake clock.
+//! Predicted times and errors against the actual ones, by a fake clock.
 
 use welkin::{
     frame::FrameFlags,
@@ -7,8 +7,8 @@ use welkin::{
 
 use crate::scenes::{Bench, PlanScene};
 
-/// A machine on which the parts cost other shares of a pixel than where the constants were measured: its time of a
-/// frame by the host's own pixels, ms.
+/// A machine on which the parts' relative costs differ from those of the machine on which the constants were measured:
+/// the time of its frame by the number of the host's pixels, ms.
 struct Machine {
     ms: f64,
     air: f64,
@@ -29,12 +29,12 @@ impl Machine {
 fn times_are_predicted_within_a_quarter_in_seeded_scenes() {
     let mut bench = Bench::new();
     let machine = Machine { ms: 6.0, air: 0.7, fog: 0.25, sky: 0.04 };
-    // Of frames whose scene and parts are some frames old, and of all.
+    // Errors in frames whose scene and parts have not changed for some frames, and in all frames.
     let (mut settled, mut all) = (Vec::new(), Vec::new());
     for seed in 0..24 {
         let shot = PlanScene::seeded(seed);
         bench.set(&shot);
-        // Without time to spare for everything in most of them.
+        // Most scenes cannot be drawn in full in this time.
         let budget = Budget { tolerance: Some(shot.tolerance), milliseconds: Some(11.0), ..Budget::default() };
         bench.view.set_budget(budget).unwrap();
         let (mut before, mut since) = (vec![true; 4], 0);
@@ -83,7 +83,7 @@ fn a_report_says_what_was_predicted_and_what_was_found() {
     bench.planned(&near, 1);
     let report = *bench.view.report();
     assert!((report.prediction.milliseconds.unwrap() - 4.0).abs() < 1e-9 && report.reported_ms.is_none(), "{report:?}");
-    // Another scene: what was gauged says nothing of it.
+    // Another scene, on which the earlier gauge gives no information.
     bench.pure(&near);
     let cut = bench.view.report().prediction;
     assert!(cut.milliseconds.is_none() && cut.error.is_none(), "{cut:?}");
@@ -94,7 +94,7 @@ fn tables_that_follow_the_air_take_longer_where_there_is_no_time_for_them() {
     let mut bench = Bench::new();
     let clear = PlanScene { weather: "clear", ..PlanScene::yard() };
     let smoke = PlanScene { weather: "smoke", ..PlanScene::yard() };
-    // Frames with work on tables after a change of air, where a frame takes 10 ms.
+    // Number of frames that work on tables after a change of air; a frame takes 10 ms.
     let mut frames_with = |budget: f64| {
         bench.set(&clear);
         bench.everything(&clear);

@@ -1,6 +1,7 @@
-//! The widget of `docs/hosts-qt.md` as a Qt user meets it: taken from the article, compiled after Qt's headers, run
-//! with and without samples in both profiles, twice in a window, resized, under an overlay. Needs Qt 6's development
-//! files; without them it is skipped with a line. `WELKIN_LIB` names a ready library; without it the test builds one.
+//! The widget of `docs/hosts-qt.md` as a Qt user builds it: taken from the article, compiled after Qt's headers, run
+//! with and without multisampling in both OpenGL profiles, twice in a window, resized, under an overlay. The test needs
+//! Qt 6's development files; without them it prints a line and passes. `WELKIN_LIB` names a library that is already
+//! built; without it the test builds one.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -8,7 +9,7 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Debian's packages with what the widget is built against.
+/// Debian's packages that the widget is built against.
 const PACKAGES: &str = "qt6-base-dev libqt6opengl6-dev";
 
 fn root() -> &'static Path {
@@ -32,7 +33,7 @@ fn library() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
 }
 
-/// Compiler flags of Qt, if its headers and libraries are there.
+/// Compiler flags of Qt, if its headers and libraries are installed.
 fn qt(folder: &Path) -> Option<Vec<String>> {
     let flags = run(Command::new("pkg-config").args(["--cflags", "--libs", "Qt6OpenGLWidgets"])).ok()?;
     let flags: Vec<String> = flags.split_whitespace().map(str::to_owned).collect();

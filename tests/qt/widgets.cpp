@@ -1,5 +1,5 @@
-/* The article's widget, twice in one window with an overlay, resized; it looks at its own pixels. Arguments: samples, core or compatibility,
- * a folder for pictures. */
+/* The article's widget, twice in one window with an overlay, resized; the program checks the widgets' pixels.
+ * Arguments: samples, core or compatibility, a folder for pictures. */
 #include <QApplication>
 #include <QHBoxLayout>
 #include <QSurfaceFormat>
@@ -17,7 +17,7 @@ static void expect(bool holds, const char *what, const QColor &seen)
     failed++;
 }
 
-/* Counts the samples of the framebuffer that it draws into. */
+/* Widget that counts the samples of the framebuffer it draws into. */
 struct Counted : WeatherWidget {
     using WeatherWidget::WeatherWidget;
     void drawWorld(int w, int h) override
@@ -28,7 +28,8 @@ struct Counted : WeatherWidget {
     GLint samples = -1;
 };
 
-/* A sky that is bluer than red above, weather before the dark board, and the overlay's text untouched. */
+/* Checks that the sky above has more blue than red, that the dark board is veiled by weather, and that the overlay's
+ * text is unchanged. */
 static void look(const QImage &picture)
 {
     const int w = picture.width(), h = picture.height();

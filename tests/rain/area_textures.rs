@@ -1,5 +1,5 @@
-//! Rain areas in the textures for the host's own transparent shaders: what lies behind a shaft is veiled there as in
-//! the picture.
+//! Rain areas in the textures for the host's own transparent shaders: these veil what lies behind a shaft of rain as
+//! the picture does.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -11,7 +11,7 @@ use welkin_support::rain_scene::upright;
 
 use crate::areas::{fair, host, shower, square};
 
-/// The published snippet's lookup, by hand: bilinear within a tile, linear between slices.
+/// The published snippet's lookup, written again: bilinear within a tile, linear between slices.
 fn sample(texels: &[[f32; 4]], uv: DVec2, distance: f64) -> f64 {
     let s = ((distance / 20.0 + 1.0).ln() * 3.639_611_2).clamp(0.0, 31.0);
     let near = s.floor().min(30.0);
@@ -64,7 +64,7 @@ fn what_is_behind_a_shaft_is_veiled_in_the_textures_as_in_the_picture() {
                 least = least.min(want_through);
                 let of = [(t - want_through).abs(), (l - want_light).abs() / f64::from(clear[at][1]).max(1000.0)];
                 off = [off[0].max(of[0]), off[1].max(of[1])];
-                // Half-way between two slices in the midst of a shaft a straight line is not what is there.
+                // Halfway between two slices in the middle of a shaft, linear interpolation is not exact.
                 let slice = (p.length() / 20.0 + 1.0).ln() * 3.639_611_2;
                 let limit = if (slice - slice.round()).abs() < 0.06 { 0.035 } else { 0.13 };
                 assert!(

@@ -1,5 +1,5 @@
-//! Rain areas: what falls where, what a camera sees of it from outside, on the rim and inside, and that all of it moves
-//! and is kept as the weather is.
+//! Rain areas: the rain at each place, the picture from outside, on the rim and inside, and that areas move and are
+//! saved as the weather is.
 
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub fn fair(wind_m_s: f64) -> Weather {
 
 pub fn host(weather: &Weather, areas: &[RainArea]) -> Host {
     let mut host = Host::new((160, 90));
-    // Rain alone: tests/clouds has the cloud over it.
+    // These tests draw the rain alone; tests/clouds checks the cloud over an area.
     host.context.set_cloud_model(CloudModel::Deck);
     host.context.set_weather(weather, 0.0, 0.0).unwrap();
     host.context.set_rain_areas(areas).unwrap();
@@ -55,7 +55,7 @@ fn rate(context: &Context, x: f64, y: f64) -> f64 {
     context.rain_at(DVec3::new(x, y, 0.0), context.time_s()).unwrap().rate_mm_h
 }
 
-/// Mean of the picture's luminance over a part of it, in shares of width and height.
+/// Mean luminance over a part of the picture, whose bounds are shares of its width and height.
 fn mean(host: &Host, [x0, y0, x1, y1]: [f64; 4]) -> f64 {
     let (w, h) = host.size;
     let at = |v: f64, n: u32| (v * f64::from(n)) as u32;
@@ -81,7 +81,8 @@ fn rates_are_those_of_the_place_and_half_in_the_middle_of_the_rim() {
         for (y, want) in [(0.0, 23.0), (1099.0, 23.0), (1300.0, 13.0), (1500.1, 3.0), (9000.0, 3.0), (-1300.0, 13.0)] {
             assert!((at(y) / want - 1.0).abs() < 2e-3, "{y} m: {} mm/h, want {want}", at(y));
         }
-        // What lands on a level surface is the same rate, and what the ground shows is not drier than it.
+        // The rate that lands on a level surface is the same, and the drawn ground is not drier than that rate makes
+        // it.
         let surface = RainSurface {
             position: DVec3::new(0.0, 1300.0, 0.0),
             normal: DVec3::Z,
@@ -94,7 +95,7 @@ fn rates_are_those_of_the_place_and_half_in_the_middle_of_the_rim() {
         assert!(rate(&host.context, 0.0, 0.0) > 0.0);
         assert!(host.context.rain_at(DVec3::new(0.0, 0.0, 1600.0), 0.0).unwrap().rate_mm_h <= 3.001, "over its cloud");
     }
-    // A dry hole, and a second area over the first.
+    // An area without rain, laid over the first.
     let host = host(&steady, &[shower(0.0, 23.0), RainArea { rate_mm_h: 0.0, ..shower(1800.0, 0.0) }]);
     assert_eq!(rate(&host.context, 0.0, 1800.0), 0.0);
     let mut last = rate(&host.context, 0.0, -3000.0);
@@ -105,7 +106,7 @@ fn rates_are_those_of_the_place_and_half_in_the_middle_of_the_rim() {
     }
 }
 
-/// Conditions of a place hold what falls there: in an area, on its rim and outside, under and above the clouds.
+/// The conditions at a place report the rain there: in an area, on its rim and outside, under and above the clouds.
 #[test]
 fn conditions_of_a_place_are_those_of_the_rain_there() {
     // A visibility that leaves the rain all of its extinction.
@@ -126,8 +127,8 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
             let (rate, ice) = (falls.rain_mm_h + falls.drizzle_mm_h, falls.hail_mm_h + falls.ice_pellets_mm_h);
             assert!((rate - rain.rate_mm_h).abs() <= 1e-3 * rain.rate_mm_h, "{at}: {rate} {}", rain.rate_mm_h);
             assert!((ice - rain.ice_mm_h).abs() <= 1e-3 * rain.ice_mm_h, "{at}: {ice} {}", rain.ice_mm_h);
-            // The weather's laws are fits to the sizes at sea level, within 0.5 % for each kind of rain and 3 % for
-            // stones; in thinner air all fall faster and are fewer.
+            // The weather's laws are fitted to drop sizes at sea level, within 0.5 % for each kind of rain and 3 % for
+            // stones; in thinner air all drops and stones fall faster and are fewer.
             let faster = factor_in(&c.air, z) / factor_in(&c.air, 0.0);
             let truth = faster * (rain.extinction_per_m + rain.stone_extinction_per_m);
             let limit = 5e-3 * rain.extinction_per_m + 0.03 * rain.stone_extinction_per_m;
@@ -136,7 +137,7 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
             let total = without.extinction_per_m + added;
             assert!((c.extinction_per_m / total - 1.0).abs() < 1e-9, "{at}: {} {total}", c.extinction_per_m);
             assert_eq!(c.visibility_m(), welkin::weather::LN_20 / c.extinction_per_m);
-            // All else is the weather's, and so is what a camera there draws from.
+            // All other conditions are the weather's, and so are the parameters of a camera there.
             assert_eq!((c.air, c.aerosol, c.surface), (without.air, without.aerosol, without.surface));
             let scene = |h: &Host| h.context.scene_at(at, 0.0).unwrap().conditions;
             assert_eq!(scene(&areas), scene(&dry));
@@ -144,7 +145,7 @@ fn conditions_of_a_place_are_those_of_the_rain_there() {
     }
 }
 
-/// It rains within a low deck too: on the hill, the crane and the windscreen that are inside of its lower half.
+/// Rain also falls within the lower half of a low deck, for instance on a hill, a crane or a windscreen there.
 #[test]
 fn rain_falls_inside_of_a_low_deck_and_not_over_it() {
     for (kind, base_m, begins_m) in [
@@ -168,7 +169,7 @@ fn rain_falls_inside_of_a_low_deck_and_not_over_it() {
     }
 }
 
-/// The query's closed form against the sum of what `rain_at` answers along the way.
+/// The query's closed form against the sum of what `rain_at` returns along the way.
 #[test]
 fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
     // A visibility that leaves the rain all of its extinction.
@@ -202,8 +203,8 @@ fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
     }
 }
 
-/// Along a side of a polygon, up and down, and over an area whose cloud is lower than the weather's: ways that are
-/// parallel to what bounds it.
+/// Ways that are parallel to an area's bounds: along a side of its polygon, up and down, and over an area whose cloud
+/// is lower than the weather's.
 #[test]
 fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain_too() {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 3.0);
@@ -243,7 +244,7 @@ fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain
     assert_eq!((above.transmittance[1], above.visibility_m), (1.0, f64::INFINITY));
 }
 
-/// A dry hole takes rain from the fog: not where there is none in the picture.
+/// An area without rain reduces the fog's extinction by that of rain, but not where the picture draws no rain.
 #[test]
 fn what_falls_alone_takes_nothing_away_that_was_not_drawn() {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 20.0);
@@ -259,7 +260,7 @@ fn what_falls_alone_takes_nothing_away_that_was_not_drawn() {
     assert!(least(&[Stages::ALL.without(Stages::TONE)]) >= 0.0);
 }
 
-/// What is drawn of a white wall behind a shaft 5 km away is what the f64 integral leaves of its contrast.
+/// The drawn contrast of a white wall behind a shaft 5 km away is the one that the f64 integral gives.
 #[test]
 fn a_shaft_from_afar_takes_what_the_integral_says() {
     let mut host = Host::new((320, 180));
@@ -293,7 +294,7 @@ fn a_shaft_from_afar_takes_what_the_integral_says() {
             let at = (y * host.size.0 + x) as usize;
             let got = veiled[at] / clear[at];
             (drawn, asked, count) = (drawn + got, asked + want, count + 1.0);
-            // Its curtains make some darker and some brighter.
+            // The shaft's curtains make some pixels darker and some brighter.
             worst = worst.max((got - want).abs());
             assert!(want < 0.999 || (got - 1.0).abs() < 0.01, "{x} {y}: {got} beside the shaft");
         }
@@ -302,7 +303,7 @@ fn a_shaft_from_afar_takes_what_the_integral_says() {
     }
 }
 
-/// A dark room of which only the drops are bright: the sum of what they cover.
+/// Sum of the drops' cover, drawn in a dark room where only they are bright.
 fn brightness(host: &mut Host, position: DVec3, [x0, x1]: [f64; 2]) -> f64 {
     host.look(position, DVec3::Y);
     host.boxes = vec![welkin_support::rain_scene::upright([position.x, position.y + 12.0, 0.0], [60.0, 0.5, 60.0])];
@@ -314,7 +315,7 @@ fn brightness(host: &mut Host, position: DVec3, [x0, x1]: [f64; 2]) -> f64 {
 #[test]
 fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     let area = RainArea { shape: square(1500.0), rim_m: 1400.0, ..shower(0.0, 50.0) };
-    // Under one sky, or drops would be brighter where less of the shower's cloud is overhead.
+    // An even cloud layer: under the shower's own cloud drops would be brighter where less of it is overhead.
     let even = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 4000.0)];
     let mut host = host(&Weather { clouds: even, ..fair(0.0) }, &[area]);
     let eye = |x: f64| DVec3::new(x, 0.0, 2.0);
@@ -325,7 +326,7 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
     assert!((half - 0.5).abs() < 0.06, "{half} of the drops in the middle of the rim");
     let outside = brightness(&mut host, eye(1600.0), whole) / inside;
     assert!(outside == 0.0 && host.view.report().rain.drops == 0, "{outside}");
-    // On the border of a narrow rim it rains to the one side only.
+    // At the border of an area with a narrow rim rain falls on one side only.
     host.context.set_rain_areas(&[RainArea { rim_m: 1.0, ..area }]).unwrap();
     let mut seen = Vec::new();
     for model in [RainModel::Drops, RainModel::Cones, RainModel::Automatic] {
@@ -334,13 +335,13 @@ fn drops_fall_inside_half_of_them_in_the_middle_of_the_rim_and_none_outside() {
         let mut sides = |x: f64| [[0.0, 0.45], [0.55, 1.0]].map(|part| brightness(&mut host, eye(x), part) / inside);
         let [left, right] = sides(1500.0);
         assert!(left > 0.5 && right < 1e-3, "{model:?}: {left} {right} on the border");
-        // Cones show the rain of some metres away to who stands dry, and that it is dry there to who stands in the
-        // rain.
+        // From a dry place cones show the rain some metres away; from a place in the rain they show that it is dry some
+        // metres away.
         let ([outside, _], [_, inside]) = (sides(1505.0), sides(1495.0));
         println!("{model:?}: {outside} from 5 m outside, {inside} from 5 m inside");
         seen.push((outside, inside));
     }
-    // Where drops end, the veil of the area is what is left to see.
+    // Beyond the drawn drops only the area's veil remains visible.
     for (outside, inside) in &seen[1..] {
         assert!((1.15..3.0).contains(&(outside / seen[0].0)) && *inside < 0.92, "{seen:?}");
     }
@@ -363,7 +364,8 @@ fn a_camera_that_drives_through_the_rim_sees_no_jump() {
         let all = (values[0].0 / values[values.len() - 1].0).ln().abs();
         (steps.fold(0.0, f64::max), all)
     };
-    // From 1.5 km before the border to the middle, then finely where drops come and where the rim ends.
+    // From 1.5 km before the border to the middle in large steps, then in small steps where drops begin and where the
+    // rim ends.
     let (most, all) = walk(-3000.0, 25.0, 120, &mut shown);
     assert!(all > 0.05 && most < 0.03, "{most} in 25 m, {all} in all");
     for from in [-1560.0, -1510.0, -1110.0] {
@@ -426,7 +428,7 @@ fn areas_go_with_the_wind_the_same_way_in_any_steps_and_after_loading() {
     assert_eq!(bits(&at_once), bits(&loaded));
     assert_eq!(at_once.state_hash().unwrap(), in_steps.state_hash().unwrap());
     assert_eq!(at_once.state_hash().unwrap(), loaded.state_hash().unwrap());
-    // The centre has gone where the wind has carried the air: round it lies the same rain.
+    // The centre has moved as far as the wind has carried the air; the rain round it is the same.
     let moved = at_once.wind_displacement(60.0).unwrap();
     let there = RainArea { center_m: moved.to_array(), ..shower(0.0, 20.0) };
     let mut host = host(&fair(0.0), &[there]);
@@ -518,7 +520,7 @@ fn pictures_of_a_shaft_from_afar_at_its_edge_and_inside() {
     }
 }
 
-/// The OpenGL driver, without compute shaders, draws what the Vulkan one does.
+/// The OpenGL driver, without compute shaders, draws the same as the Vulkan driver.
 #[test]
 fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
     let mut beside = RainArea { center_m: [2600.0, 7500.0, 0.0], shape: square(1300.0), ..shower(0.0, 4.0) };
@@ -548,7 +550,8 @@ fn both_drivers_draw_the_same_shaft_and_the_same_rim() {
     }
 }
 
-/// In Earth-centred coordinates an area lies on the round ground, goes along it, and is nowhere on the other side.
+/// In Earth-centred coordinates an area lies on the curved ground, moves along it, and does not appear on the opposite
+/// side of the Earth.
 #[test]
 fn areas_lie_on_a_round_planet_too() {
     let host = Host::new((16, 16));
@@ -565,7 +568,7 @@ fn areas_lie_on_a_round_planet_too() {
     context.set_rain_areas(&[area, equator]).unwrap();
     let rate = |at: DVec3, time_s: f64| context.rain_at(at, time_s).unwrap().rate_mm_h;
     assert!((rate(start, 0.0) - 20.0).abs() < 1e-3 && rate(place(48.03, 11.0), 0.0) == 0.0);
-    // 20 km to the north a quarter of an hour and more later.
+    // The area is 20 km to the north more than a quarter of an hour later.
     assert!(rate(start, 1000.0) == 0.0 && (rate(place(48.18, 11.0), 1000.0) - 20.0).abs() < 1e-3);
     assert!(rate(place(0.0, 11.0), 0.0) > 19.0);
     assert_eq!(rate(place(0.0, -169.0), 0.0), 0.0, "straight below it");

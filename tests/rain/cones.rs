@@ -1,5 +1,5 @@
-//! Rain on cones: as much of the picture as drops hide, nothing to see at the tips, moving as the air and the camera
-//! do.
+//! Rain on cones: the cones hide as much of the picture as drops do, their tips are invisible, and they move with the
+//! air and the camera.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use welkin::{
@@ -27,14 +27,15 @@ fn cones(size: (u32, u32)) -> Host {
     host
 }
 
-/// So many streaks that chance hardly counts, and hardly one of them hides another.
+/// Sets so many streaks, each of which hides so little, that their mean hardly depends on chance and overlaps do not
+/// matter.
 fn many_streaks(host: &mut Host) {
     let many = RainSettings { model: RainModel::Cones, most_drops: Some(8_000_000), ..RainSettings::default() };
     host.view.set_rain(many).unwrap();
 }
 
-/// Light of the drops before a black wall by day, mean over the picture: half floats round what is small as finely as
-/// what is large, where they cut off what little drops take from white.
+/// Mean light of the drops over a picture of a black wall by day. Against black, half floats round the little light of
+/// drops with the same relative error as any; against white, the little that drops hide would be lost in rounding.
 fn light(host: &mut Host) -> f64 {
     host.draw(|_, _| [0.0; 3]);
     host.record(Stages::PREPARE.with(Stages::PARTICLES)).unwrap();
@@ -56,11 +57,11 @@ fn cones_hide_as_much_as_the_drops_they_stand_for() {
             });
             mean(&each.collect::<Vec<_>>())
         });
-        // They stand for drops up to a greater distance.
+        // Cones stand for drops up to a greater distance.
         let more = (BANDS_M[CONES] - BANDS_M[0]) / (HIDDEN_M - BANDS_M[0]);
         println!("{rate} mm/h: cones {:.4} of drops", seen[1] / seen[0] / more);
         assert!((seen[1] / seen[0] / more - 1.0).abs() < 0.07, "{rate} mm/h: {seen:?}");
-        // A wall at 3.5 m hides what the two outer cones stand for.
+        // A wall at 3.5 m hides the rain that the two outer cones stand for.
         host.boxes[0] = upright([0.0, 3.5, 300.0], [2000.0, 1e-3, 2000.0]);
         let near = light(&mut host);
         let part = (3.75 - BANDS_M[0]) / (BANDS_M[CONES] - BANDS_M[0]);
@@ -87,7 +88,7 @@ fn what_cones_hide_is_the_optical_depth_of_their_drops() {
     }
 }
 
-/// Cover of each pixel of a camera amid white walls that looks along `forward`.
+/// Cover of each pixel of a camera among white walls that looks along `forward`.
 fn cover(host: &mut Host, forward: DVec3, up: DVec3) -> Vec<f64> {
     let aspect = f64::from(host.size.0) / f64::from(host.size.1);
     host.camera = Camera::look_to(DVec3::new(0.0, 0.0, 300.0), forward.normalize(), up, 0.9, aspect, NEAR_M);
@@ -153,7 +154,7 @@ fn correlation(pairs: &[(f64, f64)]) -> f64 {
     sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
 }
 
-/// What a camera sees in a direction does not depend on where else it looks.
+/// The picture in a direction does not depend on how the camera is turned.
 #[test]
 fn a_camera_that_turns_does_not_drag_the_streaks_along() {
     let mut host = amid_walls((320, 240));
@@ -210,14 +211,14 @@ fn streaks_move_alike_at_any_time_and_no_change_throws_them() {
         let apart = step(&pictures[0], &pictures[39]);
         assert!(most < 1.5 * mean && mean < 0.5 * apart, "t {t}: a step of {most}, {mean} on the mean, {apart} in all");
         moved.push(mean);
-        // The camera brakes a little: the picture changes as little as in a few such steps.
+        // The camera brakes a little: the picture changes as little as by a few such steps.
         let before = pictures.pop().unwrap();
         host.velocity_m_s = DVec3::new(0.0, 0.05, 0.0);
         let jolt = step(&before, &through(&mut host));
         host.velocity_m_s = DVec3::ZERO;
         assert!(jolt < 4.0 * mean, "t {t}: {jolt} against {mean}");
     }
-    // Other streaks, the same rain.
+    // The streaks are others; the rain is the same.
     assert!((0.4..2.5).contains(&(moved[1] / moved[0])), "{moved:?}");
 }
 
@@ -255,8 +256,8 @@ fn cones_leave_a_cab_dry_and_a_veil_draws_nothing() {
     assert_eq!(host.view.report().passes, 0);
 }
 
-/// The closed form by which the plan knows what streaks are worth, against pictures of them: the deviation from pixel
-/// to pixel of what they hide.
+/// Compares the closed form by which the plan weighs streaks with pictures: the deviation of their cover from pixel to
+/// pixel.
 #[test]
 fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
     let mut host = amid_walls((320, 180));
@@ -284,7 +285,7 @@ fn streaks_stand_out_as_the_sum_of_their_squared_covers_says() {
             "{rate} mm/h at {speed} m/s, gain {gain}: deviation {:.5}, by the closed form {want:.5}, {ratio:.3}",
             variance.sqrt()
         );
-        // In light rain cones stand out more than the sum says: their texture has no fewer streaks there.
+        // In light rain cones deviate more than by the closed form, because their texture does not get fewer streaks.
         let most = if rate < 10.0 { 1.35 } else { 1.15 };
         assert!((0.85..most).contains(&ratio), "{rate} mm/h at {speed} m/s, gain {gain}: {ratio}");
     }

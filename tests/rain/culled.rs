@@ -1,4 +1,4 @@
-//! Drops by a list of those that the picture shows: the picture that all of them, asked one by one, make.
+//! Drops drawn from a list of those in the picture: the same picture as when every drop is tested one by one.
 
 use glam::{DMat4, DVec3, DVec4};
 use welkin::{
@@ -12,7 +12,7 @@ use welkin_support::rain_scene::{Host, rain, upright};
 
 use crate::shelter::map;
 
-/// Without compute shaders, where each drop is drawn, and with them.
+/// One host without compute shaders, which draws every drop, and one with them.
 fn hosts(backends: wgpu::Backends) -> [Host; 2] {
     [true, false].map(|force_tier0| {
         let options = DeviceOptions { backends, force_tier0, ..DeviceOptions::default() };
@@ -28,8 +28,8 @@ fn picture(host: &mut Host) -> Vec<[f32; 4]> {
     host.pixels()
 }
 
-/// How far apart two pictures are: by roundings of half floats but where the end of a streak falls on the other side of
-/// a pixel's middle.
+/// Checks that two pictures differ only by the rounding of half floats, except where the end of a streak falls on the
+/// other side of a pixel's middle.
 fn same(a: &[[f32; 4]], b: &[[f32; 4]], what: &str) {
     let mut mean = 0.0;
     let mut apart = 0;
@@ -44,7 +44,7 @@ fn same(a: &[[f32; 4]], b: &[[f32; 4]], what: &str) {
     assert!(mean < 2e-5 && apart * 500 < a.len(), "{what}: {mean} on the mean, {apart} pixels");
 }
 
-/// Something to draw, and what makes it so.
+/// Name of a scene, and the function that sets it up.
 type Scene = (&'static str, fn(&mut Host));
 
 fn weather(host: &mut Host, weather: &Weather) {

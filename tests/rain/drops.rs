@@ -1,4 +1,4 @@
-//! Drops against their reference: where they are, what they cover, where it is dry.
+//! Drops against their reference: where they are, how much they cover, where it is dry.
 
 use glam::{DMat4, DVec2, DVec3};
 use welkin::{
@@ -12,15 +12,16 @@ use welkin::{
 };
 use welkin_support::rain_scene::{Host, rain, upright};
 
-/// Radiance of the host's picture: far above what drops send at night, within half floats.
+/// Radiance of the host's picture: far above the light of drops at night, within the range of half floats.
 pub const WHITE: f64 = 3e4;
 
-/// A host at night before a white wall at the horizon, so that each pixel says what the drops let through: drops alone.
+/// A host at night in front of a white wall at the horizon, which draws only drops: each pixel shows the share of light
+/// that they let through.
 pub fn white(size: (u32, u32)) -> Host {
     night(Host::new(size))
 }
 
-/// See [`white`].
+/// Sets night and drops alone on a host, as [`white`] has them.
 pub fn night(mut host: Host) -> Host {
     host.view.set_rain(RainSettings { model: RainModel::Drops, ..RainSettings::default() }).unwrap();
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
@@ -43,8 +44,8 @@ pub fn classes(weather: &Weather, most: u32) -> Classes {
     Classes::new(&derive(weather).unwrap().precipitation, 1.0, most)
 }
 
-/// What the discs of the drawn drops hide up to `range_m`, as an optical depth: half of their extinction, the other
-/// half being diffraction.
+/// Optical depth of the drawn drops' discs up to `range_m`: half of the drops' extinction, whose other half is
+/// diffraction.
 pub fn depth_to(classes: &Classes, range_m: f64) -> f64 {
     let n = 4000;
     let h = range_m / f64::from(n);
@@ -63,7 +64,7 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
         let mut seen = Vec::new();
         for k in 0..16 {
             host.context.update(t + 0.3 * f64::from(k)).unwrap();
-            // Other drops, since those of a cell come again.
+            // Other drops: those of one cell repeat.
             host.look(DVec3::new(1.7 * f64::from(k), 0.3 * f64::from(k), 300.0), DVec3::Y);
             seen.push(mean(&through(&mut host)));
         }
@@ -72,7 +73,7 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
         let near = (got / want - 1.0).abs() < 0.12 || (got - want).abs() < 2e-4;
         assert!(near, "{rate} mm/h: {got} against {want}");
         host.look(DVec3::new(0.0, 0.0, 300.0), DVec3::Y);
-        // A wall at 1.5 m hides what falls behind it.
+        // A wall at 1.5 m hides the drops behind it.
         host.boxes[0] = upright([0.0, 1.5, 300.0], [2000.0, 1e-3, 2000.0]);
         let near = -mean(&through(&mut host)).ln();
         assert!(near < 0.6 * got && near > 0.02 * got, "{near} of {got}");
@@ -80,8 +81,8 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
     }
 }
 
-/// A camera at 300 m/s sees drops as streaks of 5 m, longer than the drops' reach: they hide no less and no more than
-/// at rest, which is what is left out of the veil.
+/// A camera at 300 m/s sees drops as streaks of 5 m, which are longer than the range of drawn drops. They hide as much
+/// as at rest, which is the amount that the veil leaves out.
 #[test]
 fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
     let mut host = white((240, 135));
@@ -110,14 +111,14 @@ fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
     }
 }
 
-/// What falls between the eye and a wall takes as much of its light with drops before the veil as without: nothing is
-/// counted twice.
+/// The rain in front of a wall takes the same share of the wall's light with drawn drops and veil as with the veil
+/// alone: nothing is counted twice.
 #[test]
 fn drops_and_veil_together_take_what_the_rain_takes() {
     let mut host = white((320, 180));
-    // All of it nearer than where curtains begin.
+    // A wall nearer than the distance at which curtains begin.
     host.boxes[0] = upright([0.0, 20.0, 300.0], [2000.0, 1e-3, 2000.0]);
-    // In mist and rain, and over mist.
+    // A camera in mist and rain, and one above mist.
     let deep = Fog { top_m: Some(2000.0), ..Fog::default() };
     let cases = [(30.0, 700.0, deep), (200.0, 200.0, deep), (30.0, 700.0, Fog::default())];
     for (i, (rate, visibility_m, fog)) in cases.into_iter().enumerate() {
@@ -136,7 +137,7 @@ fn drops_and_veil_together_take_what_the_rain_takes() {
         let is_below = fog.top_m.is_none();
         assert!(c.fog.extinction_per_m > 0.1 * c.extinction_per_m && (c.fog.top_m < 200.0) == is_below, "{:?}", c.fog);
         let extinction_per_m = c.extinction_per_m - if is_below { c.fog.extinction_per_m } else { 0.0 };
-        // The wall is flat: the mean over the picture of the slanted way to it.
+        // The wall is flat: the mean over the picture of the distance along each ray to it.
         let rays = host.rays();
         let n = 60;
         let want: f64 = (0..n * n)
@@ -213,7 +214,7 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
         let t = 10.0 * (i + 1) as f64;
         host.context.set_weather(&rain(30.0, wind), t, 0.0).unwrap();
         host.context.update(t).unwrap();
-        // Inside a cab whose walls are the picture: not one drop.
+        // Inside a cab whose walls fill the picture there is no drop.
         let eye = DVec3::new(0.0, 0.0, 300.0);
         host.look(eye, DVec3::new(0.3, 1.0, 0.1));
         host.boxes = vec![upright([0.0, 2.0, 300.0], [50.0, 1e-3, 50.0])];
@@ -223,7 +224,8 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
         host.context.set_shelters(&[cab]).unwrap();
         let inside = through(&mut host);
         assert!(inside.iter().all(|v| *v == 1.0), "wind {wind}: {:?}", inside.iter().copied().fold(1.0, f64::min));
-        // On the ground under a deck that reaches far enough upwind, looking at the ground: no drop and no splash.
+        // On the ground under a deck that extends far enough upwind, a camera that looks at the ground sees no drop and
+        // no splash.
         host.boxes = Vec::new();
         host.look(DVec3::new(0.0, 0.0, 1.5), DVec3::new(0.0, 1.0, -0.9));
         host.context.set_shelters(&[]).unwrap();
@@ -233,7 +235,7 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
     }
 }
 
-/// What there is no room for is said: of drops by the number that each stands for, of splashes by their rate.
+/// The report tells the rain that had no room: for drops the number that each stands for, for splashes their rate.
 #[test]
 fn the_report_says_what_of_the_rain_there_was_no_room_for() {
     let mut host = white((64, 36));

@@ -1,5 +1,5 @@
-//! Dry places in motion, and those of the default model, whose cones know no distance of their streaks: what shows rain
-//! where rays say that none comes.
+//! Dry places that move, and dry places in the default model, whose cones have no distance for each streak: rain drawn
+//! where rays show that none falls.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -38,7 +38,7 @@ fn a_map_of_a_truck_goes_on_with_it() {
         let fall = host.context.rain_at(eye, t).unwrap().fall_velocity_m_s;
         let truck = Shelter { velocity_m_s: speed, ..upright([0.5, 1.5, 2.9], [1.3, 3.5, 0.9]) };
         let then = Shelter { center_m: truck.center_m - speed * age, ..truck };
-        // As the drops go past it.
+        // Half the side of the maps, across the drops' way.
         let half = 6.0;
         let taken = [fall.z, -3.4, -2.1].map(|z| {
             let f = (DVec3::new(fall.x, fall.y, z) - speed).normalize();
@@ -62,7 +62,7 @@ fn a_map_of_a_truck_goes_on_with_it() {
     assert!(dry > 60 && drawn > 120, "{dry} {drawn}");
 }
 
-/// A cab, and a bus that is longer than the drops of the default model reach.
+/// Checks a cab, and a bus that is longer than the range of the default model's drops.
 #[test]
 fn no_streak_of_the_default_model_is_inside_a_cab() {
     let mut host = white((160, 90));
@@ -74,7 +74,7 @@ fn no_streak_of_the_default_model_is_inside_a_cab() {
         host.velocity_m_s = DVec3::Y * v;
         let eye = DVec3::new(0.0, 0.0, 2.0);
         host.look(eye, DVec3::new(0.05, 1.0, -0.1));
-        // Open to the front: the camera sits at its back end.
+        // The vehicle is open to the front; the camera sits at its back end.
         let place = |c: [f64; 3], h: [f64; 3]| upright((eye + DVec3::from(c)).to_array(), h);
         let cab = place([0.0, 0.5 * long, 0.0], [1.5, 0.5 * long + 0.5, 1.5]);
         host.context.set_shelters(&[Shelter { velocity_m_s: host.velocity_m_s, ..cab }]).unwrap();
@@ -100,7 +100,7 @@ fn no_streak_of_the_default_model_is_inside_a_cab() {
     }
 }
 
-/// Light of the rain in each pixel before what is black, on the mean over some moments.
+/// Light of the rain in each pixel against black, mean over some moments.
 fn lit(host: &mut Host, from_s: f64) -> Vec<f64> {
     let mut sum = vec![0.0; 160 * 90];
     for k in 0..12 {
@@ -112,8 +112,9 @@ fn lit(host: &mut Host, from_s: f64) -> Vec<f64> {
     sum
 }
 
-/// Share of the rain before what pixel `i` shows that rays past the deck leave, of drops that hide so much and fall so;
-/// and whether there are no splashes, which know whether their own place is dry, not how much of the way to it.
+/// Share of the rain in front of the surface in pixel `i` that reaches its place past the deck, by rays; `falls` holds
+/// how much the drops of each size hide, and how they fall. Also whether no splashes are seen there, for these depend
+/// on their own place and not on the way to it.
 fn share(host: &Host, deck: &Shelter, falls: &[(f64, DVec3)], i: usize) -> (f64, bool) {
     let at = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
     let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();
@@ -136,12 +137,12 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
     for (i, wind) in [0.0, 4.0, 12.0].into_iter().enumerate() {
         let t = 100.0 * (i + 1) as f64;
         let mut weather = rain(30.0, wind);
-        // So that rays of one moment do for all.
+        // Without turbulence rays of one moment hold for all moments.
         weather.wind.turbulence_intensity = Some(0.0);
         host.context.set_weather(&weather, t, 0.0).unwrap();
         host.context.update(t).unwrap();
         let air = host.context.carrying_wind(t).unwrap();
-        // What drops of each size hide of all, and how they fall.
+        // Share of the cover that drops of each size have, and their velocity.
         let falls = classes(&weather, u32::MAX).flux.into_iter().filter(|c| c.1 > 0.0);
         let falls: Vec<_> = falls.map(|(d, v, flux)| (flux / v * d * d, air - DVec3::Z * v)).collect();
         // Maps along drops of three sizes.
@@ -152,7 +153,7 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
         });
         let textures = taken.map(|t| map(&host, &[deck], &t, (512, 512)));
         let maps = [0, 1, 2].map(|i| OccluderMap { depth: &textures[i], taken: taken[i] });
-        // Under it looking out, and from outside looking under it.
+        // From under the deck looking out, and from outside looking under it.
         for (k, (what, y)) in [("out", 13.0), ("under", -3.0)].into_iter().enumerate() {
             let t = t + 30.0 * k as f64;
             let eye = DVec3::new(0.0, y, 1.7);
@@ -162,7 +163,7 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
             // The share of each pixel's rain by rays.
             let shares: Vec<_> = (0..open.len()).map(|i| share(&host, &deck, &falls, i)).collect();
             for (by, boxes, maps) in [("a box", &[deck][..], &[][..]), ("maps", &[], &maps[..])] {
-                // The same drops once more.
+                // The saved state brings the same drops again.
                 host.context.load(&start).unwrap();
                 host.context.set_shelters(boxes).unwrap();
                 host.context.set_occluder_maps(maps).unwrap();
@@ -186,7 +187,8 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
                 );
                 let what = format!("wind {wind}, {what}, by {by}");
                 assert!(((got - truth) / all).abs() < 0.06, "{what}: {got} of {all}, {truth} by rays");
-                // From outside no ray is all under it, and small drops blow in as far as to the camera.
+                // From outside no ray lies under the deck over its whole length, and wind blows small drops in as far
+                // as the camera.
                 assert!((kept > 0.0) == (what.contains("out") && wind < 10.0), "{what}: {kept}");
                 assert!(inside <= 0.01 * kept, "{what}: {inside} of {kept}");
             }

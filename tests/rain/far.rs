@@ -63,13 +63,13 @@ fn contrasts(host: &mut Host, distance: f64) -> Vec<f64> {
     white.iter().zip(&black).map(|(w, b)| f64::from(w[1] - b[1])).collect()
 }
 
-/// The same rain has a pattern and leaves as much of contrasts as the query says, on the mean over some minutes.
+/// The drawn rain has a pattern, and its mean contrast over some minutes is the one that the query returns.
 #[test]
 fn contrasts_are_on_the_mean_what_the_query_says() {
     let mut host = Host::new((64, 36));
     let eye = DVec3::new(0.0, 0.0, 8.0);
     host.look(eye, DVec3::Y);
-    // No drop before the boards.
+    // The veil alone, without drops in front of the boards.
     host.view.set_rain(RainSettings { model: RainModel::Veil, ..RainSettings::default() }).unwrap();
     let mut clear = Vec::new();
     let mut weather = Weather { visibility_m: 1e5, ..overcast(0.0, 9.0, 1e5) };
@@ -90,7 +90,8 @@ fn contrasts_are_on_the_mean_what_the_query_says() {
         for i in 0..24 {
             host.context.update(2.0 + 2000.0 * d + 41.0 * f64::from(i)).unwrap();
             let rainy = contrasts(&mut host, d);
-            // In the picture's middle the board is as far as its plane; just above the level no ground lies before it.
+            // In the middle of the picture the distance to the board is that to its plane; just above the horizon no
+            // ground hides it.
             let at = |x: usize| rainy[17 * 64 + x] / clear[17 * 64 + x];
             for x in 20..44 {
                 sum += at(x);
@@ -108,8 +109,8 @@ fn contrasts_are_on_the_mean_what_the_query_says() {
     }
 }
 
-/// By how many pixels two rows of the same rain, two seconds apart, are most alike: at any time as far as the wind has
-/// gone.
+/// Finds the shift in pixels at which two rows of the same rain, two seconds apart, agree best: it is the way of the
+/// wind at any time.
 #[test]
 fn curtains_go_with_the_wind() {
     let mut host = Host::new((256, 144));
@@ -137,20 +138,20 @@ fn curtains_go_with_the_wind() {
             (40..216).map(at).sum::<f64>() / (40..216).map(|i| before[(i - shift) as usize].powi(2)).sum::<f64>().sqrt()
         };
         let best = (-30..=30).max_by(|a, b| alike(*a).total_cmp(&alike(*b))).unwrap();
-        // A pixel is 4 m wide at the board and less before it.
+        // A pixel is 4 m wide at the board, less in front of it.
         println!("{start}: moved {moved}, most alike {best} pixels aside");
         assert!((moved.x - 20.0).abs() < 5.0 && (4..=16).contains(&best), "{start}: {moved} m, {best} pixels");
     }
 }
 
-/// Rings of distance through shell 0, cones and veil to where curtains begin: boards all over the picture, nearer ones
-/// first.
+/// Measures light and contrast at growing distances, through shell 0, cones and veil to where curtains begin, by boards
+/// that fill the picture.
 #[test]
 fn no_ring_shows_where_drops_give_way_to_cones_and_those_to_the_veil() {
     for (rate, visibility_m) in [(5.0, 3000.0), (40.0, 1200.0)] {
         let mut host = Host::new((160, 90));
         host.look(DVec3::new(0.0, 0.0, 400.0), DVec3::Y);
-        // Against a wall that sends no light.
+        // The wall emits no light, so that the picture shows the rain alone.
         host.context.set_weather(&overcast(rate, 4.0, visibility_m), 0.0, 0.0).unwrap();
         let from = 10.0;
         host.context.update(from).unwrap();
@@ -181,7 +182,7 @@ fn no_ring_shows_where_drops_give_way_to_cones_and_those_to_the_veil() {
         for (d, mean, contrast) in &rings {
             println!("{rate} mm/h {d:.2} m: {mean:.2} cd/m2, {:.3} a metre, contrast {contrast:.3}", mean / d);
         }
-        // Neighbours in distance: light a metre and contrast go on, whatever shows them.
+        // Between neighbouring distances neither light per metre nor contrast jumps, whichever model draws it.
         let [mut light, mut contrast] = [(0.0f64, 0.0); 2];
         for w in rings.windows(2) {
             let [(d0, m0, c0), (d1, m1, c1)] = [w[0], w[1]];
@@ -195,7 +196,7 @@ fn no_ring_shows_where_drops_give_way_to_cones_and_those_to_the_veil() {
                 of(&mut contrast, (c1 / c0).ln().abs());
             }
         }
-        // Light that a metre more adds, between distances: of drops, of cones, and of the veil.
+        // Light that one more metre adds, in the range of drops, of cones and of the veil.
         let first_from = |d: f64| *rings.iter().find(|r| r.0 >= d).unwrap();
         let slope = |a: f64, b: f64| {
             let [(a, before, _), (b, after, _)] = [first_from(a), first_from(b)];

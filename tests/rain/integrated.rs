@@ -1,5 +1,5 @@
-//! Drops that are stepped, as a host sees them: the same rain as the drops without a state, whatever time and camera
-//! do.
+//! Drops integrated in time, as a host sees them: the same rain as the drops without a state, however time and camera
+//! move.
 
 use glam::DVec3;
 use welkin::{
@@ -48,7 +48,7 @@ fn they_begin_where_the_lattice_has_them_and_cover_as_much_ever_after() {
         let mut seen = [0.0; 2];
         for k in 1..=24 {
             host.context.update(t + f64::from(k) / 6.0).unwrap();
-            // The step is taken in every frame; every fourth is looked at.
+            // The drops are stepped in every frame; every fourth frame is measured.
             seen[1] += mean(&picture(&mut host)) * f64::from(u8::from(k % 4 == 0));
             if k % 4 == 0 {
                 draws(&mut host, RainModel::Drops);
@@ -93,7 +93,7 @@ fn neither_pauses_jumps_nor_fast_cameras_make_bursts_or_gaps() {
     assert!(each.iter().all(|l| (0.75..1.3).contains(l)), "{each:?}");
 }
 
-/// Air that rises and swerves before a wall.
+/// Wind that rises and turns aside in front of a wall.
 fn updraught() -> WindGrid {
     let nodes = [16u32, 16, 16];
     let count = nodes.iter().product::<u32>() as usize;
@@ -122,7 +122,7 @@ fn a_wind_that_varies_in_space_bends_them_and_is_answered_for() {
     );
     host.context.set_wind_grid(Some(WindGrid { kind: WindGridKind::Whole, ..updraught() })).unwrap();
     assert_eq!(host.context.wind_at(there, 5.0).unwrap().velocity_m_s, DVec3::new(12.0, 0.0, 9.0));
-    // Streaks lean across the picture: pixels beside each other are alike where they lie along them.
+    // The streaks are slanted: pixels are alike along the slant and not across it.
     let (w, h) = (host.size.0 as usize, host.size.1 as usize);
     let lean = |host: &mut Host| {
         let p = picture(host);
@@ -149,7 +149,7 @@ fn a_wind_that_varies_in_space_bends_them_and_is_answered_for() {
 fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
     let mut host = day((160, 90));
     host.context.set_weather(&rain(50.0, 9.0), 1.0, 0.0).unwrap();
-    // The wind blows to where its weather says; the lee is half a house behind the house.
+    // The lee lies downwind of the house, half its length behind it.
     let house = upright([0.0, 0.0, 6.0], [8.0, 8.0, 6.0]);
     host.context.set_shelters(&[house]).unwrap();
     let field = WindFieldDesc { cells: [24, 24, 10], mode: WindFieldMode::Running, ..WindFieldDesc::default() };
@@ -164,7 +164,7 @@ fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
     assert!(behind.truncate().dot(carrying.truncate()) < 0.5 * open.truncate().dot(carrying.truncate()));
     let report = host.context.wind_field_report().unwrap();
     assert_eq!((report.time_s, report.begun_s, report.step_s), (1.0, 1.0, 0.5));
-    // Before the camera the picture is that of other drops.
+    // With the house in front of the camera other drops are drawn.
     host.look(lee, DVec3::new(0.3, 1.0, 0.0));
     draws(&mut host, RainModel::Integrated);
     let with = picture(&mut host);
@@ -177,7 +177,7 @@ fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
     assert_eq!(falls(&other, lee), falls(&host, lee));
     [&mut host, &mut other].into_iter().for_each(|h| h.context.update(2.6).unwrap());
     assert_eq!(other.context.state_hash().unwrap(), host.context.state_hash().unwrap());
-    // A grid of the host's blows in its place, and its end leaves the field.
+    // A wind grid of the host replaces the field; without the grid the field applies again.
     host.context.set_wind_grid(Some(WindGrid { origin: DVec3::splat(-15.0), ..updraught() })).unwrap();
     assert!(falls(&host, DVec3::Z * 14.0).z > 0.0);
     host.context.set_wind_grid(None).unwrap();

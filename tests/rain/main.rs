@@ -1,4 +1,4 @@
-//! Rain as a host sees it, and what else falls and blows: where drops are drawn, what they cover, where it is dry. One
+//! Rain, hail and blowing sand as a host sees them: where drops are drawn, how much they cover, where it is dry. One
 //! binary, so that it links once.
 
 mod area_textures;

@@ -1,5 +1,5 @@
-//! What keeps rain off the cones is asked on a coarse grid and looked up by each pixel: against rays through each pixel
-//! and those round it.
+//! Shelter of the cones is evaluated on a coarse grid, which each pixel looks up: checked against rays through each
+//! pixel and those round it.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -29,7 +29,7 @@ fn cones(device: &std::sync::Arc<Device>) -> Host {
     host
 }
 
-/// How the mean drop falls, by what drops hide.
+/// Velocity of the mean drop, weighted by the drops' cover.
 fn mean_fall(host: &Host, rate: f64, wind: f64) -> DVec3 {
     let (mut sum, mut discs) = (0.0, 0.0);
     for (d, v, flux) in classes(&rain(rate, wind), u32::MAX).flux.into_iter().filter(|c| c.1 > 0.0) {
@@ -38,8 +38,9 @@ fn mean_fall(host: &Host, rate: f64, wind: f64) -> DVec3 {
     host.context.carrying_wind(host.context.time_s()).unwrap() - DVec3::Z * (sum / discs)
 }
 
-/// Whether the rain comes to all places before what a pixel shows and an eighth of a band beyond, or to none, on all
-/// rays up to three cells from it, if that does not hang on where within `slack_m` they are.
+/// Whether all places are dry (`true`) or all in the rain (`false`), from the camera to an eighth of a band behind the
+/// surface in a pixel, on all rays up to three cells from the pixel's. `None` where places differ, or points within
+/// `slack_m` of one.
 fn agreed(host: &Host, boxes: &[Shelter], fall: DVec3, ndc: DVec2, slack_m: f64) -> Option<bool> {
     let far = (host.cast(ndc).unwrap().0.length() * 1.125 + 0.21).min(BANDS_M[CONES]);
     let mut first = None;
@@ -83,7 +84,7 @@ fn away_from_edges_the_grid_says_what_rays_say_of_each_pixel() {
                 (DVec3::new(6.0, 1.0, 2.0), DVec3::new(0.1, -1.0, 0.2)),
             ] {
                 host.look(eye, to);
-                // Off its axis.
+                // The projection is off its axis.
                 host.camera.projection.z_axis.x += 0.2;
                 host.context.set_shelters(&[]).unwrap();
                 host.context.set_occluder_maps(&[]).unwrap();
@@ -105,7 +106,7 @@ fn away_from_edges_the_grid_says_what_rays_say_of_each_pixel() {
                             dry += u32::from(rains);
                         }
                         Some(false) => {
-                            // Maps have the ground too, below which it is dry.
+                            // Maps contain the ground too, and places below it count as dry.
                             let below = if mapped { 0.15 * (1.0 - bare[k]) } else { 0.0 };
                             let lost = seen[k] - bare[k];
                             assert!(lost > -1e-3 && lost < 1e-3 + below, "{what}: {} of {}", seen[k], bare[k]);

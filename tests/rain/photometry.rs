@@ -1,5 +1,6 @@
-//! How much rain shows: streaks against the photometric model of Garg and Nayar (2007), the rain's motion against drops
-//! that are drawn one by one ([`welkin_support::brute_rain`]), and what trainees see by day.
+//! How visible rain is: streaks against the photometric model of Garg and Nayar (2007), the rain's change from frame to
+//! frame against drops that are drawn one by one ([`welkin_support::brute_rain`]), and the rain that trainees see by
+//! day.
 //!
 //! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
 
@@ -42,14 +43,14 @@ fn a_drop_shows_as_much_of_sky_and_ground_as_rays_through_a_sphere_do() {
     }
 }
 
-/// Distance of the board behind the streaks that are looked at.
+/// Distance of the board behind the streaks that are measured.
 const BOARD_M: f64 = 1.9;
 
-/// The picture whose streaks are looked at, so narrow that drops are wider than its pixels.
+/// Size of the picture whose streaks are measured; its field of view is so narrow that drops are wider than a pixel.
 const SIZE: (u32, u32) = (640, 360);
 const NARROW_RAD: f64 = 0.1;
 
-/// Drops of the lattice, and where their streaks are in the picture of a camera that looks north in still air.
+/// Drops of the lattice, each with its streak in the picture of a camera that looks north in still air.
 fn drawn(host: &Host, classes: &Classes, t: f64, shutter_s: f64) -> Vec<(lattice::Drop, Streak)> {
     let focal = 0.5 * f64::from(SIZE.1) / (0.5 * NARROW_RAD).tan();
     lattice::drops(classes, 11, host.camera.position, DVec3::ZERO, t)
@@ -64,12 +65,12 @@ fn drawn(host: &Host, classes: &Classes, t: f64, shutter_s: f64) -> Vec<(lattice
         .collect()
 }
 
-/// How much of a streak is looked at: pixels to either side of its middle, across and along.
+/// How much of a streak is measured: pixels to either side of its middle, across and along.
 fn looked_at(streak: &Streak) -> DVec2 {
     DVec2::new(1.2 * streak.end + 1.5, (0.5 * streak.half.length()).min(20.0))
 }
 
-/// Whether no other lies there: in still air all fall straight down the picture.
+/// Whether no other streak lies in the measured part; in still air all streaks are vertical in the picture.
 fn alone(streak: &Streak, all: &[(lattice::Drop, Streak)]) -> bool {
     let reach = looked_at(streak);
     all.iter().map(|(_, s)| s).filter(|other| other.id != streak.id).all(|other| {
@@ -78,8 +79,8 @@ fn alone(streak: &Streak, all: &[(lattice::Drop, Streak)]) -> bool {
     })
 }
 
-/// What a streak sends over what a drop would that fills the pixel, at each pixel near its middle: how far off its line
-/// (in radii), and that share; how many pixels wide.
+/// Light of a streak over that of a drop that fills the pixel, for each pixel near its middle: the distance from the
+/// streak's line (in radii) and this share. Also the number of pixels across the streak.
 fn section(streak: &Streak, pixels: &[f64], full: f64) -> (Vec<(f64, f64)>, f64) {
     let along = streak.half.normalize();
     let (low, high) = (streak.middle - looked_at(streak), streak.middle + looked_at(streak));
@@ -91,15 +92,16 @@ fn section(streak: &Streak, pixels: &[f64], full: f64) -> (Vec<(f64, f64)>, f64)
     (seen, f64::from(high.x as u32 - low.x as u32))
 }
 
-/// Each streak of a drop of the innermost shell changes the pixels on its line by tau / T of what lies between drop and
-/// background, and all of a section across it by the mean of that: before black, over the drop's own light.
+/// Each streak of a drop in the innermost shell changes the pixels on its line by tau / T of the difference between
+/// drop and background (tau: the time the drop covers the pixel, T: the shutter time), and a section across the streak
+/// by the mean of that. Against black the difference is the drop's own light.
 #[test]
 fn streaks_stand_out_for_as_long_as_their_drops_pass() {
     let mut host = Host::new(SIZE);
     host.look(DVec3::new(0.0, 0.0, 300.0), DVec3::Y);
-    // What is beyond the innermost shell, of which each stands for more, falls behind a board.
+    // A board hides the drops beyond the innermost shell, of which each stands for more than one.
     host.boxes = vec![upright([0.0, BOARD_M, 300.0], [2000.0, 1e-3, 2000.0])];
-    // Behind the camera, so that all drops in the picture have the same light.
+    // The sun is behind the camera, so that all drops in the picture have the same light.
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 180.0, elevation_deg: 30.0 })).unwrap();
     let aspect = f64::from(SIZE.0) / f64::from(SIZE.1);
     host.camera = Camera::look_to(host.camera.position, DVec3::Y, DVec3::Z, NARROW_RAD, aspect, NEAR_M);
@@ -140,7 +142,7 @@ fn streaks_stand_out_for_as_long_as_their_drops_pass() {
                     lines.push(mean(&on_line));
                     shares.push(tau_over_t);
                 }
-                // A disc's chords are a quarter of pi of its diameter on the mean.
+                // The mean chord of a disc is pi / 4 of its diameter.
                 let across = mean(&seen.iter().map(|s| s.1).collect::<Vec<_>>()) * columns;
                 let size = drop.diameter_m * 180.0 / (0.5 * NARROW_RAD).tan() / drop.position_m.y;
                 sections.push(across / (0.25 * PI * size * tau_over_t));
@@ -164,11 +166,10 @@ fn streaks_stand_out_for_as_long_as_their_drops_pass() {
     }
 }
 
-/// Pixels from a point to its picture, at one metre, of a channel of 1280 x 720 that sees 50 degrees from bottom to
-/// top.
+/// Focal length in pixels of a channel of 1280 x 720 pixels that sees 50 degrees from bottom to top.
 const FOCAL: f64 = 772.0;
 
-/// A camera whose picture is a part of such a channel's.
+/// A camera whose picture is a part of such a channel's picture.
 fn channel(size: (u32, u32), eye: DVec3) -> Camera {
     let fov = 2.0 * (0.5 * f64::from(size.1) / FOCAL).atan();
     Camera::look_to(eye, DVec3::Y, DVec3::Z, fov, f64::from(size.0) / f64::from(size.1), NEAR_M)
@@ -183,8 +184,8 @@ fn over(values: &[f64], threshold: f64) -> f64 {
     values.iter().filter(|v| v.abs() > threshold).count() as f64 / values.len() as f64
 }
 
-/// The rain of the default model, near drops and cones, against each drop of the air by itself: what it hides on the
-/// mean, how far that differs from pixel to pixel, and from one frame of 1/60 s to the next.
+/// The rain of the default model, near drops and cones, against a picture of every single drop: the mean cover, its
+/// deviation from pixel to pixel, and its change from one frame of 1/60 s to the next.
 #[test]
 fn rain_moves_from_frame_to_frame_as_all_its_drops_do() {
     let size = (400, 225);
@@ -207,7 +208,7 @@ fn rain_moves_from_frame_to_frame_as_all_its_drops_do() {
                 far_m: 14.8,
             };
             host.view.set_rain(RainSettings { shutter_s: exposure_s, ..RainSettings::default() }).unwrap();
-            // Hidden, deviation, change, share beyond; of the truth and of what is drawn.
+            // Cover, deviation, change and share beyond; of the reference and of the drawn rain.
             let mut sums = [[0.0; 4]; 2];
             let mut add = |to: usize, [a, b]: [Vec<f64>; 2]| {
                 let change: Vec<f64> = a.iter().zip(&b).map(|(a, b)| b - a).collect();
@@ -247,7 +248,7 @@ fn hills(size: (u32, u32)) -> Host {
     host
 }
 
-/// The host's own drawing, which stays the same.
+/// Draws the host's picture, which is the same in every frame.
 fn paint(host: &Host) {
     let light = host.context.light_at(host.camera.position, host.context.time_s()).unwrap();
     let (sun, lux) = (light.sun.direction, light.arriving);
@@ -263,7 +264,7 @@ fn paint(host: &Host) {
     });
 }
 
-/// What a part of a picture shows.
+/// Part of the picture by what it shows.
 #[derive(Clone, Copy, PartialEq)]
 enum PicturePart {
     Sky,
@@ -285,7 +286,7 @@ fn shown(host: &Host) -> Vec<PicturePart> {
     (0..w * h).map(of).collect()
 }
 
-/// Frames in eight bits of sRGB: three 1/60 s apart, then two half a second apart.
+/// Frames in eight-bit sRGB: three 1/60 s apart, then two half a second apart.
 fn frames(host: &mut Host, settings: RainSettings) -> Vec<Vec<[u8; 3]>> {
     host.view.set_rain(settings).unwrap();
     let code = |v: f32| (tone::srgb_encode(f64::from(v.clamp(0.0, 1.0))) * 255.0).round() as u8;
@@ -311,10 +312,10 @@ fn changing(frames: &[Vec<[u8; 3]>], parts: &[PicturePart], part: PicturePart) -
     f64::from(counts.0) / f64::from(counts.1)
 }
 
-/// How alike what changes is `dx` and `dy` pixels off, before the hills: 1 where it is the same.
+/// Correlation of the changes in front of the hills with those `dx` and `dy` pixels away.
 fn alike(frames: &[Vec<[u8; 3]>], parts: &[PicturePart], width: usize, (dx, dy): (usize, usize)) -> f64 {
     let (mut both, mut own) = (0.0, 0.0);
-    // Frames that have no streak in common.
+    // These frames have no streak in common.
     for pair in frames.windows(2).skip(2) {
         let change = |i: usize| f64::from(pair[1][i][1]) - f64::from(pair[0][i][1]);
         for i in 0..parts.len().saturating_sub(dx + dy * width) {
@@ -328,15 +329,16 @@ fn alike(frames: &[Vec<[u8; 3]>], parts: &[PicturePart], width: usize, (dx, dy):
     both / own
 }
 
-/// The pictures of what a trainer shows, to look at.
+/// Saves the pictures of a trainer's view, for people to look at.
 fn save(host: &Host, frame: &[[u8; 3]], name: &str) {
     let bytes = frame.iter().flatten().copied().collect();
     let picture = image::RgbImage::from_raw(host.size.0, host.size.1, bytes).unwrap();
     picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
 }
 
-/// With the trainers' setting rain by day is seen before dark hills, as thin long streaks; at gain 1 hardly, and before
-/// the sky never. The whole channel with WELKIN_ACCEPT, a part of it, pixel for pixel, otherwise.
+/// With the setting for trainers rain by day is visible in front of dark hills, as thin long streaks; at gain 1 hardly,
+/// and in front of the sky never. With WELKIN_ACCEPT the test draws the whole channel, otherwise a part of it at the
+/// same pixel size.
 #[test]
 fn trainees_see_rain_by_day_and_no_snow() {
     let size = if std::env::var_os("WELKIN_ACCEPT").is_some() { (1280, 720) } else { (384, 216) };
@@ -367,12 +369,12 @@ fn trainees_see_rain_by_day_and_no_snow() {
     assert!(trainer.1 > 0.05, "{:.2} % of the hills change", 100.0 * trainer.1);
     assert!(trainer.1 > 3.0 * plain.1, "{} against {} at gain 1", trainer.1, plain.1);
     assert!(trainer.0 < 0.001, "before the sky {} changes", trainer.0);
-    // Streaks: what changes is alike along the fall and not across. A short exposure's dots are not.
+    // The changes are correlated along the fall and not across it: they are streaks, not dots of a short exposure.
     assert!(trainer.2 > 0.4 && trainer.3 < 0.2, "{trainer:?}");
     assert!(short.2 < 0.3, "{short:?}");
 }
 
-/// A gain takes nothing from what lies tens of metres off, whose light keeps its mean, and gives no colour to streaks.
+/// A gain leaves the mean light of things tens of metres away unchanged, and gives streaks no colour.
 #[test]
 fn a_gain_keeps_the_mean_of_what_lies_far_off_and_is_said_in_the_report() {
     let size = (320, 180);

@@ -1,4 +1,4 @@
-//! Pictures to look at (in cargo's directory for test files), and what must show in them.
+//! Pictures for people to look at (in cargo's directory for test files), and checks of what they must show.
 
 use glam::DVec3;
 use welkin::{
@@ -9,7 +9,7 @@ use welkin::{
 };
 use welkin_support::rain_scene::{Host, rain, upright};
 
-/// The host's own drawing: a road in a meadow and concrete, lit by what Welkin answers.
+/// Draws the host's picture: a road in a meadow and concrete, lit by the light that Welkin returns.
 pub fn paint(host: &Host) {
     let light = host.context.light_at(host.camera.position, host.context.time_s()).unwrap();
     let (sun, lux) = (light.sun.direction, light.arriving);

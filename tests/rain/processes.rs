@@ -1,8 +1,8 @@
-//! Channels of a simulator: processes that are told the same draw the same drops, whenever each of them began, and
-//! however it came to where it is.
+//! Channels of a simulator: processes with the same inputs draw the same drops, whenever each of them began and by
+//! whatever steps it reached its time and place.
 //!
-//! A test starts this binary once more for each further channel and names it, and a file for its answer, in the
-//! environment.
+//! A test starts this binary again for each further channel; the environment gives the channel's name and a file for
+//! its result.
 
 use std::{
     collections::BTreeMap,
@@ -33,7 +33,7 @@ const SIZE: (u32, u32) = (480, 320);
 const SHUTTER_S: f64 = 3e-3;
 const MOST: u32 = 100_000;
 const SEED: u64 = 11;
-/// When neighbouring channels are compared, s.
+/// Times at which neighbouring channels are compared, s.
 const MOMENTS: [f64; 16] =
     [95.25, 95.6, 96.0, 96.4, 97.1, 97.5, 98.0, 98.3, 98.8, 99.2, 101.3, 102.9, 104.7, 107.1, 1234.5, 86_400.1];
 
@@ -44,7 +44,7 @@ fn shower() -> Weather {
     weather
 }
 
-/// What all channels are told: a strong wind that goes down while the rain picks up.
+/// Sets the inputs of all channels: a strong wind that weakens while the rain strengthens.
 fn tell(host: &mut Host) {
     host.context.set_weather(&rain(12.0, 13.0), 0.0, 0.0).unwrap();
     host.context.set_weather(&rain(20.0, 8.0), 10.0, 5.0).unwrap();
@@ -63,7 +63,7 @@ fn classes() -> Classes {
     Classes::new(&derive(&shower()).unwrap().precipitation, 1.0, MOST)
 }
 
-/// Reversed infinite depth, between tangents of the angles left and right, down and up.
+/// Projection with reversed infinite depth between the tangents of the angles left and right, down and up.
 fn off_axis([left, right]: [f64; 2], [down, up]: [f64; 2]) -> DMat4 {
     let (w, h) = (right - left, up - down);
     DMat4::from_cols(
@@ -74,7 +74,7 @@ fn off_axis([left, right]: [f64; 2], [down, up]: [f64; 2]) -> DMat4 {
     )
 }
 
-/// One of two projectors side by side, each with an eye of its own.
+/// One of two projectors side by side, each with its own eye position.
 #[derive(Clone, Copy)]
 struct Projector {
     eye: DVec3,
@@ -115,7 +115,7 @@ impl Projector {
     }
 }
 
-/// Every drop that this context has round an eye at its time.
+/// Every drop of this context round an eye at its time.
 fn drops(host: &Host, eye: DVec3) -> Vec<Drop> {
     let t = host.context.time_s();
     lattice::drops(&classes(), SEED, eye, host.context.wind_displacement(t).unwrap(), t).collect()
@@ -123,7 +123,7 @@ fn drops(host: &Host, eye: DVec3) -> Vec<Drop> {
 
 type Id = (u32, u32, u32);
 
-/// Where drops that no other comes near are dark in the picture: pixel, and the distance along the view that they have.
+/// Drops in the picture that no other comes near: the pixel where each is dark, and its distance along the view.
 fn measured(host: &Host, own: &Projector, pixels: &[f64]) -> BTreeMap<Id, (DVec2, f64)> {
     let wind = host.context.carrying_wind(host.context.time_s()).unwrap();
     let table = classes().table;
@@ -155,7 +155,7 @@ fn measured(host: &Host, own: &Projector, pixels: &[f64]) -> BTreeMap<Id, (DVec2
                 (sum, at) = (sum + dark, at + dark * p);
             }
         }
-        // Fainter ones are lost in the steps of half floats.
+        // Fainter drops are lost in the steps of half floats.
         if sum > 0.3 && streak.half.length() > 5.0 && streak.end > 1.15 {
             found.insert(streak.id, (at / sum, distance_m));
         }
@@ -169,11 +169,11 @@ fn picture(host: &mut Host) -> Vec<f64> {
     host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
 }
 
-/// One channel's answer, as text: what it has in both pictures' overlap, where its picture shows drops, its state.
+/// One channel's result, as text: its drops in both pictures' overlap, where its picture shows them, and its state.
 fn channel(name: &str) -> String {
     let [left, right] = projectors();
     let (own, other) = if name == "left" { (left, right) } else { (right, left) };
-    // The two run on different drivers, and come to the same moment in different steps.
+    // The two run on different drivers, and reach the same time in different steps.
     let backends = if name == "left" { wgpu::Backends::VULKAN } else { wgpu::Backends::GL };
     let device = Device::headless(&DeviceOptions { backends, ..Default::default() }).unwrap();
     let mut host = night(Host::on(device, SIZE));
@@ -200,13 +200,13 @@ fn channel(name: &str) -> String {
     text
 }
 
-/// A file for channel `name` of the test `test` alone: tests run beside each other.
+/// Path of a file that only channel `name` of the test `test` uses, for tests run in parallel.
 fn answer_file(test: &str, name: &str) -> PathBuf {
     let test = test.rsplit("::").next().unwrap();
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{test}_{name}.txt"))
 }
 
-/// Runs the test `test` of this binary as channel `name` in a process of its own, and answers what it wrote.
+/// Runs the test `test` of this binary as channel `name` in its own process, and returns what that wrote.
 fn run(test: &str, name: &str) -> String {
     let answer = answer_file(test, name);
     let _ = std::fs::remove_file(&answer);
@@ -220,7 +220,7 @@ fn run(test: &str, name: &str) -> String {
     std::fs::read_to_string(answer).unwrap()
 }
 
-/// In a process that [`run`] started: writes the answer of `channel` and says so.
+/// In a process that [`run`] started, writes the result of `channel` and returns true.
 fn is_channel(channel: impl Fn(&str) -> String) -> bool {
     let (Ok(name), Ok(answer)) = (std::env::var(CHANNEL), std::env::var(ANSWER)) else { return false };
     std::fs::write(answer, channel(&name)).unwrap();
@@ -231,7 +231,7 @@ fn lines<'a>(text: &'a str, kind: &str) -> Vec<&'a str> {
     text.lines().filter_map(|l| l.strip_prefix(kind)).collect()
 }
 
-/// Pixel and distance of each drop that was measured, by the moment's place among all and its id.
+/// Pixel and distance of each measured drop, by the index of the moment and the drop's id.
 fn seen(text: &str) -> BTreeMap<(usize, Id), (DVec2, f64)> {
     let entry = |line: &str| {
         let v: Vec<f64> = line.split_whitespace().map(|n| n.parse().unwrap()).collect();
@@ -252,8 +252,7 @@ fn neighbouring_channels_of_two_processes_show_the_same_drops() {
     let (list, other) = (lines(&a, "drop "), lines(&b, "drop "));
     assert!(list.len() > 60, "{}", list.len());
     assert_eq!(list, other, "ids and places in the overlap");
-    // The same drop in both pictures: where the left one shows it is where the right one does, and the reference has
-    // it.
+    // A drop in both pictures is at the same place of the world, and the reference has it there.
     let [left, right] = projectors();
     let mut host = Host::new((16, 16));
     tell(&mut host);
@@ -289,7 +288,7 @@ fn neighbouring_channels_of_two_processes_show_the_same_drops() {
     assert!(worst(&shared) <= 0.5 && worst(&off) <= 0.5);
 }
 
-/// A channel's pictures of the default model, from one eye, a line a row.
+/// A channel's pictures of the default model, from one eye, one line of text a row.
 fn default_channel(name: &str) -> String {
     let backends = if name == "left" { wgpu::Backends::VULKAN } else { wgpu::Backends::GL };
     let device = Device::headless(&DeviceOptions { backends, ..Default::default() }).unwrap();
@@ -309,7 +308,7 @@ fn default_channel(name: &str) -> String {
     for t in &MOMENTS[..2] {
         host.context.update(*t).unwrap();
         for row in picture(&mut host).chunks(SIZE.0 as usize) {
-            // What both see: the right third of the left picture, the left third of the right one.
+            // Both channels see the right third of the left picture, which is the left third of the right one.
             let third = SIZE.0 as usize / 3;
             let shared = if name == "left" { &row[2 * third..] } else { &row[..third] };
             let numbers: Vec<String> = shared.iter().map(|v| format!("{v}")).collect();
@@ -383,7 +382,7 @@ fn a_saved_context_goes_on_in_another_process_as_it_would_have_here() {
     }
     let mut host = dark();
     tell(&mut host);
-    // When the state is saved one change is over and forgotten, and one under way.
+    // When the state is saved one change of the weather has ended and is dropped, and another is under way.
     (0..=900).for_each(|i| host.context.update(f64::from(i) / 15.0).unwrap());
     std::fs::write(saved_file(), host.context.save().unwrap()).unwrap();
     (901..=1800).for_each(|i| host.context.update(f64::from(i) / 15.0).unwrap());
@@ -435,7 +434,7 @@ fn a_gust_after_a_million_seconds_moves_no_drop_by_more_than_it_blows() {
         let speed = |k: i32| host.context.carrying_wind(t + dt * f64::from(k) / 8.0).unwrap().length();
         let wind = (0..=8).map(speed).fold(0.0, f64::max);
         fastest = fastest.max(wind);
-        // The wind's speed has its highest value between the nodes; it changes by less than this there.
+        // The wind's speed is highest between the nodes; it changes by less than this there.
         let most = wind * dt * 1.01 + 1e-6;
         let moved = air(t + dt) - air(t);
         assert!(moved.length() <= most, "t {t}: the air moved {moved}, wind {wind}");

@@ -1,4 +1,4 @@
-//! Sand, dust and snow that the wind lifts: as dense as reported on the mean, in gusts that go with the wind.
+//! Sand, dust and snow that the wind lifts: their mean density is the reported one, and gusts move with the wind.
 
 use glam::DVec3;
 use welkin::{
@@ -18,7 +18,8 @@ fn blowing(kind: LoftedKind, visibility_m: f64, wind_m_s: f64) -> Weather {
     Weather { lofted: Lofted::of(kind), wind, visibility_m, relative_humidity: 0.2, ..Weather::default() }
 }
 
-/// Optical depth of the ground layer from `eye` to a wall 60 m east of it, by what is left of its light at night.
+/// Optical depth of the ground layer from `eye` to a wall 60 m east of it, by the share of the wall's light that
+/// arrives at night.
 fn depth(host: &mut Host, eye: DVec3) -> f64 {
     host.boxes = vec![upright([eye.x + 60.0, eye.y, eye.z], [1.0, 500.0, 500.0])];
     host.look(eye, DVec3::X);
@@ -47,7 +48,7 @@ fn lifted_sand_is_as_dense_as_reported_on_the_mean_and_its_gusts_go_with_the_win
         println!("wind {wind}: depth {mean:.4} +- {deviation:.4} of {wanted:.4}");
         assert!((mean / wanted - 1.0).abs() < if uneven { 0.2 } else { 0.01 }, "{wind}: {mean} of {wanted}");
         assert_eq!(deviation > 0.2 * mean, uneven, "{wind}: {deviation} about {mean}");
-        // Who goes with the air sees the same gust all the while.
+        // An observer who moves with the air sees the same gust all the time.
         let t = start + 2000.0;
         host.context.update(t).unwrap();
         let (air, here) = (host.context.wind_displacement(t).unwrap(), depth(&mut host, DVec3::new(0.0, 0.0, 1.7)));

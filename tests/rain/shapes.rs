@@ -1,4 +1,5 @@
-//! Boxes that planes cut to other convex shapes, against their f64 twin: what falls round them and what does not.
+//! Boxes cut by planes to other convex shapes, against their f64 reference: where rain falls round them and where it
+//! does not.
 
 use glam::{DMat3, DVec3};
 use welkin::rain::{Planes, Shelter};
@@ -6,7 +7,7 @@ use welkin_support::rain_scene::{rain, upright};
 
 use crate::shelter::{check, few, through, white};
 
-/// A gable roof in the air, a tent on the ground, and a cab with a slanted front that drives.
+/// A gable roof in the air, a tent on the ground, and a moving cab with a slanted front.
 fn shapes() -> Vec<Shelter> {
     let slope = DVec3::new(0.0, 2.0, 3.0).normalize();
     let gable = Planes::new(&[[0.0, slope.y, slope.z, slope.z], [0.0, -slope.y, slope.z, slope.z]]).unwrap();
@@ -44,7 +45,7 @@ fn no_drop_is_drawn_that_a_cut_box_keeps_off_and_all_others_are() {
         }
         println!("wind {wind}: {dry} drops kept off, {drawn} drawn");
         assert!(dry > 30 && drawn > 30, "wind {wind}: {dry} {drawn}");
-        // The boxes themselves keep more off.
+        // The uncut boxes keep more rain off.
         let cut = through(&mut host, &[]);
         host.context.set_shelters(&whole).unwrap();
         let dark = |pixels: &[f64]| pixels.iter().map(|v| 1.0 - v).sum::<f64>();
@@ -61,7 +62,7 @@ fn it_is_dry_in_a_cab_of_any_convex_shape_and_as_before_when_the_planes_are_gone
     let eye = DVec3::new(0.0, 0.0, 30.0);
     host.look(eye, DVec3::Y);
     host.velocity_m_s = DVec3::Y * 20.0;
-    // As far as drops are drawn, all round: a prism of eight sides.
+    // A prism of eight sides that contains all drawn drops.
     let sides: Vec<[f64; 4]> = (0..8)
         .map(|i| f64::from(i) * std::f64::consts::FRAC_PI_4 + 0.3)
         .map(|a| [a.cos(), a.sin(), 0.0, 4.2])
@@ -69,7 +70,7 @@ fn it_is_dry_in_a_cab_of_any_convex_shape_and_as_before_when_the_planes_are_gone
     let room = |planes| Shelter { velocity_m_s: DVec3::Y * 20.0, planes, ..upright(eye.to_array(), [6.0; 3]) };
     host.context.set_shelters(&[room(Planes::new(&sides).unwrap())]).unwrap();
     assert!(through(&mut host, &[]).iter().all(|v| *v == 1.0), "inside");
-    // What is left of it lies behind the camera.
+    // The rest of the box after the cut lies behind the camera.
     host.context.set_shelters(&[room(Planes::new(&[[0.0, 1.0, 0.0, -4.5]]).unwrap())]).unwrap();
     let before = through(&mut host, &[]);
     host.context.set_shelters(&[]).unwrap();

@@ -1,4 +1,4 @@
-//! What keeps rain off, against f64 rays through the true geometry: by the host's own maps of it, moving things
+//! Shelter from rain, by boxes and by the host's own maps, against f64 rays through the true geometry; moving things
 //! included.
 
 use glam::{DMat4, DVec2, DVec3};
@@ -23,7 +23,7 @@ use welkin_support::{
 
 use crate::pictures::{paint, save};
 
-/// Radiance of the host's picture: far above what drops send at night, within half floats.
+/// Radiance of the host's picture: far above the light of drops at night, within the range of half floats.
 const WHITE: f64 = 3e4;
 
 /// A bridge, a roof on posts and a tunnel on level ground.
@@ -59,7 +59,7 @@ pub fn cast(boxes: &[Shelter], eye: DVec3, d: DVec3) -> Option<f64> {
     best
 }
 
-/// The map of `boxes`, cast texel by texel.
+/// The map of `boxes`, by a ray for each texel.
 pub fn map(host: &Host, boxes: &[Shelter], taken: &Taken, size: (u32, u32)) -> wgpu::Texture {
     let camera = Camera { position: DVec3::ZERO, view: DMat4::IDENTITY, projection: taken.clip_from_world };
     let kind = if camera.is_orthographic() { DepthKind::Orthographic } else { DepthKind::Perspective };
@@ -84,7 +84,8 @@ pub fn map(host: &Host, boxes: &[Shelter], taken: &Taken, size: (u32, u32)) -> w
     depth_texture(&host.device, size, &depths)
 }
 
-/// A host at night whose whole picture is white: each pixel says what drops and splashes let through.
+/// A host at night whose whole picture is white: each pixel shows the share of light that drops and splashes let
+/// through.
 pub fn white(size: (u32, u32)) -> Host {
     let mut host = Host::new(size);
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
@@ -92,7 +93,7 @@ pub fn white(size: (u32, u32)) -> Host {
     host
 }
 
-/// The host's boxes, and walls behind all.
+/// Draws the host's boxes with walls behind them all; returns the share of light that each pixel lets through.
 pub fn through(host: &mut Host, boxes: &[Shelter]) -> Vec<f64> {
     host.boxes = boxes.to_vec();
     for [x, y] in [[400.0, 0.0], [-400.0, 0.0], [0.0, 400.0], [0.0, -400.0]] {
@@ -103,8 +104,8 @@ pub fn through(host: &mut Host, boxes: &[Shelter]) -> Vec<f64> {
     host.pixels().iter().map(|p| f64::from(p[1]) / WHITE).collect()
 }
 
-/// Whether the way of what came to `p` with `velocity` met any of the boxes, if that does not hang on where within
-/// `slack_m` `p` is.
+/// Whether a drop that reached `p` with `velocity` hit any of the boxes on its way; `None` if this differs between
+/// places within `slack_m` of `p`.
 pub fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Option<bool> {
     let hit = |p: DVec3| boxes.iter().any(|b| sheltered(b, p, velocity));
     let first = hit(p);
@@ -115,9 +116,9 @@ pub fn surely(boxes: &[Shelter], p: DVec3, velocity: DVec3, slack_m: f64) -> Opt
     all.map(|d| hit(p + d)).all(|h| h == first).then_some(first)
 }
 
-/// One picture against the truth: every drop whose way is surely free of `boxes` is there, and nothing is dark but by
-/// such drops; `visible` is what the picture shows. Answers how many drops were surely kept off and how many were
-/// drawn.
+/// Checks one picture against the rays: every drop whose way is certainly free of `boxes` is drawn, and only such drops
+/// make pixels dark; `visible` are the boxes that the picture shows. Returns how many drops were certainly kept off and
+/// how many were drawn.
 pub fn check(
     host: &mut Host,
     (visible, boxes): (&[Shelter], &[Shelter]),
@@ -147,7 +148,7 @@ pub fn check(
         let at = landing.xy_m.extend(0.0) + DVec3::new(eye.x, eye.y, 0.0);
         let splash_velocity = wind - DVec3::Z * landing.speed_m_s;
         let near = visible.iter().filter(|b| ((at - b.center_m).abs() - b.half_size_m).truncate().max_element() < 0.1);
-        // On tops, and where a side is all that the picture shows.
+        // Points on the tops of the boxes, and on sides where the picture shows nothing else.
         let heights = near.flat_map(|b| (0..=20).map(|i| b.center_m.z + b.half_size_m.z * (0.1 * f64::from(i) - 1.0)));
         for z in heights.chain([0.0]) {
             let p = at + DVec3::Z * z;
@@ -208,7 +209,7 @@ pub fn check(
 #[test]
 fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
     let mut host = white((480, 270));
-    // Few drops, with no splashes among them: what can be seen of them is their discs.
+    // Few drops and no splashes; the shutter is so short that drops appear as discs.
     host.view
         .set_rain(RainSettings {
             model: RainModel::Drops,
@@ -229,7 +230,8 @@ fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
         let half = 20.0;
         let slack = 2.0 * (2.0 * half / f64::from(side.0));
         let boxes = standing();
-        // Along the median drops, and along slower ones: what stands below a deck is hidden from one of them.
+        // Maps along the fall of median drops and along that of slower ones; things below a deck are missing in one of
+        // them.
         let falls = [fall.z, -3.4, -2.1].map(|z| DVec3::new(fall.x, fall.y, z).normalize());
         let taken = falls.map(|f| Taken::parallel(DVec3::new(0.0, 4.0, 0.0) - f * 60.0, f, [half; 2], 120.0));
         let textures = taken.map(|t| map(&host, &boxes, &t, side));
@@ -264,7 +266,7 @@ fn a_cab_that_drives_stays_dry_inside() {
         host.velocity_m_s = speed;
         let cab = Shelter { velocity_m_s: speed, ..upright(eye.to_array(), [1.5, 1.9, 1.5]) };
         host.context.set_shelters(&[cab]).unwrap();
-        // Walls of the cab, open to the front.
+        // Walls of the cab, which is open to the front.
         let wall = |c: [f64; 3], h: [f64; 3]| upright((eye + DVec3::from(c)).to_array(), h);
         let walls = [
             wall([0.0, 0.0, -1.15], [1.3, 1.6, 0.05]),
@@ -314,7 +316,7 @@ fn what_is_no_map_is_named_and_the_maps_before_stay() {
     assert!(through(&mut host, &[]).iter().any(|v| *v < 0.99), "it rains again");
 }
 
-/// On OpenGL as on Vulkan, without compute shaders: a map over half of the place keeps that half of the picture dry.
+/// Without compute shaders, on OpenGL as on Vulkan, a map over half of the place keeps that half of the picture dry.
 #[test]
 fn maps_keep_rain_off_on_both_drivers() {
     for backends in [DeviceOptions::default().backends, wgpu::Backends::GL] {
@@ -332,13 +334,13 @@ fn maps_keep_rain_off_on_both_drivers() {
         let dark = |columns: std::ops::Range<usize>| {
             pixels.iter().enumerate().filter(|(i, v)| columns.contains(&(i % 160)) && **v < 0.99).count()
         };
-        // Two texels are 0.33 m: some columns in the middle may see either.
+        // Two texels are 0.33 m: some columns in the middle may be dry or wet.
         let (dry, wet) = (dark(0..40), dark(120..160));
         assert!(dry == 0 && wet > 50, "{backends:?}: {dry} {wet}");
     }
 }
 
-/// Drops few enough to be told apart.
+/// Sets drops few enough to be distinguished.
 pub fn few(host: &mut Host, rate: f64, wind: f64, t: f64) -> Classes {
     host.view
         .set_rain(RainSettings {
@@ -380,7 +382,7 @@ fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
     let (mut standing, mut visible, mut found) = (0.0, 0u32, 0u32);
     let times = 12;
     for k in 0..times {
-        // Far apart: no splash is counted twice.
+        // Moments so far apart that no splash is counted twice.
         let t = 20.0 + 0.31 * f64::from(k);
         host.context.update(t).unwrap();
         let pixels = through(&mut host, &[]);
@@ -396,15 +398,15 @@ fn splashes_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
             }
         }
     }
-    // Counting error of 64 m^2 at twelve times.
+    // The expected number of splashes on 64 m^2 at these moments, whose square root is the counting error.
     let want = flux * splash::LIFE_S * 64.0 * f64::from(times);
     println!("{standing} splashes stand, flux x area says {want:.0}; {found} of {visible} are seen");
     assert!((standing - want).abs() < 4.0 * want.sqrt(), "{standing} {want}");
     assert!(visible > 100 && f64::from(found) > 0.97 * f64::from(visible), "{found} of {visible}");
 }
 
-/// The ground below a bridge 40 m wide, so wide that some of it is dry in any wind: by maps of it, and by the box that
-/// it is.
+/// The ground below a bridge 40 m wide, so wide that some ground stays dry in any wind: by maps of the bridge, and by
+/// its box.
 #[test]
 fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
     const RAYS: usize = 50;
@@ -420,10 +422,11 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
         let sizes = DropSizes::new(&c.precipitation, drops::factor_in(&c.air, 25.0));
         let air = host.context.carrying_wind(t + 1.0).unwrap();
         let fall = |d: f64| air - DVec3::Z * sizes.speed_m_s(d);
-        // Drops that bring the same share of the water each.
+        // Drops of as many sizes, each of which brings the same share of the water.
         let shares = std::array::from_fn::<f64, RAYS, _>(|k| (k as f64 + 0.5) / RAYS as f64);
         let falls = sizes.diameters(Weight::Water, SMALLEST_MM, shares).map(fall);
-        // Each just as large as the deck looks from there: along a flat fall it is narrow, and so are its texels.
+        // Each map is just as large as the deck appears along the fall: along a flat fall the deck is narrow, and so
+        // are the texels.
         let above = DVec3::Z * 5.2;
         let taken = sizes.diameters(Weight::Water, SMALLEST_MM, [1.0 / 6.0, 0.5, 5.0 / 6.0]).map(|d| {
             let f = fall(d).normalize();
@@ -431,8 +434,8 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
         });
         let textures = taken.map(|k| map(&host, &deck, &k, (256, 512)));
         let maps = [0, 1, 2].map(|k| OccluderMap { depth: &textures[k], taken: taken[k] });
-        // Straight down on the ground; the deck itself is not in the picture. Grass shows no film, so that it grows
-        // darker by just the share of the water that it gets.
+        // The camera looks straight down on the ground; the deck is not in the picture. Grass shows no water film, so
+        // that it darkens in proportion to the water that it gets.
         let down = DVec3::new(0.0, 1e-3, -1.0);
         host.camera = Camera::look_to(DVec3::new(0.0, 0.0, 25.0), down, DVec3::Z, 1.5, 128.0 / 360.0, NEAR_M);
         let greens = |host: &mut Host, maps: &[OccluderMap<'_>], boxes: &[Shelter]| -> Vec<f64> {
@@ -445,10 +448,10 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
         let open = greens(&mut host, &[], &[]);
         for (by, maps, boxes) in [("maps", &maps[..], &[][..]), ("a box", &[], &deck[..])] {
             let seen = greens(&mut host, maps, boxes);
-            // Of each row of the picture, which lies across the wind: pixels below the deck, and the water that they
-            // get, seen and true.
+            // For each row of the picture, which lies across the wind: the number of pixels below the deck, and the
+            // water that they get, drawn and true.
             let mut rows = vec![[0.0; 3]; 360];
-            // The same of blocks of four by four pixels.
+            // The same numbers for blocks of four by four pixels.
             let mut blocks = vec![[0.0; 3]; 32 * 90];
             for (i, (seen, open)) in seen.iter().zip(&open).enumerate() {
                 let (x, y) = (i % 128, i / 128);
@@ -474,13 +477,13 @@ fn the_wet_wedge_below_a_bridge_is_the_one_that_rays_find() {
             );
             assert!(all > 30_000.0 && (wind == 0.0) == (truth == 0.0), "wind {wind}: {truth} of {all}");
             assert!((wedge - truth).abs() <= 0.05 * truth, "wind {wind}, by {by}: {wedge} against {truth}");
-            // Neither bands nor grain.
+            // The picture shows neither bands nor grain.
             assert!(worst < 0.08 && grain < 0.04, "wind {wind}, by {by}: a row is {worst} off, blocks {grain}");
         }
     }
 }
 
-/// The wet wedge below a deck from eye's height, by maps and by the box, to look at.
+/// Saves pictures of the wet wedge below a deck from eye height, by maps and by the box, for people to look at.
 #[test]
 fn pictures_of_a_wet_wedge_by_maps_and_by_a_box() {
     let mut host = Host::new((640, 360));

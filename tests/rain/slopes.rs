@@ -1,4 +1,4 @@
-//! Splashes and stones on what is not level: planes of any tilt, kerbs, roofs in wind.
+//! Splashes and stones on surfaces that are not level: planes of any tilt, kerbs, roofs in wind.
 
 use glam::{DMat4, DVec2, DVec3};
 use welkin::rain::{
@@ -13,10 +13,10 @@ use crate::{
 };
 
 const SIZE: (u32, u32) = (480, 270);
-/// Pictures that each count is made of.
+/// Number of pictures that each count sums over.
 const TIMES: u32 = 4;
 
-/// How many landings may be seen, are drawn though wanted, and drawn though not, over times far apart.
+/// Numbers of landings over moments far apart: expected, drawn where expected, and drawn where not expected.
 #[derive(Default, Debug)]
 struct Count {
     standing: f64,
@@ -26,8 +26,8 @@ struct Count {
     drawn_all_the_same: u32,
 }
 
-/// Landings within five metres on the surface whose height, from world's origin, and normal `surface` has; none near
-/// edges.
+/// Counts landings within five metres on a surface: `surface` returns its height above the world's origin and its
+/// normal, or `None` beyond and near its edges.
 fn count(host: &mut Host, splashes: &Splashes, from: f64, surface: impl Fn(DVec2) -> Option<(f64, DVec3)>) -> Count {
     let clip = host.camera.projection * DMat4::from_mat3(host.camera.rotation());
     let eye = host.camera.position;
@@ -64,7 +64,7 @@ fn count(host: &mut Host, splashes: &Splashes, from: f64, surface: impl Fn(DVec2
     count
 }
 
-/// Rain of few drops, whose splashes can be told apart.
+/// Sets rain of few drops, whose splashes can be distinguished.
 fn splashing(host: &mut Host, wind: f64, t: f64) -> (Splashes, f64) {
     let classes = few(host, 1.0, wind, t);
     host.view
@@ -91,7 +91,7 @@ fn splashes_on_slopes_are_as_many_as_the_flux_brings() {
     let mut host = white(SIZE);
     let (splashes, flux) = splashing(&mut host, 0.0, 10.0);
     let mut t = 20.0;
-    // With the ground where the search begins, and far above and below that.
+    // The ground at the height where the search begins, and far above and below it.
     for foot in [DVec2::ZERO, DVec2::new(3.0, 20.0), DVec2::new(3.0, -20.0)] {
         for tilt in [-44.0f64, -35.0, -20.0, -10.0, 10.0, 20.0, 35.0, 44.0] {
             let a = tilt.to_radians();
@@ -128,7 +128,7 @@ fn slopes_to_windward_get_more_and_those_to_leeward_less() {
 fn splashes_stand_above_and_below_kerbs() {
     let mut host = white(SIZE);
     let (splashes, _) = splashing(&mut host, 0.0, 10.0);
-    // A kerb, and a wall half a metre high, beyond whose edge the gap jumps.
+    // A kerb, and a wall half a metre high: beyond its edge the distance to the ground jumps.
     host.boxes = vec![upright([0.0, 2.5, 0.0], [30.0, 0.5, 0.15]), upright([0.0, 4.2, 0.0], [30.0, 0.4, 0.5])];
     let tops = [(2.0, 3.0, 0.15), (3.8, 4.6, 0.5)];
     host.look(DVec3::new(0.1, 0.0, 1.8), DVec3::new(0.0, 1.0, -0.5));

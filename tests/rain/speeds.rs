@@ -1,5 +1,5 @@
-//! Fall speeds against a law of drag that shares nothing with the table they are read from: Beard (1976), from Davies
-//! and Bond numbers. The library interpolates what Gunn and Kinzer measured.
+//! Fall speeds against a law of drag that is independent of the table they are read from: Beard (1976), from Davies and
+//! Bond numbers. The library interpolates the measurements of Gunn and Kinzer.
 
 use welkin::rain::drops::{density_factor, terminal_speed_m_s};
 
@@ -52,7 +52,8 @@ fn speeds_follow_the_drag_of_falling_spheres_and_flattened_drops() {
     }
 }
 
-/// The exponent 0.4 (Foote and du Toit 1969) stands for all sizes; the law of drag says how much each gains.
+/// The library uses the exponent 0.4 for all sizes (Foote and du Toit 1969); the law of drag gives the increase for
+/// each size.
 #[test]
 fn thin_air_lets_drops_fall_faster_by_the_law_of_drag() {
     let level = AirState::at(15.0, 101_325.0);

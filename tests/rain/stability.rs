@@ -1,5 +1,5 @@
-//! Rain under what a simulator may do to it: storms, pauses, jumps of time, far places, fast cameras. Drops stay
-//! finite, come in no bursts and leave no gaps.
+//! Rain under all that a simulator may do: storms, pauses, jumps of time, far places, fast cameras. Drops stay finite,
+//! and their number has neither bursts nor gaps.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -18,11 +18,12 @@ use crate::drops::{depth_to, mean, through, white};
 const RATES: [f64; 4] = [0.0, 0.3, 20.0, 500.0];
 const WINDS: [f64; 3] = [0.0, 20.0, 80.0];
 
-/// Share of a shell's drops that a view of these tangents sees, and the mean share that is shown of them.
+/// Expected number of a shell's drops in a view of these tangents, as a share of the shell's drops, weighted by the
+/// share of each that is shown.
 fn expected_share(shell: usize, tangent: DVec2) -> f64 {
     let side = lattice::side_m(shell);
     let (n, m) = (60, 400);
-    // Solid angle of the picture: of each part of its plane at distance 1.
+    // Solid angle of the picture, as a sum over parts of its plane at distance 1.
     let part = |i: i32, half: f64| (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0) * half;
     let mut angle = 0.0;
     for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
@@ -35,7 +36,7 @@ fn expected_share(shell: usize, tangent: DVec2) -> f64 {
     angle * radial / side.powi(3)
 }
 
-/// Drops of each shell in view, each counted by the share of it that is shown; whether all are finite.
+/// Drops of each shell in view, each counted by the share of it that is shown. Fails unless all are finite.
 fn in_view(classes: &Classes, eye: DVec3, air: DVec3, t: f64, tangent: DVec2) -> [f64; SHELLS] {
     let mut counts = [0.0; SHELLS];
     for drop in lattice::drops(classes, 11, eye, air, t) {
@@ -77,7 +78,7 @@ fn no_step_of_time_and_no_place_makes_a_burst_or_a_gap() {
                         seen[s]
                     );
                 }
-                // Paused: the very same.
+                // Paused: the drops are the same.
                 assert_eq!(seen, in_view(&classes, eye, air, t, tangent));
             }
         }
@@ -93,7 +94,7 @@ fn pictures_of_storms_far_places_and_fast_cameras_are_finite_and_as_dense_as_any
         host.view.set_rain(RainSettings { model, most_drops: Some(60_000), ..RainSettings::default() }).unwrap();
         t = storms(&mut host, t, model);
     }
-    // All stages at once, lit.
+    // All stages together, lit by day.
     host.velocity_m_s = DVec3::new(0.0, 300.0, 0.0);
     host.draw(|_, _| [10.0; 3]);
     host.record(Stages::ALL).unwrap();
@@ -122,7 +123,7 @@ fn storms(host: &mut Host, mut t: f64, model: RainModel) -> f64 {
                 t += dt;
                 host.context.update(t).unwrap();
                 let picture = through(host);
-                // A step of half floats beyond white.
+                // A value may exceed white by one step of half floats.
                 let off = picture.iter().find(|v| !(0.0..=1.001).contains(*v));
                 assert!(off.is_none(), "{rate} {wind} {place}: {off:?}");
                 seen.push(mean(&picture));

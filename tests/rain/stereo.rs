@@ -1,5 +1,5 @@
-//! The two eyes of one head, each a view of one context with an asymmetric projection: far things lie in the same
-//! direction, near drops are displaced as eyes see them, and both eyes see the same drops.
+//! The two eyes of one head, each a view of one context with an asymmetric projection: both see far things in the same
+//! direction, near drops with the right parallax, and the same drops.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -14,12 +14,12 @@ use welkin_support::rain_scene::{Host, NEAR_M, rain, upright};
 use crate::shelter::{check, through, white};
 
 const SIZE: (u32, u32) = (320, 180);
-/// From eye to eye.
+/// Distance between the eyes.
 const APART_M: f64 = 0.065;
-/// How far to the left of its place in the right eye's picture anything infinitely far lies in the left eye's, pixels.
+/// Pixels by which an infinitely far thing lies farther left in the left eye's picture than in the right eye's.
 const SHIFT: u32 = 6;
 
-/// Left and right eye of a head that looks level to the north. What is about 2 m away has the same place in both
+/// Left and right eye of a head that looks level to the north. Things about 2 m away have the same place in both
 /// pictures.
 fn eyes(head: DVec3) -> [Camera; 2] {
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
@@ -31,19 +31,19 @@ fn eyes(head: DVec3) -> [Camera; 2] {
     })
 }
 
-/// How much farther right than if it were infinitely far a thing lies in the left eye's picture, against the right
-/// eye's, pixels.
+/// Parallax of a thing at a distance, pixels: how much farther right it lies in the left eye's picture, against the
+/// right eye's, than an infinitely far thing does.
 fn parallax(distance_m: f64) -> f64 {
     let focal = eyes(DVec3::ZERO)[0].projection.x_axis.x * 0.5 * f64::from(SIZE.0);
     focal * APART_M / distance_m
 }
 
-/// Few drops, and short streaks: what can be seen of them is their discs.
+/// Few drops and a shutter so short that they appear as discs.
 fn drop_by_drop() -> RainSettings {
     RainSettings { model: RainModel::Drops, shutter_s: 1e-3, most_drops: Some(4000), ..RainSettings::default() }
 }
 
-/// Runs `work` for either eye, each with its own view, which draws rain drop by drop.
+/// Runs `work` for each eye with its own view, which draws rain drop by drop.
 fn each<T>(host: &mut Host, head: DVec3, mut work: impl FnMut(&mut Host, bool) -> T) -> [T; 2] {
     let mut other = View::new(&host.context).unwrap();
     host.view.set_rain(drop_by_drop()).unwrap();
@@ -69,7 +69,7 @@ fn far_sky_clouds_and_fog_are_the_same_in_both_eyes() {
         let mut far = Vec::new();
         let [left, right] = each(&mut host, DVec3::new(3.0, 5.0, 1.7), |host, first| {
             let stages = Stages::ALL.without(Stages::PARTICLES.with(Stages::TONE));
-            // A volume of clouds is whole after sixteen frames.
+            // A volume of clouds is complete after sixteen frames.
             for _ in 0..if name == "clouds" { 20 } else { 1 } {
                 host.draw(|_, _| [900.0; 3]);
                 host.record(stages).unwrap();
@@ -92,7 +92,8 @@ fn far_sky_clouds_and_fog_are_the_same_in_both_eyes() {
             }
         }
         assert!(far.iter().filter(|f| **f).count() > 90 && seen[1] > 1.2 * seen[0], "{name}: {seen:?}");
-        // Each of sixteen neighbours has steps of its own, so that edges of clouds differ in pixels.
+        // Each of sixteen neighbouring pixels has its own march steps, so that single pixels at the edges of clouds
+        // differ.
         off.sort_by(f32::total_cmp);
         let most = off[(off.len() - 1) * if name == "clouds" { 95 } else { 100 } / 100];
         println!("{name}: {most:.4}, at most {:.4}", off[off.len() - 1]);
@@ -122,15 +123,15 @@ fn both_eyes_see_the_same_drops_displaced_as_near_things_are() {
         .iter()
         .filter_map(|(id, p)| right.binary_search_by_key(id, |d| d.0).ok().map(|i| (*p - right[i].1).length()))
         .collect();
-    // A few fade in or out with the distance from an eye.
+    // A few drops fade in or out with the distance from an eye.
     let most = left.len().max(right.len());
     assert!(both.len() > 300 && both.len() as f64 > 0.95 * most as f64, "{} of {most}", both.len());
     assert!(both.iter().all(|off| *off < 1e-3), "{both:?}");
-    // Each is drawn where the eye has it, and nothing else is: the pictures against the drops.
+    // The pictures against the drops: each drop is drawn where it lies for that eye, and nothing else is drawn.
     let wall = [upright([1.5, 0.6, 0.0], [20.0, 0.1, 50.0])];
     let counts = each(&mut host, head, |host, _| check(host, (&wall, &wall), &classes, 0.02, "an eye"));
     assert!(counts.iter().all(|(_, drawn)| *drawn > 50), "{counts:?}");
-    // By the pictures alone: what is nearer than the wall lies farther right in the left eye's.
+    // From the pictures alone: things nearer than the wall lie farther right in the left eye's picture.
     let dark = each(&mut host, head, |host, _| {
         through(host, &wall).into_iter().map(|v| (1.0 - v).max(0.0)).collect::<Vec<_>>()
     });

@@ -1,4 +1,4 @@
-//! Hail and ice pellets: what they hide, where they hop, where they do not fall.
+//! Hail and ice pellets: how much they hide, where they hop, where none fall.
 
 use glam::DVec3;
 use welkin::{
@@ -54,11 +54,11 @@ fn hail_hops_where_it_lands_and_nowhere_under_a_roof() {
     host.context.set_weather(&weather, 5.0, 0.0).unwrap();
     host.context.set_sun(Some(welkin::context::GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
     host.look(DVec3::new(0.0, 0.0, 2.5), DVec3::new(0.0, 1.0, -0.6));
-    // Under a wide roof no stone falls and none hops: it would hide of the white ground.
+    // Under a wide roof no stone falls and none hops: a stone would hide part of the white ground.
     host.context.set_shelters(&[upright([0.0, 0.0, 9.0], [400.0, 400.0, 0.1])]).unwrap();
     host.context.update(7.0).unwrap();
     assert!(through(&mut host).iter().all(|v| *v == 1.0), "under the roof");
-    // A stone that falls passes too fast to hide half of a pixel; what does has landed.
+    // A falling stone passes too fast to hide half of a pixel; one that does has landed.
     host.context.set_shelters(&[]).unwrap();
     let mut marks = Vec::new();
     for k in 0..30 {

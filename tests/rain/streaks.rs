@@ -1,4 +1,4 @@
-//! The length of a drawn streak: as far as drop and camera move against each other while the shutter is open.
+//! The length of a drawn streak: the relative way of drop and camera while the shutter is open.
 
 use glam::{DVec2, DVec3};
 use welkin::{
@@ -23,7 +23,8 @@ pub const LEAST_PIXELS: f64 = 1.2;
 /// A drop in a picture.
 pub struct Streak {
     pub id: (u32, u32, u32),
-    /// Pixels: its middle, half of the way of the drop's middle, and what the drop's own size adds at each end.
+    /// Middle of the streak, half of the way of the drop's middle, and the length that the drop's own size adds at each
+    /// end; in pixels.
     pub middle: DVec2,
     pub half: DVec2,
     pub end: f64,
@@ -35,7 +36,7 @@ fn pixel(camera: &Camera, from_eye: DVec3) -> (DVec2, f64) {
     (DVec2::new(0.5 * ndc.x + 0.5, 0.5 - 0.5 * ndc.y) * DVec2::new(f64::from(SIZE.0), f64::from(SIZE.1)), p.w)
 }
 
-/// What should be in the picture, by the laws alone: speeds are Gunn and Kinzer's own.
+/// Streaks that the picture should have, by the laws alone: speeds are those of Gunn and Kinzer.
 fn streaks(host: &Host, classes: &Classes, t: f64, shutter_s: f64) -> Vec<Streak> {
     let pixel_m = 2.0 * (0.5 * FOV).tan() / f64::from(SIZE.1);
     lattice::drops(classes, 11, host.camera.position, host.context.wind_displacement(t).unwrap(), t)
@@ -56,7 +57,7 @@ pub fn distance(streak: &Streak, p: DVec2) -> f64 {
     (p - streak.middle - streak.half * along).length()
 }
 
-/// Whether another comes nearer than both are wide.
+/// Whether no other streak comes nearer than their widths.
 pub fn alone(streak: &Streak, all: &[Streak]) -> bool {
     let samples = |s: &Streak| (-8..=8).map(|i| s.middle + s.half * (f64::from(i) / 8.0)).collect::<Vec<_>>();
     let own = samples(streak);
@@ -68,8 +69,8 @@ pub fn alone(streak: &Streak, all: &[Streak]) -> bool {
     })
 }
 
-/// How far a drop went that left a dark bar in the picture, from the bar's spread: that of an even way is its square
-/// over 12, and a disc's own is a quarter of its radius' square.
+/// Length of the way of a drop that left a dark bar in the picture, from the bar's variance: a way of even speed adds a
+/// twelfth of its square, and the disc itself a quarter of the square of its radius.
 fn drawn_length(streak: &Streak, pixels: &[f64]) -> Option<f64> {
     let reach = streak.half.abs() + 2.0 * streak.end + 3.0;
     let (low, high) = (streak.middle - reach, streak.middle + reach);
@@ -144,7 +145,7 @@ fn streaks_are_as_long_as_drop_and_camera_move_against_each_other() {
     }
 }
 
-/// What is too small to be drawn as a drop keeps to the law in the numbers that the lattice would draw it by.
+/// Drops too small to be drawn keep to the law too: checked on the numbers by which the lattice would draw them.
 #[test]
 fn the_lattices_speeds_keep_streaks_of_any_size_within_three_percent() {
     for i in 0..=590 {

@@ -10,7 +10,7 @@ use crate::{
     root,
 };
 
-/// Public API of a source tree, a line for each thing that has a name.
+/// Public API of a source tree, a line for each named item.
 fn api(sources: &Sources) -> BTreeSet<String> {
     let mut reader = ApiReader { sources, lines: BTreeSet::new() };
     reader.take_module(&Vec::new(), &Vec::new());
@@ -22,7 +22,7 @@ struct ApiReader<'a> {
     lines: BTreeSet<String>,
 }
 
-/// Tokens with the spaces that a person writes.
+/// Text of tokens with spaces as a person writes them.
 fn text(tokens: impl ToTokens) -> String {
     let mut text = tokens.to_token_stream().to_string();
     for (spaced, plain) in [
@@ -68,7 +68,7 @@ fn is_public(visibility: &syn::Visibility) -> bool {
     matches!(visibility, syn::Visibility::Public(_))
 }
 
-/// Whether users of the crate do not see an item: it is hidden, of tests, or of the lab.
+/// Whether users of the crate do not see an item: it is hidden, or part of the tests or of the lab.
 fn is_hidden(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let text = attribute.meta.to_token_stream().to_string();
@@ -110,7 +110,7 @@ fn is_public_item(item: &syn::Item) -> bool {
 }
 
 impl ApiReader<'_> {
-    /// Takes the items of a module, `from`, as those of the module that shows them.
+    /// Adds the items of the module `from` as items of the module `shown`, which re-exports them.
     fn take_module(&mut self, shown: &ModulePath, from: &ModulePath) {
         let Some(file) = self.sources.file(from) else { return };
         for item in file.tree.items.iter().filter(|item| is_public_item(item)) {
@@ -128,7 +128,7 @@ impl ApiReader<'_> {
         }
     }
 
-    /// Takes what a `pub use` line of a module adds to it.
+    /// Adds the items that a `pub use` line of a module adds to it.
     fn take_use(&mut self, modules: [&ModulePath; 2], before: &[String], tree: &syn::UseTree) {
         let [shown, module] = modules;
         let with = |name: &syn::Ident| [before, &[name.to_string()]].concat();
@@ -165,7 +165,7 @@ impl ApiReader<'_> {
         }
     }
 
-    /// Takes an item that `from` defines and `module` shows.
+    /// Adds an item that `from` defines and `module` shows.
     fn take_item(&mut self, module: &ModulePath, from: &ModulePath, item: &syn::Item, alias: Option<String>) {
         let Some(name) = item_name(item).filter(|_| !is_hidden(attributes_of(item))) else { return };
         let place = [module.as_slice(), &[alias.unwrap_or_else(|| name.clone())]].concat().join("::");
@@ -202,7 +202,7 @@ impl ApiReader<'_> {
         self.take_methods(&place, from, &name);
     }
 
-    /// Takes the public methods and constants of a type, wherever they are written.
+    /// Adds the public methods and constants of a type, in whichever file they are written.
     fn take_methods(&mut self, place: &str, from: &ModulePath, name: &str) {
         for (module, file) in self.sources.iter() {
             let is_of_type = |i: &&syn::ItemImpl| {

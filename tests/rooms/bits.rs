@@ -1,8 +1,8 @@
-//! Functions whose last bits are the platform's: rooms that step states have none.
+//! Functions whose last bits depend on the platform: rooms that step states do not call any.
 
 use crate::{files, read, root};
 
-/// Rooms in which states are stepped and what they are stepped by is found.
+/// Rooms that step states or compute the inputs of a step.
 const SAME_BITS: [&str; 17] = [
     "almanac",
     "chance",
@@ -23,7 +23,7 @@ const SAME_BITS: [&str; 17] = [
     "scene",
 ];
 
-/// Files of them that only draw or measure light, which is rounded before it decides a state.
+/// Files of these rooms that only draw, or compute light, which is rounded before a state depends on it.
 const LIGHT_ALONE: [&str; 6] = [
     "scene/camera.rs",
     "scene/depth.rs",
@@ -33,7 +33,7 @@ const LIGHT_ALONE: [&str; 6] = [
     "planet/model.rs",
 ];
 
-/// Functions of the standard library and of glam whose last bits are the platform's.
+/// Functions of the standard library and of glam whose last bits depend on the platform.
 const PLATFORMS: [&str; 30] = [
     "sin(",
     "cos(",

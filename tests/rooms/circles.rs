@@ -1,5 +1,5 @@
-//! Circles of files: none in any room, whether a file names another by `crate::`, `super::` or through `use` lines
-//! between.
+//! Circles of files: no room has one, whether a file names another by `crate::`, by `super::` or through other files'
+//! `use` lines.
 
 use std::collections::BTreeMap;
 

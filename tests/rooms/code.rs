@@ -8,13 +8,13 @@ use std::{
 
 use syn::visit::{self, Visit};
 
-/// Place of a file in the tree of modules: `["clouds", "field"]`, none for `lib.rs`.
+/// Place of a file in the tree of modules: `["clouds", "field"]`, empty for `lib.rs`.
 pub type ModulePath = Vec<String>;
 
 /// Parsed source file.
 pub struct SourceFile {
     pub tree: syn::File,
-    /// Paths that its code names, `use` lines among them, as far as they may lead to another file.
+    /// Paths that its code names, `use` lines included, if they may lead to another file.
     pub used: Vec<Vec<String>>,
     /// Names that `use` lines give to paths.
     named: BTreeMap<String, Vec<String>>,
@@ -22,11 +22,11 @@ pub struct SourceFile {
     globs: Vec<Vec<String>>,
     /// Names of the items that the file defines at its top.
     defined: BTreeSet<String>,
-    /// Functions, those of `extern` blocks and with a foreign ABI left out.
+    /// Functions, except those of `extern` blocks and with a foreign ABI.
     pub functions: Vec<Function>,
 }
 
-/// Function with its parameters, `self` left out.
+/// Function with its parameters, except `self`.
 pub struct Function {
     pub name: String,
     pub parameters: Vec<Parameter>,
@@ -34,9 +34,9 @@ pub struct Function {
 
 /// Parameter of a function.
 pub struct Parameter {
-    /// Empty where a pattern takes it apart.
+    /// Empty for a parameter that is a pattern.
     pub name: String,
-    /// Parts of the widest tuple in its type, in the types of closures too; 0 without one.
+    /// Number of parts of the widest tuple in its type, in the types of closures too; 0 without a tuple.
     pub tuple_parts: usize,
 }
 
@@ -44,7 +44,7 @@ pub struct Parameter {
 pub struct Sources(BTreeMap<ModulePath, SourceFile>);
 
 impl Sources {
-    /// All files of `src/` but those of tests.
+    /// Reads all files of `src/` except those of tests.
     pub fn read() -> Self {
         let files = crate::files("src", "rs").into_iter().map(|(_, path)| (module_path(&path), path));
         let files = files.filter(|(module, _)| !module.iter().any(|name| name == "tests"));
@@ -60,13 +60,13 @@ impl Sources {
         self.0.iter()
     }
 
-    /// The other files that a file uses, where what it names is defined: `use` lines between are followed.
+    /// Other files that define the items a file names; re-exports are followed to the definition.
     pub fn used_by(&self, module: &ModulePath) -> BTreeSet<&ModulePath> {
         let paths = &self.0[module].used;
         paths.iter().filter_map(|path| self.resolved(module, path, 0)).filter(|found| *found != module).collect()
     }
 
-    /// The rooms that a file names after `crate::`, or by as many `super::` as lead there.
+    /// Rooms that a file names after `crate::`, or by as many `super::` as lead to the crate's root.
     pub fn rooms_named_by(&self, module: &[String]) -> BTreeSet<String> {
         let room = |path: &Vec<String>| {
             let steps = path.iter().take_while(|name| *name == "super").count();
@@ -82,13 +82,13 @@ impl Sources {
         self.0.get(module)
     }
 
-    /// The file that defines what a path leads to from a module; none outside of the crate.
+    /// File that defines the item to which a path leads from a module; `None` for items of other crates.
     pub fn defining(&self, module: &[String], path: &[String]) -> Option<&ModulePath> {
         self.resolved(module, path, 0)
     }
 
     fn resolved(&self, module: &[String], path: &[String], depth: usize) -> Option<&ModulePath> {
-        // Names that lead round in a circle of `use` lines end here.
+        // A limit for names that lead round a circle of `use` lines.
         if depth > 16 {
             return None;
         }
@@ -177,12 +177,12 @@ struct Reader {
     named: BTreeMap<String, Vec<String>>,
     globs: Vec<Vec<String>>,
     functions: Vec<Function>,
-    /// Modules written within the file that are open.
+    /// Number of modules within the file that enclose the present item.
     depth: usize,
 }
 
 impl Reader {
-    /// Keeps a path; one from a module within the file is as seen from the file.
+    /// Keeps a path; a path from a module within the file is first changed to one from the file.
     fn keep(&mut self, mut path: Vec<String>) {
         let within = path.iter().take_while(|name| *name == "super").count().min(self.depth);
         path.drain(..within);
@@ -234,7 +234,7 @@ impl<'a> Visit<'a> for Reader {
         }
     }
 
-    /// Says who may name a thing, and names none.
+    /// Skips visibilities: their paths name no used item.
     fn visit_visibility(&mut self, _visibility: &'a syn::Visibility) {}
 
     fn visit_path(&mut self, path: &'a syn::Path) {
@@ -245,9 +245,9 @@ impl<'a> Visit<'a> for Reader {
         visit::visit_path(self, path);
     }
 
-    /// Paths in the arguments of a macro, which are no tree yet.
+    /// Keeps paths in the arguments of a macro, which syn leaves as unparsed tokens.
     fn visit_macro(&mut self, call: &'a syn::Macro) {
-        // Texts and comments stand between quotes there.
+        // Text and documentation stand between quotes in these tokens.
         let code: String = call.tokens.to_string().split('"').step_by(2).collect();
         let text = code.replace(" :: ", "::");
         let words = text.split(|c: char| !c.is_alphanumeric() && c != '_' && c != ':');

@@ -1,4 +1,4 @@
-//! Identifiers that name an effect: `src/frame` and `src/context` have none.
+//! Identifiers that name an effect: `src/frame` and `src/context` may have none.
 
 use std::collections::BTreeSet;
 
@@ -20,11 +20,11 @@ fn words_of(identifier: &str) -> Vec<String> {
     words
 }
 
-/// The words of a file of Rust that name an effect or what only one has, in identifiers and in texts: messages, labels,
-/// names of shaders' constants. Its comments are left out.
+/// Words of a Rust file that name an effect, in identifiers and in text literals that are names of effects' shader
+/// constants. Comments are ignored.
 fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String> {
     const NAMES: [&str; 6] = ["star", "stars", "sea", "ground", "windscreen", "mist"];
-    // What they begin with: fogged, clouds, snowy, raining.
+    // First letters of words such as fogged, clouds, snowy, raining.
     const BEGIN: [&str; 14] = [
         "sky",
         "cloud",
@@ -41,7 +41,7 @@ fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String
         "puddle",
         "soil",
     ];
-    // What light does at a place is no effect.
+    // Names of the light at a place, which is no effect.
     const LIGHT: [&str; 6] = ["ground", "ground_albedo", "sky_lux", "GroundLight", "deck_cd_m2", "deck_cover"];
     let code: String = text.lines().map(|l| l.split("//").next().expect("a first part").to_string() + "\n").collect();
     let is_name = |w: &String| NAMES.contains(&w.as_str()) || BEGIN.iter().any(|b| w.starts_with(b));
@@ -51,7 +51,7 @@ fn effects_named_in(text: &str, constants: &BTreeSet<String>) -> BTreeSet<String
     words.filter(names).chain(in_texts).map(str::to_string).collect()
 }
 
-/// The `override` constants that the effects' own shaders have and those of what lies between, and the frame's do not:
+/// The `override` constants of the effects' own shaders and of `shaders/between` that the frame's shaders do not have:
 /// `FOG`, `AIR`.
 fn constants_of_effects() -> BTreeSet<String> {
     let named = |line: &str| Some(line.strip_prefix("override ")?.split(':').next()?.trim().to_string());
@@ -60,7 +60,7 @@ fn constants_of_effects() -> BTreeSet<String> {
         texts.flat_map(|text| text.lines().filter_map(named).collect::<Vec<_>>()).collect()
     };
     let theirs = of(|folder| EFFECTS.contains(&folder) || folder == "between");
-    // What stands about the camera is of the surroundings.
+    // Constants of the surroundings of the camera, which are no effect.
     let around = ["SHELTER", "LAMPS"];
     theirs.difference(&of(|folder| folder == "frame")).filter(|c| !around.contains(&c.as_str())).cloned().collect()
 }

@@ -1,8 +1,9 @@
-//! Functions: how long they are, and what their parameters are called.
+//! Lengths of functions and names of their parameters.
 
 use crate::{code::Sources, files, read};
 
-/// Functions of a file by their first lines' indentation: name and number of lines.
+/// Functions of a file, each with its name and number of lines: a function ends at the line with the indentation of its
+/// first.
 fn functions(text: &str) -> Vec<(String, usize)> {
     let mut open: Option<(String, usize, usize)> = None;
     let mut found = Vec::new();
@@ -45,18 +46,18 @@ fn functions_fit_a_screen() {
     assert_eq!(two, [("a".to_string(), 4), ("c".to_string(), 2)]);
 }
 
-/// Words that place a thing and do not name it.
+/// Words that place a thing without naming it.
 const PREPOSITIONS: [&str; 38] = [
     "about", "above", "across", "after", "against", "along", "among", "around", "at", "before", "behind", "below",
     "beside", "between", "beyond", "by", "down", "from", "inside", "into", "near", "of", "off", "on", "onto", "out",
     "outside", "over", "per", "through", "to", "toward", "under", "until", "up", "when", "with", "within",
 ];
-/// Function whose errors name its parameters as C hosts call them.
+/// Function whose errors name its parameters as the C API does.
 const AS_IN_C: &str = "front/air: between";
-/// Most parts of a tuple among the parameters.
+/// Greatest number of parts of a tuple among the parameters.
 const TUPLE_PARTS: usize = 2;
 
-/// Parameters of a file's functions that are wide tuples or have a preposition for a name: what is said of each.
+/// Messages about the parameters of a file's functions that are wide tuples or have a preposition for a name.
 fn unnamed_parameters(sources: &Sources) -> Vec<String> {
     let mut found = Vec::new();
     for (module, file) in sources.iter() {

@@ -1,6 +1,6 @@
-//! Rooms and arrows: which room of `src/` and which folder of `shaders/` uses which, held against the table of
-//! ARCHITECTURE.md, and no circle, neither of rooms nor of files. How long functions are and how their parameters are
-//! named, and what else holds for the text of the sources.
+//! Structure of the sources: the rooms that each room of `src/` uses, and the folders that each folder of `shaders/`
+//! uses, against the table of ARCHITECTURE.md; no circle, neither of rooms nor of files; lengths of functions, names of
+//! parameters, and other rules for the text of the sources.
 
 mod api;
 mod bits;
@@ -18,7 +18,7 @@ use std::{
 
 use code::Sources;
 
-/// What a room uses.
+/// Rooms that each room uses.
 type Arrows = BTreeMap<String, BTreeSet<String>>;
 
 fn root() -> &'static Path {
@@ -51,7 +51,7 @@ fn files(top: &str, extension: &str) -> Vec<(String, PathBuf)> {
 
 fn rust_arrows() -> Arrows {
     let sources = Sources::read();
-    // What stands at the top of the crate is above all rooms.
+    // Files at the top of the crate may use all rooms.
     let rooms: BTreeSet<_> = sources.iter().filter_map(|(module, _)| module.first()).collect();
     let mut arrows = Arrows::new();
     for (module, _) in sources.iter() {
@@ -72,7 +72,7 @@ fn shader_arrows() -> Arrows {
     arrows
 }
 
-/// The rows of the table whose first cells begin with `` `top/ ``: what each room may use.
+/// Rooms that each room may use, from the rows of the table whose first cells begin with `` `top/ ``.
 fn table(top: &str) -> Arrows {
     let text = read(&root().join("ARCHITECTURE.md"));
     let row = |line: &str| {
@@ -85,7 +85,7 @@ fn table(top: &str) -> Arrows {
     text.lines().filter_map(row).collect()
 }
 
-/// Rooms of which each uses the next, the last the first.
+/// Finds a circle: rooms of which each uses the next, and the last uses the first.
 fn circle(arrows: &Arrows) -> Option<Vec<String>> {
     fn walk(room: &str, arrows: &Arrows, way: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
         if let Some(at) = way.iter().position(|r| r == room) {
@@ -136,7 +136,7 @@ const EFFECTS: [&str; 10] = ["sky", "stars", "clouds", "lightning", "fog", "rain
 
 #[test]
 fn the_effects_are_those_of_the_list() {
-    // Rooms with a view of their own that src/effects.rs names; the test's plane is none.
+    // Rooms that src/effects.rs names for a view of their own, except the plane of tests.
     let text = read(&root().join("src/effects.rs"));
     let fields =
         text.split("pub(crate) struct Effects {").nth(1).expect("the list").split("\n}").next().expect("its fields");

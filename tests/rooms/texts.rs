@@ -1,4 +1,4 @@
-//! Files and functions that texts name, and what a fragment shader writes first.
+//! Files and functions that documents name, and the first output of a fragment shader.
 
 use std::{
     collections::BTreeSet,
@@ -7,7 +7,7 @@ use std::{
 
 use crate::{files, read, root};
 
-/// Every `` `file` `function` `` of a numbered line of ARCHITECTURE.md.
+/// Every `` `file` `function` `` pair in the numbered lines of ARCHITECTURE.md.
 fn hops() -> Vec<(String, String)> {
     let text = read(&root().join("ARCHITECTURE.md"));
     let is_numbered = |l: &&str| l.split_once(". `").is_some_and(|(n, _)| n.parse::<u32>().is_ok());
@@ -18,7 +18,7 @@ fn hops() -> Vec<(String, String)> {
     text.lines().filter(is_numbered).filter(|l| l.contains("` `")).flat_map(pairs).collect()
 }
 
-/// Rooms that each way through the code passes, hop by hop, from the lines of ARCHITECTURE.md.
+/// Rooms along each way through the code, step by step, from the numbered lines of ARCHITECTURE.md.
 fn ways(text: &str) -> Vec<Vec<String>> {
     let mut ways = Vec::new();
     for line in text.lines() {

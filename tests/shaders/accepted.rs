@@ -1,12 +1,12 @@
-//! What is known of shaders' operands that their sources do not say.
+//! Facts about shaders' operands that do not follow from the shaders' sources.
 
 use std::f64::consts::PI;
 
-/// Any number above 0 that a float holds without being flushed.
+/// Least number above 0 that surely is not flushed to 0 in a float.
 const TINY: f64 = 1e-30;
 const HUGE: f64 = f64::INFINITY;
 
-/// Members of blocks and override constants whose range the processor's side keeps: name, least, most, reason.
+/// Members of blocks and override constants whose range the Rust code guarantees: name, least, greatest, reason.
 pub const FIELDS: &[(&str, f64, f64, &str)] = &[
     ("SkyAir.bottom_m", 1e3, 1e9, "ranges of a planet's fields"),
     ("SkyAir.thickness_m", 1e-3, 1e9, "a planet's top is refused at or below its bottom"),

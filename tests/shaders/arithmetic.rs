@@ -1,4 +1,4 @@
-//! What operators and built-in functions make of ranges.
+//! Ranges of the results of operators and built-in functions.
 
 use wgpu::naga::{BinaryOperator as B, Literal, MathFunction as M};
 
@@ -21,7 +21,7 @@ pub fn splat(value: &Value, size: usize) -> Value {
     Value::Numbers(vec![value.whole(); size])
 }
 
-/// The value with all its numbers in this range.
+/// The value with this range for all its numbers.
 pub fn all(value: Value, range: Range) -> Value {
     match value {
         Value::Numbers(numbers) => Value::Numbers(vec![range; numbers.len()]),
@@ -31,7 +31,7 @@ pub fn all(value: Value, range: Range) -> Value {
     }
 }
 
-/// The value with components of its vectors in these ranges, where there are any.
+/// The value with new ranges for those components of its vectors for which `of` returns one.
 pub fn components(value: Value, of: &dyn Fn(usize) -> Option<Range>) -> Value {
     match value {
         Value::Numbers(numbers) => {
@@ -51,7 +51,7 @@ pub fn not_negative(value: Value) -> Value {
     }
 }
 
-/// Integers that leave their type begin anew at its other end: then they may be anything.
+/// Integers beyond the range of their type wrap round: the result may then be any value.
 pub fn within_type(value: Value, any: &Value) -> Value {
     match (&value, any) {
         (Value::Numbers(a), Value::Numbers(b)) => {
@@ -72,7 +72,7 @@ pub fn each(value: &Value, of: impl Fn(Range) -> Range) -> Value {
     }
 }
 
-/// Component by component; a scalar beside a vector stands for each of its components.
+/// Applies `of` component by component; a scalar beside a vector is used for each component.
 pub fn pairs(a: &Value, b: &Value, of: impl Fn(Range, Range) -> Range) -> Value {
     let (a, b) = (a.numbers(), b.numbers());
     if a.is_empty() || b.is_empty() || (a.len() != b.len() && a.len() > 1 && b.len() > 1) {
@@ -87,7 +87,7 @@ pub fn binary(op: B, a: &Value, b: &Value, is_same: bool) -> Value {
         B::Add => pairs(a, b, Range::add),
         B::Subtract => pairs(a, b, |a, b| if is_same { Range::of(0.0) } else { a.add(b.negate()) }),
         B::Multiply => pairs(a, b, |a, b| if is_same { a.square() } else { a.multiply(b) }),
-        // Of integers a divisor of 0 leaves what is divided.
+        // An integer divided by 0 stays unchanged.
         B::Divide => pairs(a, b, |a, b| {
             if a.is_within(Range::U32) && b.lo >= 0.0 && b.lo < 1.0 && b.hi > 1.0 {
                 if b.excludes_zero() { a.divide(b) } else { Range::new(0.0, f64::INFINITY) }
@@ -180,7 +180,7 @@ pub fn math(fun: M, a: &Value, b: Option<&Value>, c: Option<&Value>, is_same: bo
     }
 }
 
-/// Of what is not negative, to any power.
+/// Range of a power of a base that is not negative.
 fn power(base: Range, exponent: Range) -> Range {
     if base.lo < 0.0 {
         return Range::ALL;
@@ -192,7 +192,7 @@ fn power(base: Range, exponent: Range) -> Range {
         corner(base.hi, exponent.lo),
         corner(base.hi, exponent.hi),
     ];
-    // Between the corners a power of 1 is passed.
+    // A base of 1 within the range gives 1, which may lie beyond all corners.
     let one = if base.lo < 1.0 && base.hi > 1.0 { 1.0 } else { corners[0] };
     let fold = |of: fn(f64, f64) -> f64, from: f64| corners.into_iter().chain([one]).fold(from, of);
     Range::new(fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))

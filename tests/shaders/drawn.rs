@@ -1,5 +1,5 @@
-//! Values that are no numbers: limits let them through in builds with debug assertions, and a picture that holds one
-//! cannot be read.
+//! Values that are not numbers: in builds with debug assertions limits let them pass, and reading a picture that holds
+//! one fails.
 
 use welkin::gpu::{Device, DeviceOptions, readback, shader};
 use welkin_support::{fullscreen, textures::texture};
@@ -51,7 +51,7 @@ fn what_is_no_number_goes_through_limits_and_fails_the_reading() {
     for row in texels.chunks(3) {
         assert!(row[0][0].is_nan() && row[1][0].is_nan() && row[2][0].is_finite(), "{row:?}");
     }
-    // The tests are built with debug assertions; a release hands out what is there.
+    // The tests are built with debug assertions; a release build returns the values as they are.
     if cfg!(debug_assertions) {
         let error = readback::rgba(&device, &target).unwrap_err().to_string();
         assert!(error.contains("texel (0, 0)") && error.contains("not finite"), "{error}");

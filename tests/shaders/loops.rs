@@ -1,6 +1,6 @@
-//! Every loop of every shader ends, whatever the blocks, buffers and textures hold that it reads. A driver that hands a
-//! shader another block's bytes must get a wrong picture of it, not a GPU that hangs: wgpu counts no turns of our
-//! loops.
+//! Every loop of every shader ends, whatever values the blocks, buffers and textures hold. If a driver gives a shader
+//! the bytes of another block, the result must be a wrong picture and not a GPU that hangs: Welkin switches wgpu's own
+//! limit off (`force_loop_bounding`).
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashSet},
@@ -22,11 +22,12 @@ use super::{
 
 type Expression = Handle<wgpu::naga::Expression>;
 
-/// Most turns of a loop: more than a march of 4,096 cells and than a thread's part of the longest list take.
+/// Greatest number of turns of a loop: more than a march of 4,096 cells needs, and more than a thread's part of the
+/// longest list.
 const MOST_TURNS: f64 = 262_144.0;
 
-/// Whether a loop stops at some turn by what its body begins with: `if !(i < end) { break; }` with an end that has a
-/// limit, of a counter that only grows.
+/// Whether the first statement of a loop's body ends it at some turn: `if !(i < end) { break; }`, where `end` has a
+/// limit and the counter `i` only grows.
 fn ends(function: &Function, body: &Block, continuing: &Block, values: &[Value]) -> bool {
     body.iter().any(|statement| {
         let Statement::If { condition, accept, reject } = statement else { return false };
@@ -59,7 +60,7 @@ fn is_limited(
                 && (limit(values, right) <= MOST_TURNS || is_from_start(function, left, right))
         }
         E::Binary { op: B::Greater | B::GreaterEqual, left, right } => {
-            // Halved, any number is 0 after 32 turns.
+            // An integer that is halved each turn is 0 after 32 turns.
             (steps(function, left, (body, continuing), &[B::Divide]) && least(values, right) >= 0.0)
                 || (steps(function, left, (body, continuing), &[B::Subtract]) && limit(values, left) <= MOST_TURNS)
         }
@@ -89,7 +90,7 @@ fn sides(function: &Function, body: &Block, pointer: Expression) -> Vec<Expressi
     all
 }
 
-/// The variable that a counter is read from, perhaps with a number added.
+/// Variable from which a counter is read, perhaps with a number added.
 fn counter(function: &Function, read: Expression) -> Option<Handle<LocalVariable>> {
     match function.expressions[read] {
         E::Load { pointer } => target(function, pointer).map(|(variable, _)| variable),
@@ -119,7 +120,7 @@ fn steps(function: &Function, read: Expression, (body, continuing): (&Block, &Bl
             moves |= is_step;
         });
     }
-    // A step in a branch may be left out: it must stand where each turn passes.
+    // The step must be where every turn passes: a step in a branch could be skipped.
     fits && moves && [body, continuing].into_iter().any(|block| always_stores(function, block, variable))
 }
 
@@ -160,13 +161,13 @@ fn is_from_start(function: &Function, read: Expression, end: Expression) -> bool
     })
 }
 
-/// A constant of a pipeline comes from the program that made it, and none that a loop ends by is above 64.
+/// Range of a pipeline constant: Welkin sets it when it makes the pipeline, and none that ends a loop is above 64.
 fn constant(name: &str) -> Option<Range> {
     let is_constant = name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     is_constant.then_some(Range::new(0.0, 64.0))
 }
 
-/// Functions and the first line of each loop in them that nothing ends.
+/// Loops for which no end is proven, by function and first line; also the number of all loops.
 fn endless(text: &str) -> (BTreeSet<(String, String)>, usize) {
     let mut shader = Shader::new(text, &constant);
     let (mut faults, mut loops) = (BTreeSet::new(), HashSet::new());
@@ -242,7 +243,7 @@ fn a_loop_that_a_block_lifts_is_seen() {
     assert_eq!(count("most", "i *= 2u"), 1, "a counter that does not count");
 }
 
-/// The caps of the sky's loops are the ends of its settings' ranges: none that is accepted is cut.
+/// The limits of the sky's loops are the upper ends of the settings' ranges: no accepted setting is cut.
 #[test]
 fn the_skys_caps_are_its_settings_own() {
     use welkin::sky::SkySettings;

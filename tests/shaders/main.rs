@@ -1,5 +1,5 @@
-//! What all shaders keep to, read from naga's form of each of them: operations have answers (operands.rs), loops end
-//! (loops.rs), and what drivers are handed is valid (written.rs).
+//! Rules for all shaders, checked on naga's form of each: operations have defined results (operands.rs), loops end
+//! (loops.rs), and the code that drivers get is valid (written.rs).
 
 mod accepted;
 mod arithmetic;
@@ -17,7 +17,7 @@ fn all_shaders() -> Vec<String> {
     shader::names().flat_map(|name| shader::with_variants(name).expect("a shader")).collect()
 }
 
-/// The text of one, assembled.
+/// Assembled text of a shader.
 fn text(name: &str) -> String {
     shader::assemble(name).expect("a shader")
 }

@@ -1,6 +1,6 @@
-//! Every operation of every shader that has no answer for some operands: a division, a remainder, a root, a logarithm,
-//! a power, an inverse cosine or sine, a unit vector. Its operands are proven safe by their ranges, or it stands in a
-//! list with its reason.
+//! Operations that have no result for some operands: divisions, remainders, roots, logarithms, powers, inverse cosines
+//! and sines, unit vectors. In every shader the ranges of their operands are proven safe, or the operation is listed
+//! with the reason why it is safe.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -14,14 +14,14 @@ use super::{
     value::{Range, Value},
 };
 
-/// Functions whose business it is to have an answer for every operand: `shaders/common/guarded.wgsl`.
+/// File of functions that exist to have a result for every operand.
 const GUARDED: &str = "common/guarded.wgsl";
 
 fn fact(name: &str) -> Option<Range> {
     FIELDS.iter().find(|(known, ..)| *known == name).map(|(_, lo, hi, _)| Range::new(*lo, *hi))
 }
 
-/// Whether an operation has an answer for all values that its operands may have.
+/// Whether an operation has a result for all values that its operands may have.
 fn is_safe(function: &Function, expression: &Expression, values: &[Value], is_float: bool) -> bool {
     let of = |handle: &Handle<Expression>| &values[handle.index()];
     let all = |handle: &Handle<Expression>, fits: &dyn Fn(Range) -> bool| {
@@ -54,7 +54,7 @@ fn is_safe(function: &Function, expression: &Expression, values: &[Value], is_fl
     }
 }
 
-/// Whether it is `select(x, a, abs(x) < b)` with numbers a and b that are not 0: no x near 0 is left.
+/// Whether an expression is `select(x, a, abs(x) < b)` with numbers a and b that are not 0, so that it is never near 0.
 fn is_parted(function: &Function, handle: Handle<Expression>) -> bool {
     let at = |handle: Handle<Expression>| &function.expressions[handle];
     let is_number = |mut handle: Handle<Expression>| {
@@ -64,7 +64,7 @@ fn is_parted(function: &Function, handle: Handle<Expression>) -> bool {
         match at(handle) {
             E::Literal(_) => true,
             E::Compose { components, .. } => components.iter().all(|c| matches!(at(*c), E::Literal(_))),
-            // One of two numbers by its sign.
+            // A number may also be one of two, chosen by a sign.
             E::Select { accept, reject, .. } => [accept, reject].into_iter().all(|e| matches!(at(*e), E::Literal(_))),
             _ => false,
         }
@@ -75,7 +75,7 @@ fn is_parted(function: &Function, handle: Handle<Expression>) -> bool {
     same(function, *arg, *reject) && is_number(*accept) && is_number(*right)
 }
 
-/// Names of functions and the operations in them that are not proven safe, as they stand in the source.
+/// Operations that are not proven safe, by function and source text.
 fn unproven(text: &str) -> BTreeSet<(String, String)> {
     let mut shader = Shader::new(text, &fact);
     let guarded = guarded_functions();
@@ -97,7 +97,7 @@ fn unproven(text: &str) -> BTreeSet<(String, String)> {
     faults
 }
 
-/// The operation at a place in the source, of a call with its arguments.
+/// Source text of the operation at a place; for a call its arguments too.
 fn whole_call(text: &str, at: std::ops::Range<usize>) -> &str {
     if !text[at.end..].starts_with('(') {
         return &text[at];

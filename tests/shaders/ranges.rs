@@ -1,9 +1,9 @@
-//! Ranges of the values in a shader, found from its source by naga: what no operand can leave, whatever the blocks and
-//! textures hold.
+//! Ranges of the values in a shader, computed from naga's form of its source: bounds that hold whatever values the
+//! blocks and textures have.
 //!
 //! Each function is evaluated for the arguments of each of its calls. A variable may have any value that is stored in
-//! it anywhere: first it is taken not to be negative, which holds where all that is stored is then not negative either.
-//! Branches narrow nothing.
+//! it anywhere. It is first assumed not to be negative; the assumption holds if no value stored under it is negative.
+//! Conditions of branches do not narrow ranges.
 
 use std::collections::{HashMap, HashSet};
 
@@ -21,7 +21,7 @@ use super::{
 /// Range of a member of a block or of an override constant, by `Struct.member` or by the constant's name.
 pub type Facts<'a> = &'a dyn Fn(&str) -> Option<Range>;
 
-/// Of the functions of a shader.
+/// One of the functions of a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Of {
     Entry(usize),
@@ -75,7 +75,7 @@ pub fn calls(function: &Function) -> Vec<Call> {
     all
 }
 
-/// The variable that a pointer leads into, and the way to the part that it means.
+/// Variable that a pointer leads into, and the path to the part that it points to.
 pub fn target(
     function: &Function,
     pointer: Handle<naga::Expression>,
@@ -118,7 +118,7 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// All entry points, with arguments of any value; of the snippets for hosts' own shaders all functions.
+    /// All entry points, with arguments of any value; in the snippets for hosts' own shaders all functions.
     fn roots(&self) -> Vec<(Of, Vec<Value>)> {
         let entries = (0..self.module.entry_points.len()).map(Of::Entry);
         let functions = self.module.functions.iter();
@@ -130,13 +130,13 @@ impl<'a> Shader<'a> {
 
     fn argument(&self, argument: &naga::FunctionArgument) -> Value {
         match argument.binding {
-            // No workgroup is larger.
+            // No workgroup has more invocations.
             Some(naga::Binding::BuiltIn(naga::BuiltIn::LocalInvocationIndex)) => Value::scalar(Range::new(0.0, 1023.0)),
             _ => self.any(argument.ty),
         }
     }
 
-    /// A value of which nothing but its type is known, and what the facts say of its members.
+    /// Value of which only its type and the facts about its members are known.
     pub fn any(&self, ty: Handle<Type>) -> Value {
         self.any_of(&self.module.types[ty].inner, self.module.types[ty].name.as_deref())
     }
@@ -231,7 +231,7 @@ impl<'a> Shader<'a> {
         let mut locals: HashMap<Handle<LocalVariable>, Value> =
             function.local_variables.iter().map(|(v, l)| (v, not_negative(self.any(l.ty)))).collect();
         let mut found = self.pass(of, &function, arguments, &locals);
-        // Until what is stored fits what was taken for it.
+        // Repeats until the stored values fit those that were assumed.
         loop {
             let stored = self.stored(&function, &found.values);
             let wrong = stored.iter().filter(|(v, held)| !held.is_within(&locals[v])).map(|(v, _)| *v);
@@ -251,7 +251,7 @@ impl<'a> Shader<'a> {
         found
     }
 
-    /// What variables hold by all that is stored in them.
+    /// Values of variables, from all values that are stored in them.
     fn stored(&self, function: &Function, values: &[Value]) -> HashMap<Handle<LocalVariable>, Value> {
         let first = |l: &LocalVariable| l.init.map_or_else(|| self.zero(l.ty), |init| values[init.index()].clone());
         let mut all: HashMap<_, _> = function.local_variables.iter().map(|(v, l)| (v, first(l))).collect();
@@ -266,7 +266,7 @@ impl<'a> Shader<'a> {
                     all.get_mut(&variable).expect("a variable").join_at(&path, &values[value.index()]);
                 }
             }
-            // Through a pointer a function stores what it will.
+            // A function may store any value through a pointer.
             Statement::Call { arguments, .. } => arguments.iter().for_each(|a| anything(*a, &mut all)),
             _ => {}
         });
@@ -351,7 +351,7 @@ impl<'a> Shader<'a> {
                 let picked = pattern[..*size as usize].iter().map(|p| numbers.get(*p as usize).copied());
                 picked.collect::<Option<Vec<_>>>().map_or(Value::Other, Value::Numbers)
             }
-            // Of things, blocks of bits, stars: no list is longer.
+            // No list (of precipitation, blocks of bits, stars) is longer.
             E::ArrayLength(_) => Value::scalar(Range::new(1.0, 16_777_216.0)),
             E::ImageQuery { query, .. } => match query {
                 ImageQuery::Size { .. } => Value::Numbers(vec![Range::new(1.0, 65536.0); 3]),

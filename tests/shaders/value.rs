@@ -7,7 +7,7 @@ pub struct Range {
     pub hi: f64,
 }
 
-/// What a normalised or trigonometric value may be off by.
+/// Greatest rounding error of a normalised or trigonometric value.
 pub const ROUNDING: f64 = 1e-6;
 
 impl Range {
@@ -34,7 +34,7 @@ impl Range {
         self.lo >= other.lo && self.hi <= other.hi
     }
 
-    /// Whether it is so far from 0 that a single float of it is not flushed to 0.
+    /// Whether all numbers of the range are so far from 0 that none is flushed to 0 as a 32-bit float.
     pub fn excludes_zero(self) -> bool {
         self.lo > 1e-37 || self.hi < -1e-37
     }
@@ -76,20 +76,20 @@ impl Range {
         Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
     }
 
-    /// By a function that never falls.
+    /// Range of a function that never falls, over this range.
     pub fn rising(self, of: impl Fn(f64) -> f64) -> Self {
         Self::new(of(self.lo), of(self.hi))
     }
 }
 
-/// What is known of an expression's value.
+/// Known facts about an expression's value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A scalar or a vector.
     Numbers(Vec<Range>),
     /// A struct's members.
     Parts(Vec<Value>),
-    /// An array, by what holds of each of its elements.
+    /// An array, by the value that holds for each of its elements.
     Each(Box<Value>),
     /// A matrix, a pointer, an image.
     Other,
@@ -104,7 +104,7 @@ impl Value {
         if let Self::Numbers(all) = self { all } else { &[] }
     }
 
-    /// What holds of all components of a vector.
+    /// Range of all components of a vector together.
     pub fn whole(&self) -> Range {
         self.numbers().iter().copied().reduce(Range::join).unwrap_or(Range::ALL)
     }
@@ -131,7 +131,7 @@ impl Value {
         }
     }
 
-    /// A member, component or element; any of them where the index is not known.
+    /// A member, component or element; the union of all where the index is not known.
     pub fn part(&self, index: Option<u32>) -> Option<Self> {
         let at = index.map(|i| i as usize);
         match (self, at) {

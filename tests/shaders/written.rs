@@ -1,7 +1,7 @@
-//! Every shader in the languages that drivers are handed: GLSL of OpenGL 3.3 and of OpenGL ES 3.0 as naga writes it,
-//! and SPIR-V with the bounds checks that wgpu asks for where a device has no robustImageAccess. The rules that naga's
-//! form shows are checked everywhere; glslang and SPIRV-Tools (Debian: glslang-tools, spirv-tools) read what is written
-//! where they are installed.
+//! Every shader in the languages that drivers get: GLSL of OpenGL 3.3 and of OpenGL ES 3.0 as naga writes it, and
+//! SPIR-V with the bounds checks that wgpu requests on a device without robustImageAccess. Rules that can be checked on
+//! naga's form are checked on every machine; where glslang and SPIRV-Tools (Debian: glslang-tools, spirv-tools) are
+//! installed, they check the written code too.
 
 use std::{collections::BTreeSet, path::PathBuf, process::Command};
 
@@ -20,7 +20,7 @@ fn parsed(name: &str) -> (Module, ModuleInfo) {
     (module, info)
 }
 
-/// What `fault` finds in the functions of all shaders, by function and expression.
+/// Functions and source lines of the expressions for which `fault` returns true, in all shaders.
 fn faults(fault: impl Fn(&E, &FunctionInfo, &Module) -> bool) -> BTreeSet<String> {
     let mut all = BTreeSet::new();
     for name in all_shaders() {
@@ -43,7 +43,7 @@ fn faults(fault: impl Fn(&E, &FunctionInfo, &Module) -> bool) -> BTreeSet<String
     all
 }
 
-/// naga writes a choice by components as `mix`, which takes integers and booleans from GLSL 4.50 and ES 3.10 on only.
+/// naga writes a choice by components as `mix`, which accepts integers and booleans only from GLSL 4.50 and ES 3.10 on.
 #[test]
 fn integers_are_not_chosen_by_components() {
     let found = faults(|e, info, module| match e {
@@ -56,8 +56,9 @@ fn integers_are_not_chosen_by_components() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// naga's check of bounds subtracts signed ones from the coordinates' size (`write_coordinate_one` of its SPIR-V
-/// writer): of unsigned coordinates that is no valid SPIR-V (VUID-VkShaderModuleCreateInfo-pCode-08737).
+/// naga's bounds check subtracts a signed 1 from the texture's size, in the type of the coordinates
+/// (`write_coordinate_one` of its SPIR-V writer): with unsigned coordinates the result is not valid SPIR-V
+/// (VUID-VkShaderModuleCreateInfo-pCode-08737).
 #[test]
 fn texels_are_loaded_by_signed_coordinates() {
     let found = faults(|e, info, module| match e {
@@ -69,7 +70,7 @@ fn texels_are_loaded_by_signed_coordinates() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// A folder for what is written, removed with the value.
+/// Folder for the written shaders, removed when the value is dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -92,7 +93,7 @@ impl Drop for Folder {
     }
 }
 
-/// Runs a tool on files, many at once; prints that it is skipped where it is not installed.
+/// Runs a tool on files, `at_once` in each call; prints that it is skipped where it is not installed.
 fn read_by(tool: &str, package: &str, files: &[PathBuf], arguments: &[&str], at_once: usize) {
     if Command::new(tool).arg("--version").output().is_err() {
         println!(
@@ -106,7 +107,7 @@ fn read_by(tool: &str, package: &str, files: &[PathBuf], arguments: &[&str], at_
         let output = Command::new(tool).args(arguments).args(some).output().expect("the tool runs");
         if !output.status.success() {
             let said = [output.stdout, output.stderr].map(|s| String::from_utf8_lossy(&s).into_owned()).concat();
-            // glslang prints each file's name before what it says of it.
+            // glslang prints each file's name before its messages about it.
             let mut file = some[0].display().to_string();
             for line in said.lines() {
                 if line.starts_with('/') {
@@ -158,8 +159,8 @@ fn glsl_of_the_oldest_versions_is_read() {
                     back::glsl::Writer::new(&mut out, &module, &info, &options, &how, BoundsCheckPolicies::default());
                 let done = writer.and_then(|mut writer| writer.write());
                 if let Err(e) = done {
-                    // Lists of what falls are in buffers, samples of their own and multisampled textures come later: no
-                    // such device is given these.
+                    // Such devices never get shaders with storage buffers (the lists of precipitation), a run for each
+                    // sample or multisampled textures.
                     let beyond = ["BUFFER_STORAGE", "SAMPLE_VARIABLES", "MULTISAMPLED_TEXTURES"];
                     let is_expected = beyond.iter().any(|feature| e.to_string().contains(feature));
                     assert!(is_expected, "{name}, {}, {label}: {e}", entry.name);
@@ -210,9 +211,9 @@ fn spir_v_with_bounds_checks_is_valid() {
     read_by("spirv-val", "spirv-tools", &files, &["--target-env", "vulkan1.1"], 1);
 }
 
-/// Pipelines that test for equal depth draw with other programs than those that wrote it: each vertex shader of a full
-/// screen says that its positions are the same in all of them, and no fragment shader's input does, for which naga
-/// would write what OpenGL ES refuses.
+/// Pipelines that test for equal depth draw with other programs than those that wrote the depth. So each vertex shader
+/// of a full screen declares its position invariant, which makes it the same in all of them; no fragment shader's input
+/// may be declared so, since OpenGL ES refuses what naga writes for it.
 #[test]
 fn positions_of_full_screens_are_invariant() {
     use wgpu::naga::{Binding, BuiltIn};

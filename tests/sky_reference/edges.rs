@@ -1,11 +1,11 @@
-//! Where such methods fail: edge media, altitudes from below the ground to far out, twilight, the horizon.
+//! Cases in which such methods fail: extreme media, altitudes from below the ground to far out, twilight, the horizon.
 
 use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 
 use super::{golden, hazy, solve};
 
-/// Small grids: these tests look for broken numbers, not for digits.
+/// Small grids: these tests look for broken values, not for exact ones.
 fn coarse(planet: &Planet, orders: Orders) -> Reference {
     let resolution =
         Resolution { altitudes: 6, sun_angles: 14, zeniths: 6, azimuths: 4, panel_points: 3, haze_directions: (9, 5) };
@@ -105,7 +105,7 @@ fn twilight_falls_without_a_step() {
             for c in 0..3 {
                 let fall = now[c] / before[c];
                 assert!(fall < 1.0 && fall > 0.8, "sun {}: {fall}", f64::from(tenths) / 10.0);
-                // The logarithm's slope changes slowly: no stairs at the grid's nodes.
+                // The slope of the logarithm changes slowly: no steps at the grid's nodes.
                 let step = slope[c].map_or(0.0, |s: f64| (fall.ln() - s).abs());
                 let allowed = if tenths < 1000 { 0.025 } else { 0.06 };
                 assert!(step < allowed, "sun {}: kink {step}", f64::from(tenths) / 10.0);
@@ -125,8 +125,8 @@ fn horizon_has_no_seam() {
         for sun in [30.0, 85.0, 91.0] {
             let view = |d: f64| View::degrees(altitude, sun, horizon + d, 40.0);
             let at = |d: f64| truth.aerial(&view(d), 1e9).unwrap();
-            // Above, the light itself is even; below, the path shortens like a square root, so the light per share of
-            // the path that is not transmitted is.
+            // Above the horizon the light itself changes evenly. Below it the path shortens like a square root, so the
+            // light divided by one minus the transmittance changes evenly.
             for side in [-1.0, 1.0] {
                 let even = |d: f64, c: usize| {
                     let along = at(d);
@@ -140,7 +140,7 @@ fn horizon_has_no_seam() {
                     }
                 }
             }
-            // The ray that just misses the ground, cut where the other one ends, is that other one.
+            // The ray that just misses the ground, cut where the ray that just hits it ends, gives the same light.
             let (above, below) = (view(-1e-9), at(1e-9));
             assert!(below.ground && !at(-1e-9).ground);
             let cut = (altitude * (2.0 * r + altitude)).sqrt();

@@ -23,8 +23,8 @@ const TABLE: [(f64, f64, [f64; 3]); 5] = [
     (95.0, 0.0, [4.45e-5, 4.48e-5, 4.35e-5]),
 ];
 
-/// The published program integrates every ray in 50 trapezoid steps. Doing its last integral by the same rule, with the
-/// air's light at each step from the solution, shows how much of the difference is that rule's.
+/// The published program integrates every ray in 50 trapezoid steps. The last integral by the same rule, with the air's
+/// light at each step from our solution, shows how much of the difference is due to that rule.
 fn by_fifty_trapezoids(truth: &Reference, view: &View) -> [f64; 3] {
     let medium = Medium::of(truth.planet());
     let ray = Ray::new(&medium, view.altitude_m, view.view_zenith.cos());
@@ -81,7 +81,7 @@ fn golden_transmittance_to_four_digits() {
     }
 }
 
-/// Order 2 by a nested sum that shares no grid, no interpolation and no phase-function trick with the solver.
+/// Order 2 by a nested sum that uses none of the solver's grids, interpolations and treatments of phase functions.
 fn second_order(planet: &Planet, first: &Reference, view: &View, n: usize, points: usize) -> [f64; 3] {
     let medium = Medium::of(planet);
     let (mu, mu_s) = (view.view_zenith.cos(), view.sun_zenith.cos());

@@ -1,4 +1,4 @@
-//! Laws that the light must keep whatever the numbers: energy, symmetry, additivity, limits, other people's integrals.
+//! Laws that the light must obey for any air: energy, symmetry, additivity, limits; and published integrals.
 
 use std::f64::consts::PI;
 
@@ -121,7 +121,7 @@ fn white_planet_returns_all_light() {
     for (s, ws) in suns.nodes.iter().zip(&suns.weights) {
         let sun = (s + 1.0) / 2.0 * 115f64.to_radians();
         let ring = ws / 2.0 * 115f64.to_radians() * sun.sin() * 2.0 * PI * top * top;
-        // Seen from the top downwards: limb and ground, each with its own rule.
+        // Directions seen from the top of the air: limb and ground, each with its own quadrature rule.
         for (from, to) in [(-1.0, horizon), (horizon, 0.0)] {
             for (m, wm) in zeniths.nodes.iter().zip(&zeniths.weights) {
                 let mu = from + (m + 1.0) / 2.0 * (to - from);
@@ -157,10 +157,10 @@ fn white_planet_returns_all_light() {
     }
 }
 
-/// A source system's single scattering from the side away from the sun over that towards it, phase left out: its own
-/// air (no haze, H = 7994 m, 100 km) in red, green, blue; ratios computed apart, their own steps leaving 0.003 where
-/// the shadow's edge crosses the ray (a sum in 1500 equal steps gives 0.2933 and 0.6985 where they have 0.295 and
-/// 0.695).
+/// Single scattering towards the side away from the sun over that towards the sun, without the phase function, against
+/// ratios of another program for its own air (no haze, H = 7994 m, 100 km) in red, green, blue. That program's own
+/// steps leave errors of 0.003 where the edge of the shadow crosses the ray: a sum in 1500 equal steps gives 0.2933 and
+/// 0.6985 where it has 0.295 and 0.695.
 #[test]
 fn far_side_of_the_sky_against_published_ratios() {
     let mut planet = Planet::earth();

@@ -1,6 +1,6 @@
-//! The sky's f64 truth against published values, against sums done another way, and against itself.
+//! The sky's f64 reference against published values, against sums by other methods, and against finer grids of its own.
 
-// The three wavelengths of several triples at once read best by index.
+// Loops over the three wavelengths of several triples at once are clearest with an index.
 #![allow(clippy::needless_range_loop)]
 
 mod edges;
@@ -11,7 +11,7 @@ mod spectrum;
 use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 
-/// The long variants run with WELKIN_ACCEPT=1.
+/// Whether WELKIN_ACCEPT is set, which runs the long variants.
 fn accept() -> bool {
     std::env::var("WELKIN_ACCEPT").is_ok_and(|v| v == "1")
 }
@@ -62,8 +62,9 @@ fn differences(a: &Reference, b: &Reference) -> Vec<f64> {
     out
 }
 
-/// A solution and finer ones: everyday a coarse one and one half as fine again; accepted the finest one with each of
-/// its sizes doubled in turn, whose differences add up to no less than all doubled at once (which would take an hour).
+/// A resolution and finer ones to compare with: usually a coarse one, and one half as fine again. With WELKIN_ACCEPT
+/// the finest one, with each of its sizes doubled in turn: the sum of the differences is not less than the difference
+/// with all doubled at once, which would take an hour.
 fn resolutions() -> (Resolution, Vec<Resolution>) {
     if !accept() {
         let base = Resolution { altitudes: 10, sun_angles: 30, zeniths: 10, azimuths: 9, ..Resolution::QUICK };

@@ -1,4 +1,4 @@
-//! What three wavelengths leave of the colours that forty show.
+//! Errors of colours from few wavelengths against those from forty.
 
 use welkin::light::{EARTH_WAVELENGTHS_NM, luminance};
 use welkin::sky::planet::Planet;
@@ -7,7 +7,8 @@ use welkin::sky::spectral::{Conversion, SpectralSet};
 
 use super::accept;
 
-/// Skies and suns by their zenith angles: (sun, view, azimuth); a view of the sun itself asks for its direct light.
+/// Cases by their angles: the sun's zenith angle, then view zenith angle and azimuth; `None` stands for the direct
+/// light of the sun.
 fn cases() -> Vec<(f64, Option<(f64, f64)>)> {
     let mut cases: Vec<_> = [0.0, 60.0, 80.0, 86.0, 89.0].map(|sun| (sun, None)).to_vec();
     for sun in [20.0, 60.0, 80.0, 88.0, 90.0, 93.0, 96.0] {
@@ -18,7 +19,8 @@ fn cases() -> Vec<(f64, Option<(f64, f64)>)> {
     cases
 }
 
-/// Transfers of every case at three wavelengths. Everyday single scattering is enough: the spectra are as varied.
+/// Transfers of every case at three wavelengths. Without WELKIN_ACCEPT single scattering is enough, because its spectra
+/// are as varied.
 fn transfers(planet: &Planet) -> Vec<[f64; 3]> {
     let orders = if accept() { Options::default().orders } else { Orders::Exactly(1) };
     let resolution = Resolution {
@@ -37,9 +39,9 @@ fn transfers(planet: &Planet) -> Vec<[f64; 3]> {
     cases().iter().map(ask).collect()
 }
 
-/// Largest channel's and luminance's error over the luminance, root mean square over the cases.
+/// Errors of the worst channel and of the luminance, both over the luminance, root mean square over the cases.
 fn errors(colours: &[[f64; 3]], exact: &[[f64; 3]]) -> (f64, f64) {
-    // Light scattered once does not reach every twilight sky.
+    // Light scattered only once does not reach every twilight sky.
     let lit: Vec<_> = colours.iter().zip(exact).filter(|(_, b)| luminance(b) > 1e-3).collect();
     let rms = |f: &dyn Fn(&[f64; 3], &[f64; 3]) -> f64| {
         (lit.iter().map(|(a, b)| f(a, b).powi(2)).sum::<f64>() / lit.len() as f64).sqrt()
@@ -80,8 +82,8 @@ fn three_wavelengths_against_forty() {
             assert!(channel < 0.6 * before);
             before = channel;
         }
-        // Haze follows a power of the wavelength, which sixteen lines sample less well than air alone: 1.5 % in light
-        // scattered once, 1.2 % in all.
+        // Haze follows a power of the wavelength, which sixteen wavelengths sample less well than air alone: errors of
+        // 1.5 % in light scattered once, 1.2 % in all light.
         assert!(before < 0.018);
         let three = |nm: [f64; 3], conversion: &Conversion| -> Vec<[f64; 3]> {
             let dim = Planet { solar_irradiance: [1.0; 3], ..planet.at_wavelengths(nm) };

@@ -1,4 +1,4 @@
-//! Falling snow as a host sees it: where flakes are drawn, what they hide, where none fall. One binary, so that it
+//! Falling snow as a host sees it: where flakes are drawn, how much they hide, where none fall. One binary, so that it
 //! links once.
 
 use glam::DVec3;
@@ -17,13 +17,13 @@ use welkin::{
 };
 use welkin_support::rain_scene::{Host, NEAR_M, upright};
 
-/// Radiance of the host's picture: far above what flakes send at night, within half floats.
+/// Radiance of the host's picture: far above the light of flakes at night, within the range of half floats.
 const WHITE: f64 = 3e4;
 const MOST: u32 = 20_000;
 const LN_20: f64 = 2.995_732_273_553_991;
 
 fn snow(kind: PrecipitationKind, rate_mm_h: f64, wind_m_s: f64) -> Weather {
-    // As the snow alone makes it, in air of 20 km.
+    // Extinction of the snow, in air with a visibility of 20 km.
     let extinction = snow_extinction_per_m(rate_mm_h) + LN_20 / 20_000.0;
     let mut weather = Weather {
         precipitation: Precipitation::of(kind, rate_mm_h),
@@ -40,7 +40,7 @@ fn settings(model: SnowModel) -> SnowSettings {
     SnowSettings { model, most_flakes: Some(MOST), ..SnowSettings::default() }
 }
 
-/// A host at night, so that flakes only hide.
+/// A host at night, when flakes only hide and give no light.
 fn night(size: (u32, u32), weather: &Weather) -> Host {
     let mut host = Host::new(size);
     host.context.set_sun(Some(GivenDirection { azimuth_deg: 0.0, elevation_deg: -40.0 })).unwrap();
@@ -49,7 +49,7 @@ fn night(size: (u32, u32), weather: &Weather) -> Host {
     host
 }
 
-/// What a view of a white world lets through, by pixel, as its models draw it; sky has none of it.
+/// Share of light that each pixel lets through in a view of a white world; the sky is black.
 fn through(host: &mut Host, settings: SnowSettings) -> Vec<f64> {
     host.view.set_snow(settings).unwrap();
     host.draw(|_, _| [WHITE; 3]);
@@ -71,7 +71,7 @@ fn roughness(values: &[f64]) -> f64 {
     deviation(&values.windows(2).map(|pair| pair[0] - pair[1]).collect::<Vec<_>>())
 }
 
-/// Flakes as the view of a host has them.
+/// Flakes of a host's view.
 fn flakes(host: &Host) -> (Flakes, Vec<Flake>) {
     let scene = host.context.scene_at(host.camera.position, host.context.time_s()).unwrap();
     let c = &scene.conditions;
@@ -109,7 +109,7 @@ fn near_flakes_hide_what_the_extinction_hides_at_any_size_of_picture() {
         let mut lets = Vec::new();
         for size in [(96, 54), (288, 162)] {
             let mut host = night(size, &snow(kind, rate, 3.0));
-            // Down on the ground, farther than flakes reach.
+            // The camera looks down on the ground, which is farther than flakes reach.
             host.look(DVec3::new(0.0, 0.0, 30.0), DVec3::new(0.0, 1.0, -3.0));
             let veil = mean(&through(&mut host, settings(SnowModel::Veil)));
             let mut drawn = Vec::new();
@@ -146,7 +146,7 @@ fn flakes_are_where_the_reference_has_them() {
         let at = |v: f64, n: u32| (v * f64::from(n)) as usize;
         let (x, y) = (at(0.5 + 0.5 * ndc.x, 480), at(0.5 - 0.5 * ndc.y, 270));
         looked += 1;
-        // One pixel beside may be where its ice is.
+        // The flake's ice may lie one pixel beside.
         let dark = (y.saturating_sub(1)..=y + 1).flat_map(|y| (x.saturating_sub(1)..=x + 1).map(move |x| y * 480 + x));
         let dark = dark.filter(|i| *i < seen.len()).map(|i| 1.0 - seen[i] / bare[i]).fold(f64::MIN, f64::max);
         found += u32::from(dark > 0.25);
@@ -208,7 +208,7 @@ fn the_list_draws_what_all_flakes_draw() {
 fn no_flake_falls_under_a_roof() {
     let mut host = night((160, 90), &snow(PrecipitationKind::Snow, 3.0, 0.0));
     host.look(DVec3::new(0.0, 0.0, 1.7), DVec3::new(0.0, 1.0, -0.15));
-    // Of the lower half, which is ground.
+    // Pixels of the lower half, which is ground.
     let sharp = SnowSettings { shutter_s: 1e-4, ..settings(SnowModel::Flakes) };
     let rough = |host: &mut Host| roughness(&through(host, sharp)[45 * 160..]);
     let open = rough(&mut host);

@@ -1,5 +1,5 @@
-//! Altitudes of Earth-centred worlds count from mean sea level where the host says how high that lies, and from the
-//! ellipsoid else.
+//! Altitudes of Earth-centred worlds are above mean sea level where the host gives its height, otherwise above the
+//! ellipsoid.
 
 use glam::DVec3;
 use welkin::{
@@ -28,7 +28,7 @@ fn context(kind: WorldKind, geoid_height_m: f64) -> Context {
     context
 }
 
-/// What a horizontal way of 100 m at 2 m over the sea lets through, where the sea lies so high above the ellipsoid.
+/// Transmittance of a horizontal way of 100 m at 2 m over the sea, which lies `geoid_height_m` above the ellipsoid.
 fn through(context: &Context, geoid_height_m: f64) -> f64 {
     let at = |altitude_m: f64| match context.world().kind {
         WorldKind::Ecef => Place { altitude_m: altitude_m + geoid_height_m, ..ORIGIN }.to_ecef(),

@@ -1,5 +1,5 @@
-//! What a host may change between two steps, each a call or two on a context: from a number, so that one differs from
-//! the next.
+//! Changes that a host may make between two steps, each a call or two on a context; each takes a number, so that one
+//! change differs from the next.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ const CELL_M: f64 = 1.0;
 /// Heights and classes of a tile's cells.
 type Cells = (Vec<f32>, Vec<Option<SurfaceClass>>);
 
-/// Tiles that the host has set, which no state holds: another context needs them before it can load one.
+/// Tiles that the host has set; no saved state holds them, so another context needs them before it can load one.
 #[derive(Clone, Default)]
 pub struct Tiles {
     desc: Option<TerrainDesc>,
@@ -57,7 +57,7 @@ impl Tiles {
         self.set_terrain(context, Some(TerrainDesc { origin, ..terrain(0) }));
     }
 
-    /// Sets a tile with waves of a height, `n` of which the eighth is another.
+    /// Sets a tile with waves; `n` modulo 8 shifts them, and `n` modulo 3 chooses the classes.
     pub fn set_tile(&mut self, context: &mut Context, [east, north]: [i32; 2], n: u32) {
         let first = [east, north].map(|k| f64::from(k) * f64::from(SIDE));
         let height = |i: u32| {
@@ -77,7 +77,7 @@ impl Tiles {
         self.tiles.insert([east, north], (heights, classes));
     }
 
-    /// Digs a rectangle out of the first tile there is.
+    /// Digs a rectangle out of the first tile.
     pub fn dig(&mut self, context: &mut Context, n: u32) {
         let Some((key, (heights, _))) = self.tiles.iter_mut().next() else { return };
         let (first, size) = ([n % 10, (n / 3) % 10], [5, 4]);
@@ -228,7 +228,7 @@ pub const INPUTS: &[Input] = &[
         let _ = c.press_snow(&strip());
     }),
     ("a wind field", |c, _, n| {
-        // Refused where a change lies ahead.
+        // Refused where the host has already set a later change.
         let _ = c.set_wind_field(Some(&field(n)), c.time_s());
     }),
     ("a wind field to come", |c, _, n| {

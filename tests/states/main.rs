@@ -1,5 +1,5 @@
-//! Saved states of contexts on the backend that needs no GPU: what a host changes between steps is in them, and
-//! scripted runs end in the states that are committed.
+//! Saved states of contexts on the backend that needs no GPU: they contain all that a host changes between steps, and
+//! scripted runs end in the states whose hashes are committed.
 
 mod geoid;
 mod inputs;

@@ -1,7 +1,7 @@
 //! Scripted runs end in states whose hashes are committed: the same on every machine, in every build, whatever
 //! instructions the compiler may use.
 //!
-//! `WELKIN_BLESS=1` writes the hashes of this build. A change of the models changes them, and says so in its notes.
+//! `WELKIN_BLESS=1` writes the hashes of this build. A change of the models changes them, and its notes must say so.
 
 use std::fmt::Write as _;
 
@@ -24,21 +24,21 @@ use crate::{
     whole::{context, context_of},
 };
 
-/// The committed hashes: a run a line, with those of its moments.
+/// The committed hashes, one line for each run with the hashes of its moments.
 const PINNED: &str = include_str!("hashes.txt");
 
-/// A run's moments: hashes of states and of answers.
+/// Hashes of the states and query results of a run's moments.
 #[derive(Default)]
 struct Moments(Vec<u64>);
 
 impl Moments {
-    /// Leads a context to a time and takes its state.
+    /// Advances a context to a time and adds the hash of its state.
     fn at(&mut self, context: &mut Context, time_s: f64) {
         context.update(time_s).unwrap();
         self.0.push(context.state_hash().unwrap());
     }
 
-    /// Takes the bits of answers (FNV-1a).
+    /// Adds a hash of the bits of query results (FNV-1a).
     fn answers(&mut self, numbers: impl IntoIterator<Item = f64>) {
         let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         let bytes = numbers.into_iter().flat_map(|v| (v + 0.0).to_bits().to_le_bytes());
@@ -211,7 +211,7 @@ fn long_transitions(m: &mut Moments) {
     }
 }
 
-/// A run by its name.
+/// A run with its name.
 type Run = (&'static str, fn(&mut Moments));
 
 const RUNS: [Run; 10] = [

@@ -5,13 +5,13 @@ use std::process::Command;
 
 use welkin::gpu::{Device, DeviceOptions};
 
-/// Names a way to make a device, in the environment of a child.
+/// Environment variable that gives a child process the way to make a device.
 const WAY: &str = "WELKIN_TEST_WAY";
 
 const ANY: wgpu::Backends =
     wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12).union(wgpu::Backends::GL);
 
-/// Interfaces, and whether it is to be without compute shaders and on the software driver.
+/// Ways by name: interfaces, whether to omit compute shaders, and whether to use the software driver.
 const WAYS: [(&str, wgpu::Backends, [bool; 2]); 6] = [
     ("any", ANY, [false, false]),
     ("any by software without compute", ANY, [true, true]),
@@ -25,7 +25,8 @@ const WAYS: [(&str, wgpu::Backends, [bool; 2]); 6] = [
 fn a_child_makes_a_device() {
     let Ok(way) = std::env::var(WAY) else { return };
     let (_, backends, [force_tier0, force_software]) = WAYS.into_iter().find(|w| w.0 == way).unwrap();
-    // Twice: the second time everything is loaded already. Where there is no such driver the refusal is as silent.
+    // Twice, because the second time everything is already loaded. Without such a driver the refusal must be silent
+    // too.
     for _ in 0..2 {
         let _ = Device::headless(&DeviceOptions { backends, force_tier0, force_software });
     }
@@ -39,7 +40,7 @@ fn making_a_device_writes_to_neither_descriptor_in_a_bare_environment() {
         let output = child.env_clear().env(WAY, way).output().unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         assert!(output.status.success() && err.is_empty(), "{way}: standard error has {err:?}");
-        // What the test's own harness writes, and nothing between.
+        // The lines of the test harness, with nothing between them.
         let own = ["", "running 1 test", "test quiet::a_child_makes_a_device ... ok"];
         let others = out.lines().filter(|l| !own.contains(l) && !l.starts_with("test result: ok. 1 passed;"));
         assert_eq!(others.collect::<Vec<_>>(), [""; 0], "{way}: standard output");

@@ -1,5 +1,5 @@
-//! A saved state is what the context is: whatever the host has changed since the last step, the context that saves it,
-//! one that loads it over itself and one that loads it anew have one hash, save the same bytes, and go on alike.
+//! A saved state is complete: whatever the host has changed since the last step, the context that saves it, a context
+//! that loads its own state, and a new one that loads it have the same hash, save the same bytes, and continue alike.
 
 use std::{
     sync::{Arc, OnceLock},
@@ -34,7 +34,7 @@ pub fn context_of(desc: ContextDesc) -> Context {
     Context::new(device.clone(), shared.clone(), desc).unwrap()
 }
 
-/// With simulated ground and snow.
+/// Creates a context with simulated ground and snow.
 pub fn context() -> Context {
     context_of(ContextDesc {
         lying_snow: LyingSnowModel::Simulated,
@@ -44,11 +44,11 @@ pub fn context() -> Context {
     })
 }
 
-/// Three contexts that are told the same, and the host's tiles.
+/// Three contexts with the same inputs, and the host's tiles.
 struct Three {
-    /// Never loads anything.
+    /// Never loads a state.
     kept: Context,
-    /// Loads its own states.
+    /// Loads its own saved states.
     loaded: Context,
     /// Replaced by a new one that loads the state.
     anew: Context,
@@ -88,7 +88,7 @@ impl Three {
         self.compare();
     }
 
-    /// Fails unless all three are one.
+    /// Fails unless all three have the same state.
     fn compare(&self) {
         let of = |c: &Context| (String::from_utf8(c.save().unwrap()).unwrap(), c.state_hash().unwrap());
         let (kept, hash) = of(&self.kept);
@@ -103,7 +103,7 @@ impl Three {
         }
     }
 
-    /// Saves the first, and loads that over the second and into a new one.
+    /// Saves the first, and loads that state into the second and into a new one.
     fn load(&mut self) {
         let state = self.kept.save().unwrap();
         assert_eq!(state, self.loaded.save().unwrap());

@@ -1,4 +1,4 @@
-//! Processor time of the whole process, which other load on the machine affects least.
+//! Processor time of the whole process, the measure that other load on the machine affects least.
 
 /// Time that the threads of this process have run, ns.
 pub fn processor_ns() -> u64 {
@@ -62,7 +62,7 @@ impl OtherLoad {
         Self { begun: std::time::Instant::now(), others_ticks: others_ticks() }
     }
 
-    /// Processors that they took since.
+    /// Mean number of processors that other programs used since the value was made.
     fn processors(&self) -> f64 {
         (others_ticks() - self.others_ticks) / TICKS_PER_S / self.begun.elapsed().as_secs_f64()
     }

@@ -1,4 +1,5 @@
-//! A Vulkan host through the C functions: the same picture as on a device of Welkin's own, and what it has wrong named.
+//! A Vulkan host through the C functions: it gets the same picture as a device of Welkin's own, and error messages name
+//! its mistakes.
 
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -13,7 +14,7 @@ use crate::{Picture, SIZE, frame};
 fn desc(host: &Host) -> wk_vulkan_host_desc {
     let at = |raw: u64| raw as usize as *mut c_void;
     type GetProc = unsafe extern "system" fn(*mut c_void, *const std::ffi::c_char) -> *mut c_void;
-    // SAFETY: both take (instance, name) and answer a function pointer.
+    // SAFETY: both take (instance, name) and return a function pointer.
     let get = unsafe {
         std::mem::transmute::<vk::PFN_vkGetInstanceProcAddr, GetProc>(host.desc().get_instance_proc_addr.unwrap())
     };
@@ -28,7 +29,7 @@ fn desc(host: &Host) -> wk_vulkan_host_desc {
 }
 
 pub fn device(host: &Host) -> *mut wk_device {
-    // What the host gave to vkCreateDevice, as far as Welkin reads it.
+    // The part of the host's VkDeviceCreateInfo that Welkin reads.
     let mut timeline = vk::PhysicalDeviceTimelineSemaphoreFeatures::default().timeline_semaphore(host.setup.timeline);
     let features = vk::PhysicalDeviceFeatures2::default().features(host.setup.core).push_next(&mut timeline);
     let names = [ash::khr::get_physical_device_properties2::NAME.as_ptr()];
@@ -120,7 +121,7 @@ fn what_a_c_host_has_wrong_is_named_as_in_the_header() {
     let good = image(&picture.colour, L::UNDEFINED, L::GENERAL);
     let record = |target: &wk_vulkan_target| {
         let frame = wk_frame { target: std::ptr::from_ref(target).cast(), ..frame(7) };
-        // SAFETY: live handles; what is wrong is found before it is used.
+        // SAFETY: live handles; Welkin finds the mistake before it uses the value.
         (unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) }, message())
     };
     let none = init::<wk_vulkan_semaphore>("wk_vulkan_semaphore");

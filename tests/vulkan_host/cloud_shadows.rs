@@ -11,7 +11,7 @@ use crate::{
     host::{Host, Setup},
 };
 
-/// The image's texels, read from the layout in which the host finds it and given back in that.
+/// Texels of the image, which is read from the layout in which the host gets it and returned in the same layout.
 fn texels(host: &Host, from: &wk_cloud_shadows) -> Vec<u8> {
     use vk::ImageLayout as L;
     let out = host.image(vk::Format::R8_UNORM, (from.width, from.height), 1, vk::ImageUsageFlags::TRANSFER_DST);

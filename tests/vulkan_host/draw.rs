@@ -1,4 +1,4 @@
-//! What stands for Welkin's effects here: small passes that read the host's depth and write its colour.
+//! Small passes that stand for Welkin's effects: they read the host's depth and write its colour.
 
 use welkin::gpu::vulkan::{HandOver, HostImage, ImageRole, VulkanHost};
 
@@ -13,7 +13,7 @@ const SHADER: &str = "
 @fragment fn green() -> @location(0) vec4f { return vec4f(0.0, 1.0, 0.0, 0.0); }
 ";
 
-/// Red takes the depth, green becomes full, blue and alpha stay as the host left them.
+/// Writes the depth to red and 1 to green; blue and alpha stay as the host left them.
 pub fn red_from_depth(
     welkin: &VulkanHost,
     colour: &HostImage,
@@ -51,7 +51,7 @@ pub fn red_from_depth(
     unsafe { welkin.submit(encoder, &HandOver { images: &images, ..*over }) }
 }
 
-/// Green becomes full, the rest stays.
+/// Writes 1 to green; the other channels stay.
 pub fn green(welkin: &VulkanHost, colour: &HostImage) -> welkin::Result<()> {
     // SAFETY: the image is described truly.
     let target = unsafe { welkin.import("colour", colour, ImageRole::Colour)? };
@@ -121,7 +121,7 @@ fn pass(
     encoder
 }
 
-/// Takes a copy of the colour, as effects that read it do: the image is last used as a copy's source.
+/// Copies the colour, as effects that read it do: the image's last use is as the source of a copy.
 pub fn copy(welkin: &VulkanHost, colour: &HostImage) -> welkin::Result<()> {
     // SAFETY: the image is described truly.
     let source = unsafe { welkin.import("colour", colour, ImageRole::Colour)? };

@@ -1,4 +1,4 @@
-//! The terrain's water in a Vulkan host's own image: the cells that the CPU's copy has, in the layout that the header
+//! The terrain's water in a Vulkan host's own image: the same cells as in the CPU's copy, in the layout that the header
 //! promises.
 
 use ash::vk::{self, Handle};
@@ -10,7 +10,7 @@ use crate::capi::{device, image};
 use crate::host::{Host, Setup};
 use crate::{Picture, frame};
 
-/// The texture's texels, read from the layout in which the host finds it and given back in that.
+/// Texels of the texture, which is read from the layout in which the host gets it and returned in the same layout.
 fn texels(host: &Host, from: &wk_ground_texture) -> Vec<[f32; 4]> {
     use vk::ImageLayout as L;
     let size = (from.width, from.height);

@@ -17,8 +17,8 @@ pub struct Setup {
     pub extensions: Vec<&'static CStr>,
     pub core: vk::PhysicalDeviceFeatures,
     pub timeline: bool,
-    /// Whether the validation layer gives each object a number of its own, never used again. A driver does not:
-    /// without, a new image has the number of the one that was destroyed last.
+    /// Whether the validation layer gives each object a handle that is never used again. Without it a new image has the
+    /// handle of the last destroyed one, as with a driver.
     pub unique_handles: bool,
 }
 
@@ -29,20 +29,20 @@ impl Setup {
         Self { api_version: vk::API_VERSION_1_3, extensions: Vec::new(), core, timeline: true, unique_handles: true }
     }
 
-    /// A modern host that lets others shade its multisampled images sample by sample.
+    /// A modern host that enables sample shading for its multisampled images.
     pub fn sampling() -> Self {
         let core = vk::PhysicalDeviceFeatures::default().sample_rate_shading(true);
         Self { core, ..Self::modern() }
     }
 
-    /// A host that enables nothing, on the version given.
+    /// A host that enables no feature, on the given version.
     pub fn bare(api_version: u32) -> Self {
         let core = vk::PhysicalDeviceFeatures::default();
         Self { api_version, extensions: Vec::new(), core, timeline: false, unique_handles: true }
     }
 }
 
-/// What the validation layer said.
+/// Messages of the validation layer.
 #[derive(Default)]
 pub struct Complaints(Mutex<Vec<String>>);
 
@@ -135,7 +135,7 @@ impl Host {
         }
     }
 
-    /// What the host tells Welkin of itself.
+    /// Description of the host for Welkin.
     pub fn desc(&self) -> VulkanHostDesc<'_> {
         let enabled_features = EnabledFeatures {
             core: self.setup.core,
@@ -160,18 +160,18 @@ impl Host {
         }
     }
 
-    /// Fails with everything the validation layer complained of so far.
+    /// Fails if the validation layer has reported anything so far, with its messages.
     pub fn assert_valid(&self) {
         let complaints = self.complaints.0.lock().unwrap();
         assert!(complaints.is_empty(), "{} complaints:\n{}", complaints.len(), complaints.join("\n"));
     }
 
-    /// Whether the layer watches at all.
+    /// Whether the validation layer is active.
     pub fn is_validated(&self) -> bool {
         self.messenger.is_some()
     }
 
-    /// The complaints so far, which are then forgotten.
+    /// Returns the messages so far and clears them.
     pub fn take_complaints(&self) -> Vec<String> {
         std::mem::take(&mut *self.complaints.0.lock().unwrap())
     }
@@ -180,7 +180,7 @@ impl Host {
         self.layered_image(format, size, (samples, 1), usage)
     }
 
-    /// With so many samples and array layers.
+    /// Creates an image with `samples` samples and `layers` array layers.
     pub fn layered_image(
         &self,
         format: vk::Format,
@@ -219,7 +219,7 @@ impl Host {
         }
     }
 
-    /// Where images have their handles.
+    /// Allocation callbacks that determine the handles of images.
     fn images(&self) -> Option<vk::AllocationCallbacks<'static>> {
         (!self.setup.unique_handles).then(reuse::callbacks)
     }
@@ -281,7 +281,7 @@ impl Host {
         }
     }
 
-    /// Changes a layout; everything before and after is ordered against it.
+    /// Changes a layout, with a barrier against all work before and after it.
     pub fn transition(
         &self,
         commands: vk::CommandBuffer,
@@ -354,7 +354,7 @@ impl Host {
         self.read_texels(image, wait)
     }
 
-    /// Same, of an image whose texels are like `T`.
+    /// Reads an image as [`Self::read`] does, with texels of type `T`.
     pub fn read_texels<T: bytemuck::Pod>(&self, image: &HostImage, wait: &[vk::Semaphore]) -> Vec<T> {
         let pixels = (image.width * image.height) as usize;
         let (buffer, memory) = self.buffer((pixels * size_of::<T>()) as u64);
@@ -437,7 +437,7 @@ impl Host {
 
     /// Destroys the device and lets the validation layer report everything that was left behind on it.
     pub fn finish(self) {
-        // SAFETY: plain Vulkan by its rules: nothing of the host's is in use any more.
+        // SAFETY: plain Vulkan by its rules: no object of the host is in use any more.
         unsafe {
             self.device.destroy_command_pool(self.pool, None);
             self.device.destroy_device(None);
@@ -450,7 +450,7 @@ impl Host {
     }
 }
 
-/// The layer that a description hands over.
+/// Subresource range of the layer that a description names.
 fn range(image: &HostImage) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: aspects(image.format),

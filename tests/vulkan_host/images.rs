@@ -1,5 +1,5 @@
-//! What images a host may hand over: any layer of an array, a resolved picture whose depth is not, and new images under
-//! the numbers of dead ones. Drawn with all that weather has: rain, wet ground, fog and air.
+//! Images that a host may hand over: any layer of an array, a resolved picture with a multisampled depth, and new
+//! images with the handles of destroyed ones. All draw rain, wet ground, fog and air.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, status::*, view::*, vulkan::*};
@@ -11,9 +11,9 @@ use crate::host::{Host, Owned, Setup};
 use crate::{SIZE, assert_all, frame};
 
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_UNORM;
-/// 2 m below the eye at 40 m, in reversed depth with the near plane at 0.1 m.
+/// Depth of ground 40 m away, 2 m below the eye: reversed depth with the near plane at 0.1 m.
 const DEPTH: f32 = 0.0025;
-/// What the host draws.
+/// Colour that the host draws.
 const BLUE: [f32; 4] = [0.0, 0.0, 0.5, 1.0];
 
 fn usages() -> [vk::ImageUsageFlags; 2] {
@@ -22,7 +22,7 @@ fn usages() -> [vk::ImageUsageFlags; 2] {
     [U::COLOR_ATTACHMENT | transfer, U::DEPTH_STENCIL_ATTACHMENT | U::SAMPLED | transfer]
 }
 
-/// Colour and depth of so many samples, and layers, each of which the host has cleared.
+/// Colour and depth images of the given samples and layers, cleared by the host.
 fn pair(host: &Host, [of_colour, of_depth]: [u32; 2], layers: u32) -> [Owned; 2] {
     let [colour, depth] = usages();
     let colour = host.layered_image(COLOUR, SIZE, (of_colour, layers), colour);
@@ -37,7 +37,7 @@ fn pair(host: &Host, [of_colour, of_depth]: [u32; 2], layers: u32) -> [Owned; 2]
     [colour, depth]
 }
 
-/// Rain, an area of more of it, a roof, and water on a terrain.
+/// Creates a view of rain, an area of heavier rain, a roof, and water on a terrain.
 fn rainy(device: *mut wk_device) -> Scene {
     let scene = ground::scene(device);
     ground::set_grid(&scene, [9, 6]);
@@ -45,7 +45,7 @@ fn rainy(device: *mut wk_device) -> Scene {
     scene
 }
 
-/// Records all stages on a layer of the pair; everything stays in the layout GENERAL.
+/// Records all stages on a layer of the pair; the images stay in the layout GENERAL.
 fn record(scene: &Scene, frame_id: u64, [colour, depth]: &[Owned; 2], layer: u32) -> wk_status {
     let general = vk::ImageLayout::GENERAL;
     let layered = |owned: &Owned| wk_vulkan_image {
@@ -79,7 +79,7 @@ fn pixels(host: &Host, colour: &Owned, layer: u32) -> Vec<[u8; 4]> {
     read
 }
 
-/// The picture of a frame on plain images of one sample, by a view of its own.
+/// Picture of a frame on plain images of one sample, drawn by its own view.
 fn plain(host: &Host, device: *mut wk_device, frame_id: u64) -> Vec<[u8; 4]> {
     let images = pair(host, [1, 1], 1);
     let scene = rainy(device);
@@ -114,7 +114,7 @@ fn any_layer_is_drawn_and_the_others_stay() {
     let wanted = [0, 1].map(|id| plain(&host, device, id));
     for samples in [1, 4] {
         let eyes = pair(&host, [samples; 2], 3);
-        // One view for each eye, and each its own layer; the third layer is nobody's.
+        // One view for each eye, each on its own layer; no view uses the third layer.
         let scenes = [rainy(device), rainy(device)];
         for (id, wanted) in wanted.iter().enumerate() {
             for (scene, layer) in scenes.iter().zip([2, 0]) {
@@ -122,7 +122,7 @@ fn any_layer_is_drawn_and_the_others_stay() {
                     host.clear_colour(c, &HostImage { layer, ..eyes[0].image }, BLUE, vk::ImageLayout::GENERAL);
                 });
                 ok(record(scene, id as u64, &eyes, layer));
-                // Several samples of one colour and depth differ from one by rounding at most.
+                // Several samples of the same colour and depth give the picture of one sample, except for rounding.
                 for (got, wanted) in pixels(&host, &eyes[0], layer).iter().zip(wanted) {
                     let most = u8::from(samples > 1);
                     assert!(
@@ -134,7 +134,7 @@ fn any_layer_is_drawn_and_the_others_stay() {
                 others.for_each(|l| assert_all(&pixels(&host, &eyes[0], l), [0, 0, 128, 255]));
             }
         }
-        // The view that drew one layer draws another, too.
+        // A view that drew one layer can draw another too.
         let before = pixels(&host, &eyes[0], 2);
         ok(record(&scenes[0], 9, &eyes, 1));
         assert_eq!(pixels(&host, &eyes[0], 2), before);
@@ -148,7 +148,7 @@ fn any_layer_is_drawn_and_the_others_stay() {
 
 #[test]
 fn a_resolved_picture_may_have_multisampled_depth() {
-    // No feature is needed for that.
+    // These images need no feature.
     let host = Host::new(Setup::modern());
     let device = device(&host);
     let resolved = pair(&host, [1, 4], 1);
@@ -190,12 +190,12 @@ fn depth_of_fewer_samples_than_colour_is_refused_with_what_to_do() {
     finish(host, device, images.into());
 }
 
-/// Set in the process that a test has to itself.
+/// Environment variable that is set in a process with only one test.
 const ALONE: &str = "WELKIN_TEST_ALONE";
 
 #[test]
 fn images_are_forgotten_after_they_were_destroyed() {
-    // The validation layer's unique handles are switched off for a whole process, so this test has one to itself.
+    // The validation layer's unique handles are switched off for a whole process, so this test runs in its own process.
     if std::env::var_os(ALONE).is_some() {
         return forgotten_after_they_were_destroyed();
     }
@@ -214,7 +214,8 @@ fn forgotten_after_they_were_destroyed() {
     ok(record(&scene, 0, &old, 0));
     let wanted = pixels(&host, &old[0], 0);
     assert!(wanted.iter().all(|p| p[..3] != [0, 0, 128]), "weather everywhere");
-    // An engine's swapchain rebuilt inside a call: old images go, new ones come, and then Welkin hears of it.
+    // As when an engine rebuilds its swapchain in one call: old images are destroyed, new ones created, and only then
+    // is Welkin informed.
     old.iter().rev().for_each(|i| host.destroy_image(*i));
     let new = pair(&host, [1, 1], 1);
     assert_eq!(new[0].image.image, old[0].image.image, "the driver gives a number twice");
@@ -235,7 +236,7 @@ fn a_device_with_children_says_that_it_must_stay() {
     // SAFETY: a live handle.
     assert_eq!(unsafe { wk_device_destroy(device) }, WK_ERROR_IN_USE);
     assert!(message().contains("device has 1 live child"), "{}", message());
-    // Nothing has changed: the next frame is drawn.
+    // The refusal has changed nothing: the next frame is drawn.
     let images = pair(&host, [1, 1], 1);
     ok(record(&scene, 0, &images, 0));
     scene.destroy();

@@ -1,5 +1,5 @@
-//! A device that is lost in a Vulkan host: everything can be destroyed, the host's own device is not harmed, and a new
-//! one draws the same picture.
+//! Loss of Welkin's device in a Vulkan host: everything can be destroyed, the host's own device is not harmed, and a
+//! new Welkin device draws the same picture.
 
 use ash::vk;
 use welkin::capi::{device::*, frame::*, view::*, vulkan::*};

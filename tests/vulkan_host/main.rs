@@ -1,5 +1,5 @@
-//! Welkin on a host's own Vulkan device: what the host left is what Welkin finds, what Welkin drew is what the
-//! host reads, the layouts and semaphores are kept to, and the validation layer has nothing to say.
+//! Welkin on a host's own Vulkan device: Welkin reads what the host drew, the host reads what Welkin drew, layouts and
+//! semaphores are as agreed, and the validation layer reports nothing.
 #![cfg(not(any(target_os = "macos", target_os = "ios")))]
 
 mod capi;
@@ -38,7 +38,7 @@ fn adopted(host: &Host) -> VulkanHost {
     unsafe { adopt(&host.desc()).unwrap_or_else(|e| panic!("{e}")) }
 }
 
-/// Colour and depth of a host, cleared by itself: blue 0.5, and `depth`.
+/// Colour and depth images that the host clears, to blue 0.5 and to `depth`.
 struct Picture {
     colour: Owned,
     depth: Owned,
@@ -56,7 +56,7 @@ impl Picture {
         }
     }
 
-    /// The host's own drawing: both images cleared and left in the layouts given.
+    /// Draws as the host: clears both images and leaves them in the given layouts.
     fn clear(&self, host: &Host, depth: f32, layouts: [vk::ImageLayout; 2], signal: &[vk::Semaphore]) {
         host.run(&[], signal, false, |c| {
             host.clear_colour(c, &self.colour.image, [0.0, 0.0, 0.5, 1.0], layouts[0]);
@@ -64,7 +64,7 @@ impl Picture {
         });
     }
 
-    /// Welkin's drawing: red from the depth, green full, blue untouched.
+    /// Draws as Welkin: red from the depth, green 1, blue unchanged.
     fn draw(&self, welkin: &VulkanHost, layouts: [vk::ImageLayout; 2], over: &HandOver<'_>) {
         let back = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
         let colour = HostImage { layout: layouts[0], final_layout: back, ..self.colour.image };
@@ -100,7 +100,7 @@ fn draws_over_the_hosts_picture_from_any_layout() {
             [L::TRANSFER_DST_OPTIMAL, L::TRANSFER_DST_OPTIMAL],
             [L::SHADER_READ_ONLY_OPTIMAL, L::SHADER_READ_ONLY_OPTIMAL],
         ];
-        // Twice round, so that every layout follows every other one on the cached import too.
+        // The layouts are tried twice, so that each also follows another one on the cached import.
         for (i, layouts) in layouts.iter().chain(&layouts).enumerate() {
             let depth = [0.25, 0.75][i % 2];
             picture.clear(&host, depth, *layouts, &[]);
@@ -184,7 +184,7 @@ fn the_hosts_objects_live_on_when_welkin_goes() {
         let welkin = adopted(&host);
         picture.clear(&host, depth, layouts, &[]);
         picture.draw(&welkin, layouts, &HandOver::default());
-        // Dropped with the work in flight: it is finished first, and nothing of the host's is destroyed.
+        // Dropped with work in flight: the work is finished first, and no object of the host is destroyed.
         drop(welkin);
         let red = (depth * 255.0).round() as u8;
         assert_all(&host.read(&picture.colour.image, &[]), [red, 255, 128, 255]);
@@ -275,7 +275,7 @@ fn the_validation_layer_is_listening() {
     });
     assert!(!host.take_complaints().is_empty(), "a wrong layout must be complained of");
     host.run(&[], &[], true, |c| {
-        // Written twice without a barrier between: only the synchronisation checks see that.
+        // Two writes without a barrier between them: only the synchronisation checks find that.
         let general = vk::ImageLayout::GENERAL;
         host.clear_colour(c, &picture.colour.image, [0.0; 4], general);
         host.fill(c, &picture.colour.image, general, [0.0; 4]);

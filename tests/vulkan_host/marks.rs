@@ -1,5 +1,5 @@
-//! Images of surface classes and normals of a Vulkan host, and targets of other sizes: the picture that an own device
-//! draws.
+//! A Vulkan host's images of surface classes and normals, and targets of other sizes: the picture is the one that a
+//! device of Welkin's own draws.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, view::*, vulkan::*};
@@ -16,7 +16,7 @@ use crate::host::{Host, Owned, Setup};
 
 const GENERAL: vk::ImageLayout = vk::ImageLayout::GENERAL;
 
-/// An image that Welkin samples, with these texels.
+/// Creates an image that Welkin samples, with these texels.
 fn filled<T: bytemuck::Pod>(host: &Host, format: vk::Format, size: Size, texels: &[T]) -> Owned {
     use vk::ImageUsageFlags as U;
     let owned = host.image(format, size, 1, U::SAMPLED | U::TRANSFER_DST);
@@ -24,7 +24,7 @@ fn filled<T: bytemuck::Pod>(host: &Host, format: vk::Format, size: Size, texels:
     owned
 }
 
-/// The wet scene on grey ground; `change` may add images to the target.
+/// Draws the wet scene on grey ground; `change` may add images to the target.
 fn wet_picture(
     host: &Host,
     (device, scene): (*mut wk_device, &Scene),

@@ -1,5 +1,5 @@
-//! Memory that runs out on a Vulkan host: the frame that does not fit is refused as that, the host's images are as they
-//! were, and what fits is drawn as before.
+//! Memory that runs out on a Vulkan host: a frame that does not fit is refused with that status, the host's images are
+//! unchanged, and frames that fit are drawn as before.
 
 use ash::vk;
 use welkin::capi::{device::*, frame::*, status::*, view::*, vulkan::*};
@@ -44,7 +44,7 @@ fn a_frame_that_does_not_fit_is_refused_in_a_vulkan_host() {
         let target = wk_vulkan_target { color: &color, ..init("wk_vulkan_target") };
         let frame = wk_frame { target: (&raw const target).cast(), ..frame_of(20, (8192, 8192)) };
         leave(Some(200 * MIB));
-        // The frame may come again, now or when there is room.
+        // The host may record the frame again, at once or when there is memory.
         for _ in 0..2 {
             // SAFETY: live handles, truly described.
             let status = unsafe { wk_view_record(scene.view, &frame, WK_STAGE_ALL) };

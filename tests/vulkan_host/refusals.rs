@@ -1,4 +1,4 @@
-//! What would abort the process or break the driver is refused by name instead.
+//! Inputs that would abort the process or break the driver are refused, and the message names them.
 
 use ash::vk::{self, Handle};
 use welkin::gpu::vulkan::{HandOver, HostImage, HostSemaphore, ImageRole, VulkanHostDesc, adopt};
@@ -10,7 +10,7 @@ use crate::{Picture, adopted};
 fn refused(host: &Host, change: impl FnOnce(&mut VulkanHostDesc<'_>)) -> Error {
     let mut desc = host.desc();
     change(&mut desc);
-    // SAFETY: what is false in the description is what the checks must find before they use it.
+    // SAFETY: the checks must find the false values of the description before they use them.
     unsafe { adopt(&desc).expect_err("this description must be refused") }
 }
 
@@ -73,11 +73,11 @@ fn versions_that_would_abort_are_refused() {
     let e = refused(&old, |_| {});
     assert_says(&e, bad, &both);
     assert_says(&e, bad, &["instance_api_version is 1.0"]);
-    // Where only the field was forgotten, it comes first.
+    // A field that is left at 0 is named first.
     let e = refused(&old, |d| d.instance_api_version = 0);
     assert_says(&e, bad, &both);
     assert!(e.to_string().starts_with("instance_api_version 0 means Vulkan 1.0: say there what the instance's"), "{e}");
-    // What is wrong with the features comes along, and what is there already is not asked for.
+    // The message names missing features too, and not the extensions that are already enabled.
     let e = refused(&old, |d| {
         d.enabled_features.timeline_semaphore = true;
         d.enabled_device_extensions = &[ash::khr::maintenance1::NAME];
@@ -86,7 +86,7 @@ fn versions_that_would_abort_are_refused() {
     old.assert_valid();
     old.finish();
 
-    // A host that lists what it does not have: the backend would call a function that is not there, and abort.
+    // A host that lists a feature it does not have: the backend would call a function that does not exist, and abort.
     let middle = Host::new(Setup::bare(vk::API_VERSION_1_1));
     let e = refused(&middle, |d| d.enabled_features.timeline_semaphore = true);
     assert_says(&e, Status::InvalidArgument, &["timelineSemaphore", "1.1", "VK_KHR_timeline_semaphore"]);
@@ -136,7 +136,7 @@ fn images_that_do_not_fit_are_refused_by_name() {
     let picture = Picture::new(&host, vk::Format::D32_SFLOAT);
     let good = HostImage { layout: L::GENERAL, final_layout: L::GENERAL, ..picture.colour.image };
     let says = |image: HostImage, role: ImageRole, status: Status, words: &[&str]| {
-        // SAFETY: what is false in the description is what the checks must find before they use it.
+        // SAFETY: the checks must find the false values of the description before they use them.
         let e = unsafe { welkin.import("colour", &image, role) }.expect_err("this image must be refused");
         assert_says(&e, status, words);
     };
@@ -155,7 +155,7 @@ fn images_that_do_not_fit_are_refused_by_name() {
     let shown = HostImage { final_layout: L::PRESENT_SRC_KHR, ..good };
     says(shown, colour, bad, &["colour.final_layout", "VK_IMAGE_LAYOUT_PRESENT_SRC_KHR", "VK_KHR_swapchain"]);
     says(shown, colour, bad, &["enabled_device_extensions of the wk_vulkan_host_desc"]);
-    // All that a windowed host forgot comes at once.
+    // One message names all that a host with a window forgot.
     let forgetful = HostImage { usage: vk::ImageUsageFlags::COLOR_ATTACHMENT, samples: 4, ..shown };
     let all = ["VK_IMAGE_USAGE_TRANSFER_SRC_BIT", "sampleRateShading", "enabled_features", "VK_KHR_swapchain"];
     says(forgetful, colour, bad, &all);
@@ -173,7 +173,7 @@ fn semaphores_that_do_not_fit_are_refused_by_name() {
     let binary = host.semaphore(false);
     let submit = |wait: &[HostSemaphore], signal: &[HostSemaphore]| {
         let encoder = welkin.device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        // SAFETY: what is false is what the checks must find before they use it.
+        // SAFETY: the checks must find the false values before they use them.
         unsafe { welkin.submit(encoder, &HandOver { wait, signal, ..Default::default() }) }.unwrap_err()
     };
     let null = HostSemaphore { semaphore: vk::Semaphore::null(), value: None };

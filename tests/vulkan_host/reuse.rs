@@ -1,5 +1,6 @@
-//! Memory for image handles that is given again, the last freed first: where a handle is an address, as Mesa's are, a
-//! new image then has the number of a destroyed one, which else hangs on what the process did before.
+//! Memory for image handles that is used again, the last freed first: where a handle is an address, as Mesa's are, a
+//! new image then certainly has the handle of a destroyed one, which otherwise depends on earlier allocations of the
+//! process.
 
 use std::{
     alloc::{Layout, alloc},
@@ -18,7 +19,7 @@ struct Store {
 
 static STORE: LazyLock<Mutex<Store>> = LazyLock::new(Mutex::default);
 
-/// For the images of one test; what is allocated stays with the process.
+/// Allocation callbacks for the images of one test; their memory is never returned to the system.
 pub fn callbacks() -> vk::AllocationCallbacks<'static> {
     vk::AllocationCallbacks {
         pfn_allocation: Some(give),
@@ -40,7 +41,7 @@ unsafe extern "system" fn give(_: *mut c_void, size: usize, align: usize, _: vk:
     place.cast()
 }
 
-/// Images do not grow.
+/// Refuses to reallocate, because images do not grow.
 unsafe extern "system" fn refuse(
     _: *mut c_void,
     _: *mut c_void,

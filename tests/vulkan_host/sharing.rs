@@ -1,4 +1,5 @@
-//! The queue and its order: semaphores both ways, and one queue used by host and Welkin at once under a lock.
+//! Order on the queue: semaphores in both directions, and one queue that host and Welkin use at the same time under a
+//! lock.
 
 use std::ffi::c_void;
 use std::sync::Mutex;

@@ -1,5 +1,5 @@
 //! The veil in a Vulkan host's own shader: the published WGSL, compiled to SPIR-V and run in the host's pipeline. Glass
-//! before the sky shows what Welkin draws before an opaque thing at its place.
+//! in front of the sky shows the same as what Welkin draws in front of an opaque object at its place.
 
 use ash::vk::{self, Handle};
 use welkin::capi::{device::*, frame::*, veil::*, view::*, vulkan::*};
@@ -14,7 +14,7 @@ const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const GENERAL: vk::ImageLayout = vk::ImageLayout::GENERAL;
 const SAMPLED: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
 
-/// The host's shader: its figures are written into the text.
+/// The host's shader, with the numbers written into its text.
 fn shader(far_m: f64, light_scale: f64) -> Vec<u32> {
     let ([x, y], [r, g, b]) = (slopes(SIZE), COLOR);
     let text = format!(
@@ -51,7 +51,7 @@ fn image_of<T: bytemuck::Pod>(host: &Host, format: vk::Format, usage: vk::ImageU
     owned
 }
 
-/// Colour and depth as the host drew them.
+/// Colour and depth images that the host has cleared to one value.
 fn canvas(host: &Host, [r, g, b]: [f32; 3], depth: f32) -> [Owned; 2] {
     use vk::ImageUsageFlags as U;
     let texel = [r, g, b, 1.0].map(|v| half::f16::from_f32(v).to_bits());

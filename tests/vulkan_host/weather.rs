@@ -1,4 +1,4 @@
-//! The weather itself on a host's Vulkan device: the same picture as on a device of Welkin's own.
+//! The whole weather on a host's Vulkan device: the same picture as on a device of Welkin's own.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ fn frame<'a>(color: &'a wgpu::Texture, depth: &'a wgpu::Texture) -> Frame<'a> {
     Frame { color_space: ColorSpace::DisplaySrgb, ..Frame::new(7, camera, color, Some(depth)) }
 }
 
-/// Clears blue 0.5 and a depth, as the Vulkan host does, then draws the weather, all on an own device.
+/// Clears to blue 0.5 and a depth, as the Vulkan host does, then draws the weather, all on a device of Welkin's own.
 fn on_own_device(depth: f32) -> Vec<u8> {
     let options = DeviceOptions { backends: wgpu::Backends::VULKAN, ..Default::default() };
     let device = Device::headless(&options).unwrap();

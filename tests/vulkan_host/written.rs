@@ -1,5 +1,5 @@
-//! Depth that is written on a Vulkan host: it comes back in the layout asked for with what was drawn in it, and depth
-//! that was not created for that is refused by name.
+//! Depth of a Vulkan host that is written: the host gets it back in the requested layout with the drawn values in it,
+//! and a depth image that was not created for writing is refused by name.
 
 use ash::vk;
 use welkin::{
@@ -29,14 +29,14 @@ fn depth_comes_back_written_in_the_layout_asked_for() {
     let host = Host::new(Setup::modern());
     let welkin = adopted(&host);
     let picture = Picture::new(&host, vk::Format::D32_SFLOAT);
-    // Twice round: the second time on the cached imports.
+    // Each layout is tried twice, the second time on the cached imports.
     for (i, layout) in [L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL, L::GENERAL, L::SHADER_READ_ONLY_OPTIMAL]
         .iter()
         .cycle()
         .take(6)
         .enumerate()
     {
-        // The card at 0.5 shows before what lies at 0.75, and not before what lies at 0.25.
+        // The card at 0.5 hides a picture at 0.75, and not one at 0.25.
         let cleared = [0.75, 0.25][i % 2];
         picture.clear(&host, cleared, [L::GENERAL, *layout], &[]);
         let colour = HostImage { layout: L::GENERAL, final_layout: L::TRANSFER_SRC_OPTIMAL, ..picture.colour.image };

@@ -1,4 +1,4 @@
-//! Whatever weather is accepted, everything that a host can ask for has an answer, and a frame can be drawn of it.
+//! For every accepted weather all queries succeed, and a frame can be drawn.
 
 use glam::DVec3;
 use welkin::{
@@ -27,7 +27,7 @@ impl Asked {
         Self { context: host.context(), time_s: 0.0 }
     }
 
-    /// What is wrong with a weather.
+    /// Finds what is wrong with the query results of a weather.
     fn fault(&mut self, given: &Given, elevation_deg: f64) -> Result<(), String> {
         let says = |what: &'static str| move |e: welkin::Error| format!("{what}: {e}");
         self.time_s += 10.0;
@@ -81,7 +81,7 @@ fn is_long() -> bool {
     std::env::var_os("WELKIN_ACCEPT").is_some()
 }
 
-/// Gives each fault's first line with how often it came.
+/// Fails if there are faults: prints one of each kind with its number.
 pub fn report(count: usize, faults: &[(String, Given)]) {
     let mut kinds = std::collections::BTreeMap::new();
     for (text, given) in faults {
@@ -120,7 +120,7 @@ fn without_any_air_the_visibility_is_a_number() {
     assert_eq!((conditions.extinction_per_m, conditions.visibility_m()), (0.0, 1e9));
 }
 
-/// Each number at both of its ends, alone and with each other at both of its.
+/// Tests each number at both ends of its range, alone and together with each other number at both ends.
 #[test]
 fn every_pair_of_extremes_answers() {
     let host = Host::new();

@@ -1,4 +1,4 @@
-//! Whatever weather is accepted, a frame of it has light in every pixel that is a number and not below 0.
+//! Frames of every accepted weather have finite light that is not negative in every pixel.
 
 use glam::DVec3;
 use welkin::{
@@ -17,13 +17,13 @@ use crate::{accepted::report, host::Dice, random::Given};
 /// Cameras: at the ground looking level and up, in low cloud, high above.
 const EYES: [(f64, f64); 4] = [(2.0, 0.05), (1.5, 0.6), (700.0, -0.1), (11_000.0, -0.3)];
 
-/// Built anew for each weather, in a small part of the coarse sky's time. Its corners are those of any sky, and its
-/// nodes lie further apart, so that a curve between them may sooner pass below 0.
+/// Settings of a sky that is built for each weather in a small part of the coarse sky's time. Its table covers the same
+/// range as any sky, with nodes farther apart, so that curves between them pass below 0 more easily.
 fn smallest_sky() -> SkySettings {
     SkySettings { suns: 16, altitudes: 8, zeniths: 6, azimuths: 4, rule_zeniths: 4, rule_azimuths: 6, ..coarse_sky() }
 }
 
-/// A weather, and how it is looked at.
+/// A weather, the sun's elevation and the camera of its picture.
 struct Case {
     given: Given,
     elevation_deg: f64,
@@ -32,7 +32,7 @@ struct Case {
 }
 
 impl Case {
-    /// What decides which shaders draw it: a driver compiles each for longer than it draws a frame.
+    /// Properties that decide which shaders draw the case: compiling a shader takes longer than drawing a frame.
     fn kind(&self) -> [bool; 14] {
         let Ok(c) = derive_with(&self.given.weather, &self.given.overrides) else { return [false; 14] };
         let (fog, falling) = (&c.fog, &c.precipitation);
@@ -56,7 +56,7 @@ impl Case {
     }
 }
 
-/// In two halves, for two cores.
+/// Draws the cases in two halves, for two cores.
 #[test]
 fn every_random_weather_is_drawn_finite() {
     random_weathers_are_drawn_finite(0);
@@ -79,7 +79,7 @@ fn random_weathers_are_drawn_finite(half: usize) {
         .collect();
     cases.sort_by_key(Case::kind);
     let mut host = host();
-    // Those that the same shaders draw lie side by side.
+    // Cases that the same shaders draw are next to each other.
     for (n, case) in cases.iter().enumerate().skip(half * count / 2).take(count / 2) {
         if let Err(text) = fault(&mut host, case, n) {
             faults.push((text, case.given.clone()));
@@ -88,7 +88,7 @@ fn random_weathers_are_drawn_finite(half: usize) {
     report(count / 2, &faults);
 }
 
-/// Air of which the sky is black: no star is seen through it, and none is refused.
+/// Air so thick that the sky is black: no star is visible, and the frame is not refused.
 #[test]
 fn a_night_in_the_thickest_air_is_drawn() {
     let mut given = Given::default();
@@ -119,7 +119,7 @@ fn fault(host: &mut Host, case: &Case, n: usize) -> Result<(), String> {
     host.clear([0.2, 0.3, 0.4, 1.0], if *is_sky { 0.0 } else { 2e-4 });
     let forward = DVec3::new(0.3, 1.0, *pitch).normalize();
     let camera = Camera::look_to(DVec3::Z * *up, forward, DVec3::Z, 1.0, 160.0 / 90.0, 0.1);
-    // Half floats hold no sunlit snow in cd/m^2.
+    // Half floats cannot hold the luminance of sunlit snow in cd/m^2.
     let exposure = Some(Exposure::Factor(1e-4));
     let frame = Frame {
         exposure,

@@ -1,4 +1,4 @@
-//! A context that answers queries without a GPU, and the numbers that tests draw.
+//! A context that answers queries without a GPU, and the tests' random numbers.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ impl Host {
     }
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014): enough for picking.
+/// Random numbers by SplitMix64 (Steele, Lea and Flood 2014), good enough for choosing cases.
 pub struct Dice(pub u64);
 
 impl Dice {

@@ -1,4 +1,5 @@
-//! wgpu logs no error while OpenGL draws weathers: the software driver lets pass what others may refuse.
+//! wgpu logs no error while OpenGL draws weathers. The log is checked because the software driver accepts calls that
+//! other drivers may refuse.
 
 use std::sync::Mutex;
 
@@ -26,7 +27,7 @@ impl log::Log for Listener {
         true
     }
     fn log(&self, record: &log::Record<'_>) {
-        // Without a window there is no display to open first, and wgpu goes on to the next.
+        // Without a window system wgpu logs an error for the first EGL display and tries the next.
         if record.level() == log::Level::Error && !record.target().ends_with("egl") {
             ERRORS.lock().unwrap().push(format!("{}: {}", record.target(), record.args()));
         }

@@ -1,4 +1,5 @@
-//! The weather from outside: reports, presets, what follows from them, how one becomes another, and what is accepted.
+//! The weather through the public interface: reports, presets, the conditions they give, transitions, and the values
+//! that are accepted.
 
 mod accepted;
 mod drawn;

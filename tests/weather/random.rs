@@ -1,17 +1,17 @@
-//! Weathers from all over what their documentation accepts, its ends above all.
+//! Random weathers over all documented ranges, often at the ends.
 
 use welkin::weather::*;
 
 use crate::host::Dice;
 
-/// A number of a weather or of its overrides: name, range, how it is set.
+/// A number of a weather or of its overrides: name, range and setter.
 pub struct Field {
     pub name: &'static str,
     pub range: [f64; 2],
     pub set: fn(&mut Given, f64),
 }
 
-/// What a host gives.
+/// Weather and overrides that a host gives.
 #[derive(Clone, Debug, Default)]
 pub struct Given {
     pub weather: Weather,
@@ -83,7 +83,7 @@ pub const FIELDS: &[Field] = fields![
     "overrides.wetness", 0.0, 1.0, |g, v| g.overrides.wetness = Some(v);
 ];
 
-/// How many of [`FIELDS`] are a weather's; the others are overrides.
+/// Number of the [`FIELDS`] of a weather, which come first; the others are overrides.
 pub fn weather_fields() -> usize {
     FIELDS.iter().position(|f| f.name.starts_with("overrides.")).unwrap()
 }
@@ -92,7 +92,8 @@ fn pick<T: Copy>(dice: &mut Dice, all: &[T]) -> T {
     all[dice.below(all.len())]
 }
 
-/// A number of a range: one of its ends, or any between them, evenly or by its order of magnitude.
+/// A random number of a range: one of its ends, or a number between them, evenly distributed or by its order of
+/// magnitude.
 fn number(dice: &mut Dice, [lo, hi]: [f64; 2]) -> f64 {
     let u = dice.below(1 << 30) as f64 / f64::from(1 << 30);
     match dice.below(5) {
@@ -104,7 +105,7 @@ fn number(dice: &mut Dice, [lo, hi]: [f64; 2]) -> f64 {
 }
 
 impl Given {
-    /// Kinds, flags and layers by chance, numbers as usual.
+    /// A weather with random kinds, flags and layers, and usual numbers.
     pub fn of_kinds(dice: &mut Dice) -> Self {
         let mut given = Self::default();
         let w = &mut given.weather;
@@ -120,10 +121,10 @@ impl Given {
         given
     }
 
-    /// A number of `field` by chance.
+    /// Sets `field` to a random number of its range.
     pub fn set(&mut self, dice: &mut Dice, field: &Field) {
         if field.name.starts_with("clouds[0]") {
-            // Any of them may become the first.
+            // A random layer becomes the first.
             let count = self.weather.clouds.len();
             self.weather.clouds.swap(0, dice.below(count));
         }
@@ -142,7 +143,7 @@ impl Given {
         self
     }
 
-    /// Any weather; every third with overrides.
+    /// A random weather, every third one with overrides.
     pub fn random(dice: &mut Dice) -> Self {
         let mut given = Self::of_kinds(dice);
         for _ in 1..=dice.below(MAX_CLOUD_LAYERS) / (1 + dice.below(8)) {

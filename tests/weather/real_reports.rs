@@ -1,4 +1,4 @@
-//! 1,100 reports that stations sent, beside the fields that the Aviation Weather Center decoded of them
+//! 1,100 reports that stations sent, compared with the fields that the Aviation Weather Center decoded from them
 //! (`data/README.md`).
 
 use welkin::weather::{AerosolKind, CloudAmountRule, FogKind, MetarReport, PrecipitationKind, Weather, derive};
@@ -54,7 +54,7 @@ fn near(what: &str, row: &Row, ours: f64, theirs: f64, tolerance: f64) {
     assert!((ours - theirs).abs() <= tolerance, "{}: {what} {ours} beside {theirs}", row.text);
 }
 
-/// Whether `name` is assumed exactly where the service found nothing.
+/// Checks that the report lists `name` as assumed exactly where the service found nothing.
 fn assumed(name: &str, row: &Row, report: &MetarReport, found: bool) {
     assert_eq!(report.assumed.contains(&name), !found, "{}: {name} {:?}", row.text, report.assumed);
 }
@@ -65,7 +65,7 @@ fn every_real_report_is_read() {
     assert_eq!(rows.len(), 1100);
     let unread: Vec<_> =
         rows.iter().map(read).filter(|r| !r.unread.is_empty()).map(|r| (r.station, r.unread)).collect();
-    // A mile without its S.
+    // A visibility in miles without the S of SM.
     assert_eq!(unread, [("KMER".to_owned(), vec!["8M".to_owned()])]);
 }
 
@@ -75,7 +75,7 @@ fn air_and_wind_are_those_that_the_service_decoded() {
     for row in &rows() {
         let r = read(row);
         let w = &r.weather;
-        // Tenths from the remarks round to the body's degrees, at some stations those of another minute.
+        // Tenths in the remarks round to the degrees of the report's body, at some stations to those of another minute.
         let tenths = if r.remarks.contains(" T") { 1.0 } else { 0.0 };
         assumed("temperature_c", row, &r, row.temperature_c.is_some());
         assumed("relative_humidity", row, &r, row.dew_point_c.is_some());
@@ -86,10 +86,10 @@ fn air_and_wind_are_those_that_the_service_decoded() {
         // A dew point above the temperature counts as saturation.
         let dew = row.dew_point_c.zip(row.temperature_c).map(|(d, t)| d.min(t));
         dew.into_iter().for_each(|d| near("dew point", row, w.dew_point_c(), d, tenths + 1e-9));
-        // The service rounds tenths of a hectopascal and hundredths of an inch on the way.
+        // The service converts, and rounds to tenths of a hectopascal and hundredths of an inch.
         row.pressure_in_hg.into_iter().for_each(|p| near("pressure", row, w.pressure_hpa / 33.8639, p, 5e-3));
         row.speed_kt.into_iter().for_each(|s| near("wind", row, w.wind.speed_m_s / KNOT, s, 1e-9));
-        // Calm has no direction, and the service writes 0 for a variable one.
+        // Calm air has no direction, and the service writes 0 for a variable direction.
         row.from_deg.into_iter().for_each(|d| near("direction", row, w.wind.from_deg, d, 0.0));
         assert_eq!(row.gust_kt, w.wind.gust_m_s.map(|g| (g / KNOT).round()), "{}", row.text);
     }
@@ -102,7 +102,7 @@ fn visibilities_are_those_that_the_service_decoded_or_more_where_they_are_open()
     for row in &rows() {
         let r = read(row);
         match row.visibility_mi {
-            // 10SM, 9999 and CAVOK.
+            // The service's values for 10SM, 9999 and CAVOK.
             Some(miles) if miles == 10.0 || miles == 6.21 => {
                 open += 1;
                 assert!(r.visibility_is_minimum && r.weather.visibility_m >= 0.999 * miles * MILE, "{}", row.text);
@@ -111,7 +111,7 @@ fn visibilities_are_those_that_the_service_decoded_or_more_where_they_are_open()
                 near("visibility", row, r.weather.visibility_m / MILE, miles, 0.0051);
                 assert!(!r.visibility_is_minimum, "{}", row.text);
             }
-            // A unit that stands apart is more than the service reads.
+            // The service does not read a number with a blank before its unit.
             None if row.text.contains("1/4 SM") => near("visibility", row, r.weather.visibility_m / MILE, 0.25, 1e-9),
             None => assumed("visibility_m", row, &r, false),
         }
@@ -119,7 +119,7 @@ fn visibilities_are_those_that_the_service_decoded_or_more_where_they_are_open()
     assert!(open > 700, "{open}");
 }
 
-/// What a group of present weather means, by hand: kind, bounds of the rate in mm/h, fog, particles.
+/// Meaning of a group of present weather, written by hand: kind, bounds of the rate in mm/h, fog, particles.
 fn meaning(group: &str) -> (PrecipitationKind, (f64, f64), FogKind, AerosolKind) {
     use {AerosolKind as A, FogKind as F, PrecipitationKind as P};
     let (none, dry, air) = (P::None, (0.0, 0.0), A::Continental);
@@ -144,7 +144,7 @@ fn present_weather_is_that_which_the_service_decoded() {
     let mut seen = 0;
     for row in &rows() {
         let w = read(row).weather;
-        // The service leaves out the sign of unknown precipitation, whose kind is by the temperature.
+        // The service omits the sign of unknown precipitation (UP), whose kind depends on the temperature.
         if row.weather.contains("UP") {
             assert!(w.precipitation.rate_mm_h > 0.0, "{}", row.text);
             continue;
@@ -161,9 +161,10 @@ fn present_weather_is_that_which_the_service_decoded() {
     assert!(seen > 360, "{seen}");
 }
 
-/// Cloud groups as the service decoded them: class, 0 for FEW to 3 for OVC, and base in feet; `None` for a hidden sky.
+/// Cloud groups as the service decoded them: class (0 for FEW to 3 for OVC) and base in feet; `None` for an obscured
+/// sky.
 fn groups(row: &Row) -> Option<Vec<(usize, f64)>> {
-    // The service reads the second of two groups without a blank between them, as if the first were not there.
+    // Of two groups without a blank between them the service reads only the second.
     let sky = if row.text.contains("SCT120BKN180") { "SCT:12000 BKN:18000" } else { row.sky };
     let class = |name: &str| ["FEW", "SCT", "BKN", "OVC"].iter().position(|c| *c == name);
     if sky.contains("OVX") {

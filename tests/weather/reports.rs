@@ -1,4 +1,4 @@
-//! Every report in the repository's data, malformed ones, presets, and what follows from them.
+//! Every report in the repository's data, malformed reports, presets, and the conditions they give.
 
 use crate::host::Dice;
 use welkin::Status;
@@ -18,8 +18,8 @@ fn of(station: &str) -> MetarReport {
     Weather::from_metar(text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
-/// What a report must come out as: station; day, hour, minute; visibility m and whether it is a minimum; temperature,
-/// humidity (two digits); pressure; wind speed knots, direction, gust knots; clouds as (eighths, feet); kind of
+/// Expected values of a report: station; day, hour, minute; visibility in m and whether it is a minimum; temperature,
+/// humidity (two digits); pressure; wind speed in knots, direction, gust in knots; clouds as (eighths, feet); kind of
 /// precipitation, rate.
 struct Expected {
     station: &'static str,
@@ -41,8 +41,8 @@ fn expected() -> Vec<Expected> {
         station, time, visibility_m, air, wind_kt, clouds, falling, fog, aerosol, lofted,
     };
     let none = (P::None, 0.0, 0.0);
-    // Open-ended visibilities have a band instead of a figure: at least what is reported, and no further than clean air
-    // allows.
+    // Open-ended visibilities have a range instead of a number: at least the reported value, and no farther than clean
+    // air allows.
     vec![
         e("KDEN", (17, 18, 53), (30e3, 60e3, true), (28.0, 0.22, 1020.0), (9.0, 240.0, None), &[], none, F::None, A::Continental, L::None),
         e("LEMD", (12, 12, 0), (30e3, 60e3, true), (31.0, 0.26, 1018.0), (5.0, 40.0, None), &[], none, F::None, A::Continental, L::None),
@@ -138,7 +138,8 @@ fn what_follows_from_each_report_is_physical_and_keeps_its_visibility() {
     let of = |s| derive(&of(s).weather).unwrap();
     assert!(of("EHAM").fog.top_m >= 100.0 && of("EHAM").fog.top_m <= 200.0);
     assert_eq!(of("EDDM").fog.top_m, 2.0);
-    // What the sky cannot carry of thick haze and dust absorbs and reaches kilometres up, other than droplets.
+    // The part of thick haze and dust that the sky's aerosol cannot represent still absorbs and reaches kilometres up,
+    // unlike droplets.
     for (s, top) in [("ZBAA", 2400.0), ("OKBK", 3000.0)] {
         let layer = of(s).fog;
         assert!(layer.single_scattering_albedo < 0.95 && layer.top_m == top && layer.base_m == 0.0, "{s}: {layer:?}");
@@ -247,8 +248,8 @@ fn a_group_at_fault_is_named_and_the_others_are_read() {
     }
 }
 
-/// One random damage to a report: characters replaced, words dropped, doubled, swapped, taken from other reports, or
-/// cut.
+/// One random damage to a report: replaced characters; words dropped, doubled, swapped or taken from other reports; or
+/// a cut.
 fn damage(text: &str, words: &[&str], dice: &mut Dice) -> String {
     let mut chars: Vec<char> = text.chars().collect();
     let mut split: Vec<&str> = text.split(' ').collect();
@@ -330,7 +331,7 @@ fn no_text_panics_and_what_is_accepted_is_valid() {
     assert!(accepted > rounds / 3 && refused > rounds / 20, "{accepted} accepted, {refused} refused");
 }
 
-/// All figures of some conditions, for finite differences: every number of their text form, in order.
+/// All numbers of some conditions, in the order of their text form, for finite differences.
 fn figures(c: &Conditions) -> Vec<f64> {
     let text = format!("{c:?}");
     text.split(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c)))
@@ -346,7 +347,7 @@ fn any_sequence_of_presets_flows_without_a_jump() {
     let mut timeline = Timeline::new(derive(&Weather::default()).unwrap());
     let mut start = 0.0;
     for _ in 0..12 {
-        // Some begin while the last is under way, some after it.
+        // Some changes begin while the last one is under way, some after it.
         start += 5.0 + dice.below(90) as f64;
         let to = derive(&Weather::preset(names[dice.below(names.len())]).unwrap()).unwrap();
         timeline.change(to, start, 20.0 + dice.below(60) as f64).unwrap();
@@ -373,9 +374,9 @@ fn any_sequence_of_presets_flows_without_a_jump() {
 
 #[test]
 fn the_same_weather_gives_the_same_bits_on_every_machine() {
-    // FNV-1a over the shortest text of every figure, which names its bits. The constant was made on x86-64 Linux; a
-    // machine that differs fails here. It changes whenever a law, a preset or the name of a type or field does: look at
-    // why, then renew it.
+    // FNV-1a over the shortest text of every figure, which names its bits. The constant was computed on x86-64 Linux;
+    // the test fails on a machine whose numbers differ. It changes with any law, preset or name of a type or field:
+    // find the reason, then update it.
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     let mut take = |c: &Conditions| {
         for byte in format!("{c:?}").bytes() {
@@ -394,5 +395,5 @@ fn the_same_weather_gives_the_same_bits_on_every_machine() {
     assert_eq!(hash, GOLDEN_HASH, "0x{hash:016x}");
 }
 
-/// See [`the_same_weather_gives_the_same_bits_on_every_machine`].
+/// Hash that [`the_same_weather_gives_the_same_bits_on_every_machine`] expects.
 const GOLDEN_HASH: u64 = 0x71b8_704c_668e_d413;

@@ -1,4 +1,4 @@
-//! The sea as a host asks for it: through updates, at all times, saved and loaded, and what is refused.
+//! The sea as a host queries it: over updates, at all times, after saving and loading, and with refused values.
 
 use glam::DVec3;
 use welkin::{
@@ -45,7 +45,7 @@ fn updates_leave_the_sea_of_every_time_as_it_is() {
         assert_eq!(found, wanted);
     }
     assert_eq!(often.state_hash(), once.state_hash());
-    // The waves of the gale are still there: a context that begins with the wind of now has lower ones.
+    // The waves of the gale are still there: a context that begins with the present wind has lower ones.
     let mut late = host.context();
     late.set_weather(&blowing(8.0, 200.0), 0.0, 0.0).unwrap();
     late.set_sea(often.sea().cloned()).unwrap();

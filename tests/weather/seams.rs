@@ -1,5 +1,5 @@
-//! One weather becomes another without a jump: over a microsecond of a change of an hour nothing that a host can ask
-//! for moves by more than a millionth of itself.
+//! Changes from one weather to another have no jump: over a microsecond of a change of an hour no query result changes
+//! by more than a millionth of itself.
 
 use glam::DVec3;
 use welkin::{
@@ -10,22 +10,24 @@ use welkin::{
 
 use crate::host::{Dice, Host};
 
-/// Begin and length of the changes, s. So near 0 a microsecond is 5e9 times what f64 can tell apart at their end.
+/// Start and length of the changes, s. At times so near 0 a microsecond is 5e9 times the resolution of f64 even at
+/// their end.
 const START_S: f64 = 100.0;
 const LENGTH_S: f64 = 3600.0;
 const MICROSECOND: f64 = 1e-6;
 
-/// What may change in a microsecond, of the larger of the value and a thousandth of the larger end.
+/// Greatest change in a microsecond, relative to the value or, if that is larger, to a thousandth of the larger end
+/// value.
 const MOST: f64 = 1e-6;
 
-/// Places in a change that are looked at for the largest changes between them.
+/// Number of intervals in a change among which the one with the largest change is looked for.
 const PLACES: usize = 48;
 
-/// Distances from a seam at which it is also looked how large a number becomes, s: the sun through the first of a thin
-/// cloud, before that thickens, is there for seconds.
+/// Distances from a seam at which the size of each number is also measured, s: a number may be large for a few seconds
+/// only, such as direct sunlight through the first of a cloud, before that thickens.
 const NEAR_S: [f64; 3] = [1.0, 6.0, 36.0];
 
-/// Every number of some conditions. No field can be forgotten: the patterns name all.
+/// Appends every number of some conditions. No field can be forgotten, because the patterns must name all.
 pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
     let Conditions {
         extinction_per_m,
@@ -93,7 +95,7 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         liquid_extinction_per_m,
         solid_extinction_per_m,
     } = precipitation;
-    // The shares of its kinds may leap where there is no snow.
+    // The shares of the kinds of snow may jump where there is no snow.
     out.extend(precipitation.snow_kinds_mm_h());
     out.extend([rain_mm_h, drizzle_mm_h, snow_mm_h, ice_pellets_mm_h, hail_mm_h, freezing, showers, thunder]);
     out.extend([liquid_extinction_per_m, solid_extinction_per_m]);
@@ -115,7 +117,7 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         } = slab;
         out.extend([cover, base_m, thickness_m, optical_depth, droplet_radius_um, asymmetry, convection, ice_fraction]);
         out.extend([scale_m, cellular, fibre, life_s]);
-        // The wind of a layer may turn as fast as it likes where there is next to none of it.
+        // The wind of a layer may turn at any rate where its cover is close to 0.
         out.extend(wind_m_s.map(|v| v * cover));
     }
     let WindProfile {
@@ -143,11 +145,11 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
     out.extend([c.visibility_m(), c.cloud_cover(), clear_sky]);
 }
 
-/// Light at a place: what arrives, what lies above the fog, what the picture's sky is made of.
+/// Light at a place: on the ground and above the fog, and the shares of the picture's sky.
 fn light(context: &Context, up_m: f64, t: f64) -> Vec<f64> {
     let scene = context.scene_at(DVec3::Z * up_m, t).unwrap();
     let mut out = vec![scene.ground.total_lux, scene.ground.adaptation_cd_m2, luminance(scene.ground.sky_lux)];
-    // Shares of a picture change by parts of the whole.
+    // Shares of a picture are judged by their absolute change, hence the 1 added.
     out.extend([scene.above_fog.total_lux, 1.0 + scene.deck_cover, 1.0 + scene.medium_share]);
     for lit in [scene.ground, scene.above_fog] {
         out.extend([lit.sun_lux, lit.moon_lux, lit.sky_lux].as_flattened());
@@ -161,7 +163,7 @@ fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
 
-/// What one sees through along a level and a rising line, and what falls.
+/// Transmittance along a nearly level and a rising line, and the rain.
 fn sight_and_rain(context: &Context, t: f64) -> Vec<f64> {
     let mut out = Vec::new();
     for to in [DVec3::new(300.0, 900.0, 40.0), DVec3::new(900.0, -400.0, 700.0)] {
@@ -173,7 +175,7 @@ fn sight_and_rain(context: &Context, t: f64) -> Vec<f64> {
     out
 }
 
-/// The largest change over a microsecond, in what may be.
+/// Largest change over a microsecond, in units of the greatest allowed one.
 #[derive(Clone, Copy, Default)]
 struct Steepest {
     change: f64,
@@ -181,9 +183,9 @@ struct Steepest {
     at_s: f64,
 }
 
-/// The steepest change of `f` that is found between the first and the last of `seams`: of all numbers round each of
-/// them, and of the first `followed` where between [`PLACES`] moments they change most, followed by halves down to the
-/// microsecond.
+/// Finds the steepest change of `f`: of all numbers within a microsecond of each of the `seams`, and of the first
+/// `followed` numbers also between the first and the last seam. There that one of [`PLACES`] intervals in which a
+/// number changes most is halved down to a microsecond.
 fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Steepest {
     let ends: Vec<_> = seams.iter().map(|t| f(*t)).collect();
     let (from_s, to_s) = (seams[0], seams[seams.len() - 1]);
@@ -192,7 +194,7 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
     let near = seams.iter().flat_map(|t| NEAR_S.iter().flat_map(move |s| [t - s, t + s]));
     let near: Vec<_> = if followed == 0 { Vec::new() } else { near.map(f).collect() };
     let part = |i: usize, a: &[f64], b: &[f64]| {
-        // What a change brings may have gone by the next seam, where another change overtook it: it was there between.
+        // A value may be large only between two seams, where another change overtook the first.
         let larger_end = ends.iter().chain(&grid).chain(&near).map(|at| at[i].abs()).fold(0.0, f64::max);
         let size = a[i].abs().max(b[i].abs()).max(1e-3 * larger_end);
         if a[i] == b[i] { 0.0 } else { (b[i] - a[i]).abs() / (size * MOST) }
@@ -214,7 +216,7 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
         let steep = |k: &usize| part(i, &grid[*k], &grid[*k + 1]);
         let k = (0..PLACES).max_by(|a, b| steep(a).total_cmp(&steep(b))).unwrap();
         let (mut a, mut b) = ((place(k), grid[k].clone()), (place(k + 1), grid[k + 1].clone()));
-        // A change that is small over a longer time is small over a microsecond of it, or turns back there.
+        // A change that is small over a longer time is assumed small over each microsecond of it.
         while b.0 - a.0 > MICROSECOND && part(i, &a.1, &b.1) > 1.0 {
             let t = 0.5 * (a.0 + b.0);
             let middle = (t, f(t));
@@ -225,10 +227,10 @@ fn steepest(f: &dyn Fn(f64) -> Vec<f64>, followed: usize, seams: &[f64]) -> Stee
     worst
 }
 
-/// Where and how light is looked at: sun and moon are put somewhere, and the eye so far above the station.
+/// A context with sun and moon in the `n`th position, and the height of the eye above the station.
 fn lit(host: &Host, n: usize) -> (Context, f64) {
     let mut context = host.context();
-    // Clouds of a volume drift through a line of sight, faster than weather may change.
+    // Clouds as a volume drift through a line of sight faster than weather may change.
     context.set_cloud_model(CloudModel::Deck);
     let elevation_deg = [50.0, 12.0, 2.0, -7.0][n % 4];
     context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg })).unwrap();
@@ -236,8 +238,8 @@ fn lit(host: &Host, n: usize) -> (Context, f64) {
     (context, [2.0, 700.0, 2600.0][n / 4 % 3])
 }
 
-/// What of a context jumps at the `seams` of its weather's changes, or, if asked, between them, where so many changes
-/// go on at a time: each may move as fast as alone.
+/// Messages about numbers of a context that jump at the `seams` of its weather's changes, and with `between` also
+/// between them. `changes` is how many changes are under way at once: each may move numbers as fast as alone.
 fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool, changes: f64) -> Vec<String> {
     let conditions = |t: f64| {
         let mut out = Vec::with_capacity(192);
@@ -256,7 +258,7 @@ fn jumps(context: &Context, up_m: f64, seams: &[f64], between: bool, changes: f6
         .collect()
 }
 
-/// A layer that the picture shows as a deck once it is closed, and as a volume before, hides as much on either side of
+/// A layer that the picture draws as a volume until it is closed, and then as a deck, hides as much on either side of
 /// that moment.
 #[test]
 fn a_layer_that_closes_hides_no_more_at_once() {
@@ -287,7 +289,7 @@ fn no_preset_becomes_another_with_a_jump() {
             let (mut context, up_m) = lit(&host, pairs);
             context.set_weather(from, 0.0, 0.0).unwrap();
             context.set_weather(to, START_S, LENGTH_S).unwrap();
-            // Two in which the wind stops lifting while what it has lifted is still in the air.
+            // In these two changes the wind stops lifting dust or spray while some is still in the air.
             let lulls = [("dust_storm", "shallow_fog"), ("storm_at_sea", "fog")].contains(&(a, b));
             let between = is_long() || pairs % 29 == 0 || lulls;
             let found = jumps(&context, up_m, &[START_S, START_S + LENGTH_S], between, 1.0);
@@ -330,7 +332,7 @@ fn layered() -> Vec<Conditions> {
     skies.map(|w| derive(&w).unwrap()).collect()
 }
 
-/// Reports that differ in the number of their layers, in what falls, in fog and in what the wind lifts.
+/// Reports that differ in their cloud layers, precipitation, fog and lifted particles.
 const REPORTS: [&str; 12] = [
     "METAR EGLL 060850Z 21006KT CAVOK 20/10 Q1020",
     "METAR EGLL 060850Z 21006KT 9999 FEW010 SCT030 BKN080 OVC200 15/10 Q1012",
@@ -346,7 +348,7 @@ const REPORTS: [&str; 12] = [
     "METAR EGLL 060850Z 06010KT 1200 FZRA OVC004 M01/M02 Q1006",
 ];
 
-/// Changes that begin while others are under way, among reports and presets.
+/// Tests changes between reports and presets that begin while others are under way.
 #[test]
 fn no_chain_of_changes_jumps() {
     let host = Host::new();

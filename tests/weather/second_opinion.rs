@@ -1,4 +1,4 @@
-//! Another grammar of the same code, the crate `metar`, and figures by hand where it refuses what stations send.
+//! The parser against another one, the crate `metar`, and against values by hand where that refuses real reports.
 
 use metar::{CloudDensity, Data, Metar, Pressure, Visibility, Wind, WindDirection, WindSpeed};
 use welkin::weather::{MetarReport, Weather};
@@ -40,7 +40,7 @@ fn compare(text: &str, theirs: &Metar) {
         }
         _ => assert!(ours.visibility_is_minimum, "{text}"),
     }
-    // A group of slashes alone is a layer to the other grammar.
+    // The other parser counts a group of only slashes as a layer.
     let layers: Vec<_> = theirs.cloud_layers.iter().filter(|l| matches!(l.density, Data::Known(_))).collect();
     assert_eq!((w.clouds.len(), ours.runways.len()), (layers.len(), theirs.rvr.len()), "{text}");
     for (a, b) in w.clouds.iter().zip(layers) {
@@ -100,11 +100,10 @@ fn another_grammar_reads_the_same_figures_in_real_reports() {
     assert!(both > 900, "{both}");
 }
 
-/// Wind by hand, in the report's unit: direction, mean, gust.
+/// Wind written by hand, in the report's unit: direction, mean, gust.
 type ByHand = (Option<f64>, f64, Option<f64>);
 
-/// Reports that the other grammar refuses, read by hand: wind, metres or miles a second as stated, visibility in
-/// metres.
+/// Reports that the other parser refuses, with values by hand: wind in the stated unit, visibility in metres.
 #[test]
 fn what_the_other_grammar_refuses_is_read_as_by_hand() {
     let table: [(&str, f64, ByHand, f64, &str); 9] = [

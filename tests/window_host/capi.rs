@@ -1,5 +1,5 @@
-//! A window through the C functions: what befalls it is answered, and the same device, context and view draw on
-//! afterwards.
+//! A window through the C functions: each event of the window gives a status, and the same device, context and view can
+//! draw afterwards.
 
 use std::ptr::{null, null_mut};
 use std::sync::atomic::Ordering;
@@ -10,7 +10,7 @@ use welkin_support::refusals;
 
 use crate::x11::{Server, Window, X_ERRORS};
 
-/// The thread's last message, whose field is held against the header.
+/// The thread's last message; also checks that its field is in the header.
 fn message() -> String {
     assert_eq!(refusals::field_fault(), None);
     refusals::message()
@@ -45,7 +45,7 @@ fn record(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_sta
     unsafe { wk_view_record(view, &frame, WK_STAGE_ALL) }
 }
 
-/// One frame as a host draws it: the first answer that is not WK_OK.
+/// Draws one frame as a host does; returns the first status that is not WK_OK.
 fn draw(view: *mut wk_view, surface: *mut wk_surface, frame_id: u64) -> wk_status {
     // SAFETY: live handles.
     unsafe {
@@ -61,7 +61,8 @@ fn configure(surface: *mut wk_surface, width: u32, height: u32) -> wk_status {
     unsafe { wk_surface_configure(surface, &config) }
 }
 
-/// Some frame is shown within a few: right after a change the window may still be told of it.
+/// Draws until a frame is shown, which must be within a few: right after a change of the window the first ones may be
+/// refused.
 #[track_caller]
 fn shows_again(view: *mut wk_view, surface: *mut wk_surface, size: (u32, u32), id: &mut u64) {
     for _ in 0..5 {
@@ -83,7 +84,7 @@ fn a_c_host_lives_through_its_windows_changes() {
         let other = window.another(60, 50);
         let desc = wk_device_desc { backends, ..init("wk_device_desc") };
         let (mut device, mut context, mut view, mut surface) = (null_mut(), null_mut(), null_mut(), null_mut());
-        // SAFETY: live pointers; the windows outlive their surfaces but where the test says so.
+        // SAFETY: live pointers; the windows outlive their surfaces except where the test says otherwise.
         unsafe {
             ok(wk_device_create_for_window(&desc, &named(&window), &mut device));
             ok(wk_surface_create(device, &named(&window), &mut surface));
@@ -95,7 +96,7 @@ fn a_c_host_lives_through_its_windows_changes() {
         ok(configure(surface, 120, 80));
         shows_again(view, surface, (120, 80), &mut id);
 
-        // Resized under it.
+        // The window is resized.
         window.resize(200, 150);
         let mut told = false;
         for _ in 0..4 {
@@ -104,12 +105,12 @@ fn a_c_host_lives_through_its_windows_changes() {
             assert!(matches!(status, WK_OK | WK_ERROR_SURFACE_OUTDATED), "{status}: {}", message());
             told |= status == WK_ERROR_SURFACE_OUTDATED;
         }
-        // OpenGL stretches or crops without saying so.
+        // OpenGL stretches or crops without reporting it.
         assert!(told || backends == WK_BACKEND_GL, "nobody said that the window changed");
         ok(configure(surface, 200, 150));
         shows_again(view, surface, (200, 150), &mut id);
 
-        // Minimised: no area is an answer.
+        // Minimised: a size of 0 is accepted.
         ok(configure(surface, 0, 0));
         id += 1;
         assert_eq!(draw(view, surface, id), WK_ERROR_SURFACE_OUTDATED, "{}", message());
@@ -119,13 +120,12 @@ fn a_c_host_lives_through_its_windows_changes() {
         ok(configure(surface, 200, 150));
         shows_again(view, surface, (200, 150), &mut id);
 
-        // Beyond what the device can do: refused by name, and the surface stays as it was set up.
+        // A size beyond the device's limit is refused by name, and the surface keeps its configuration.
         assert_eq!(configure(surface, 1 << 20, 150), WK_ERROR_INVALID_ARGUMENT);
         assert!(message().contains("config.width must be in [0, "), "{}", message());
         shows_again(view, surface, (200, 150), &mut id);
 
-        // Destroyed under it, with an image in hand.
-        // SAFETY: a live handle.
+        // The window is destroyed while an image is acquired. SAFETY: a live handle.
         ok(unsafe { wk_surface_acquire(surface) });
         window.destroy();
         let mut told = 0;
@@ -148,7 +148,7 @@ fn a_c_host_lives_through_its_windows_changes() {
         // The same view draws into another window.
         ok(configure(surface, 60, 50));
         shows_again(view, surface, (60, 50), &mut id);
-        // The device is lost with an image in hand: everything says so, and can be destroyed.
+        // The device is lost while an image is acquired: every call reports it, and all objects can be destroyed.
         // SAFETY: live handles.
         unsafe {
             id += 1;
@@ -170,7 +170,7 @@ fn a_c_host_lives_through_its_windows_changes() {
             ok(wk_view_destroy(view));
             ok(wk_context_destroy(context));
             ok(wk_device_destroy(device));
-            // A new one presents to the same window.
+            // A new device presents to the same window.
             ok(wk_device_create_for_window(&desc, &named(&other), &mut device));
             ok(wk_surface_create(device, &named(&other), &mut surface));
             ok(wk_context_create(device, null(), &mut context));

@@ -1,4 +1,4 @@
-//! Who holds a window's image once it was handed to the screen. DXGI resizes a window only when nobody does.
+//! No one may hold a window's image after it was presented: DXGI resizes a window only when no one holds its images.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::{
     x11::{Server, Window},
 };
 
-/// Textures that Welkin and its host hold on the device. wgpu counts handles, whatever the interface.
+/// Number of textures that Welkin and its host hold on the device, counted by wgpu for every interface.
 fn held(device: &Device) -> usize {
     device.instance.generate_report().expect("wgpu of this process").hub_report().textures.num_allocated
 }
@@ -43,7 +43,7 @@ fn no_view_holds_a_window_s_image_that_was_presented() {
         let (mut context, mut view) = rainy_view(&device);
         surface.configure(&size(96, 64)).unwrap();
         let camera = Camera::look_to(DVec3::Z * 2.0, DVec3::Y, DVec3::Z, 1.0, 1.5, 0.1);
-        // Of one frame whole, and of one whose lens and tone curve come in calls of their own.
+        // Frames recorded in one call, and frames whose lens and tone curve are recorded in separate calls.
         let last = Stages::LENS.with(Stages::TONE);
         let calls = [&[Stages::ALL][..], &[Stages::ALL.without(last), last]];
         for id in 0..12_u64 {
@@ -60,8 +60,8 @@ fn no_view_holds_a_window_s_image_that_was_presented() {
             surface.present().unwrap();
             device.wait().unwrap();
             let after = held(&device);
-            // The image goes with its handle: of what was there while it was in hand, one texture is gone. OpenGL's
-            // images are hidden behind a picture that stays.
+            // Presenting releases the image: there is one texture fewer than while it was acquired. OpenGL draws to a
+            // picture that stays.
             assert_eq!(after + 1, kept, "{backends:?}, frame {id}: textures after it was presented, and before");
         }
     }

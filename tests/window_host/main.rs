@@ -1,5 +1,5 @@
-//! Own-device windows by native handle: what Welkin presents is what the X server shows, and whatever happens to
-//! the window is an answer, not a fault.
+//! Windows of Welkin's own devices by native handle: the X server shows what Welkin presents, and any event of the
+//! window gives a status and never a crash.
 #![cfg(target_os = "linux")]
 
 mod capi;
@@ -52,7 +52,7 @@ fn show(device: &Device, surface: &mut Surface, colour: [f64; 3]) -> welkin::Res
     device.wait()
 }
 
-/// The pixel becomes the colour within a second: presenting is not synchronous.
+/// Checks that the pixel becomes the colour within a second: presenting is not synchronous.
 fn assert_pixel(window: &Window, x: i32, y: i32, expected: [u8; 3]) {
     let start = Instant::now();
     loop {
@@ -98,7 +98,7 @@ fn a_resized_window_is_filled_again() {
         show(&device, &mut surface, [1.0, 0.0, 0.0]).unwrap();
         assert_pixel(&window, 99, 59, [255, 0, 0]);
         window.resize(300, 200);
-        // The host may hear of the new size before or after the surface does; both orders must do.
+        // The host may learn of the new size before or after the surface does; both orders must work.
         let mut told = false;
         for _ in 0..4 {
             match show(&device, &mut surface, [0.0, 1.0, 0.0]) {
@@ -109,7 +109,7 @@ fn a_resized_window_is_filled_again() {
                 }
             }
         }
-        // OpenGL stretches or crops without saying so; Vulkan tells.
+        // OpenGL stretches or crops without reporting it; Vulkan reports it.
         assert!(told || backends == wgpu::Backends::GL, "{backends:?} never said that the window changed");
         surface.configure(&size(300, 200)).unwrap();
         assert_eq!(surface.size(), (300, 200));
@@ -145,7 +145,7 @@ fn no_area_and_hidden_are_answers() {
         surface.configure(&size(100, 60)).unwrap();
         show(&device, &mut surface, [0.0, 0.0, 1.0]).unwrap();
         assert_pixel(&window, 50, 30, [0, 0, 255]);
-        // An image in hand does not stand in the way of a new set-up.
+        // An acquired image does not prevent a new configuration.
         surface.acquire().unwrap();
         surface.configure(&size(100, 60)).unwrap();
         show(&device, &mut surface, [0.0, 1.0, 0.0]).unwrap();
@@ -177,11 +177,10 @@ fn a_window_that_went_is_an_answer() {
                 told += 1;
             }
         }
-        // The software GL driver draws on as if nothing had happened until it is set up again.
+        // The software OpenGL driver draws on as if nothing had happened until the surface is configured again.
         assert!(told >= 7, "{backends:?}: {told} of 8 answers");
         drop(surface);
-        // The device is not harmed: another window of its can be drawn to.
-        // SAFETY: the window outlives the surface.
+        // The device still works: it can draw to another window. SAFETY: the window outlives the surface.
         let mut surface = unsafe { Surface::new(&device, &other.xlib()).unwrap() };
         surface.configure(&size(50, 50)).unwrap();
         show(&device, &mut surface, [0.0, 0.0, 1.0]).unwrap();
@@ -190,7 +189,7 @@ fn a_window_that_went_is_an_answer() {
 
         let NativeWindow::Xlib { display, screen, .. } = other.xlib() else { unreachable!() };
         let never = NativeWindow::Xlib { display, screen, window: 0x00ab_cdef };
-        // SAFETY: there is no such window, which is found before a driver looks for it.
+        // SAFETY: the window does not exist, and Welkin finds that before a driver uses it.
         let e = unsafe { Surface::new(&device, &never) }.expect_err("there is no such window");
         assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
         let options = DeviceOptions { backends, ..DeviceOptions::default() };

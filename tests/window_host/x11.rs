@@ -1,4 +1,4 @@
-//! An X11 host in small: a server of its own without a screen, a window, and the window's pixels as X sees them.
+//! A small X11 host: its own server without a screen, a window, and the window's pixels as X sees them.
 
 use std::ffi::{CString, c_char, c_int, c_uint, c_ulong, c_void};
 use std::io::{BufRead, BufReader};
@@ -59,7 +59,7 @@ extern "C" fn count_error(_: *mut c_void, _: *mut c_void) -> c_int {
     0
 }
 
-/// An X server without a screen, ended with the value.
+/// An X server without a screen, which ends when the value is dropped.
 pub struct Server {
     child: Child,
     pub name: String,
@@ -86,7 +86,7 @@ impl Drop for Server {
     }
 }
 
-/// A window of the host's on a connection of its own.
+/// A window of the host on its own connection.
 pub struct Window {
     display: *mut c_void,
     xcb: *mut c_void,

@@ -1,4 +1,4 @@
-/* An OpenGL host's two contexts, which share objects: by WGL (contexts_wgl.c) or GLX (contexts_glx.c). */
+/* Two contexts of an OpenGL host, which share objects: by WGL (contexts_wgl.c) or GLX (contexts_glx.c). */
 #ifndef WINDOWS_CONTEXTS_H
 #define WINDOWS_CONTEXTS_H
 
@@ -10,7 +10,7 @@
 void contexts_open(int width, int height, int core);
 void contexts_close(void);
 
-/* What Welkin is given. */
+/* The function by which Welkin gets OpenGL's functions. */
 const void *contexts_get_proc(void *user, const char *name);
 int32_t contexts_make_current(void *user, uint32_t which);
 

@@ -1,4 +1,4 @@
-/* Two contexts by GLX: the same host on Linux, for its picture. */
+/* Two contexts by GLX: the same host on Linux, whose picture is the reference. */
 #ifndef _WIN32
 
 #include "contexts.h"

@@ -1,4 +1,4 @@
-/* Two contexts by WGL, as a host of Windows makes them. */
+/* Two contexts by WGL, as a Windows host makes them. */
 #ifdef _WIN32
 
 #include "contexts.h"
@@ -64,7 +64,7 @@ void contexts_open(int width, int height, int core)
     PROC found;
     HGLRC first;
     open_window(width, height);
-    /* The function that makes contexts of a profile is known in a context only. */
+    /* The function that makes contexts of a profile can be found only while a context is current. */
     first = wglCreateContext(dc);
     EXPECT(first && wglMakeCurrent(dc, first));
     if (core) {

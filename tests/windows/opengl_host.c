@@ -13,7 +13,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
-/* What OpenGL 1.1 has not. */
+/* Functions that OpenGL 1.1 does not have. */
 static PFNGLGENFRAMEBUFFERSPROC gen_framebuffers;
 static PFNGLBINDFRAMEBUFFERPROC bind_framebuffer;
 static PFNGLFRAMEBUFFERTEXTURE2DPROC framebuffer_texture;

@@ -1,4 +1,4 @@
-/* The scene on a device of Welkin's own, and what does not come from a GPU: reports read, conditions, the state's hash.
+/* The scene on a device of Welkin's own, and values that need no GPU: parsed reports, conditions, the state's hash.
  *
  *     own vulkan|opengl|noop PICTURE.ppm VALUES.bin */
 #include "scene.h"

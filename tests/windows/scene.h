@@ -38,7 +38,7 @@ static inline void scene_weather(wk_context *context)
     CHECK(wk_context_update(context, 30.0));
 }
 
-/* A camera two metres up that looks north and a little down; one picture alone, drawn whole. */
+/* A camera two metres up that looks north and a little down; a single frame, drawn completely. */
 static inline void scene_frame(wk_frame *frame, const void *target)
 {
     static const double view[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
@@ -62,7 +62,7 @@ static inline void scene_write(const char *path, const unsigned char *pixels, in
     EXPECT(fclose(file) == 0);
 }
 
-/* A picture that is one colour shows nothing. */
+/* Fails if the picture is all one colour. */
 static inline void scene_look(const unsigned char *pixels)
 {
     int i, least = 255, most = 0;

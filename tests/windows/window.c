@@ -1,4 +1,4 @@
-/* What befalls a window of Win32 is answered by a status, and the device draws into another window afterwards.
+/* Each event of a Win32 window gives a status, and the device can draw into another window afterwards.
  *
  *     window vulkan|opengl */
 #include "scene.h"
@@ -40,7 +40,7 @@ static wk_status configure(wk_surface *surface, uint32_t width, uint32_t height)
 
 static uint64_t frame_id;
 
-/* One frame as a host draws it: the first answer that is not WK_OK. */
+/* Draws one frame as a host does; returns the first status that is not WK_OK. */
 static wk_status draw(wk_view *view, wk_surface *surface)
 {
     wk_own_target target = WK_OWN_TARGET_INIT;
@@ -56,7 +56,7 @@ static wk_status draw(wk_view *view, wk_surface *surface)
     return status == WK_OK ? wk_surface_present(surface) : status;
 }
 
-/* Some frame is shown within a few: right after a change the window may still be told of it. */
+/* Draws until a frame is shown, which must be within a few: right after a change the first ones may be refused. */
 static void shows(wk_view *view, wk_surface *surface, uint32_t width, uint32_t height)
 {
     int i;

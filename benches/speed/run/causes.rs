@@ -10,8 +10,8 @@ const MUCH_UPLOADED: u64 = 64 << 10;
 /// Totals of a device, by name.
 type Totals = Vec<(&'static str, u64)>;
 
-/// Totals for a build whose devices count nothing, so that this benchmark runs with it too. Where a device has its own
-/// `work`, that one is called.
+/// Empty totals for older versions of the library, whose devices have no `work`. Rust prefers a device's own `work` if
+/// there is one.
 #[allow(dead_code)]
 trait CountsNothing {
     fn work(&self) -> Totals;

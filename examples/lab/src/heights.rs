@@ -1,5 +1,5 @@
-//! Contact sheet of mistakes with height maps, as hillshades of real terrain under the contour and the water level that
-//! it should have.
+//! Contact sheet of mistakes with height maps: hillshades of real terrain with each mistake, overlaid by the contour
+//! and the water level that the terrain should have.
 
 use std::path::Path;
 
@@ -22,7 +22,8 @@ const PIXEL_M: [f64; 2] = [74.4 / FINER as f64, 92.5 / FINER as f64];
 const CONTOUR_M: f32 = 480.0;
 /// Surface of the water, m.
 const WATER_M: f32 = 350.0;
-/// Height of sea level above the ellipsoid there (EGM96), m: a receiver of satellites shows heights so much greater.
+/// Height of sea level above the ellipsoid there (EGM96), m: heights above the ellipsoid are those above sea level plus
+/// this.
 const GEOID_M: f32 = -31.0;
 /// Part of a panel below its picture, pixels, and the space between panels.
 const CAPTION: u32 = 30;
@@ -95,12 +96,12 @@ impl Relief {
 /// Panels: caption and relief.
 fn panels(truth: &Relief) -> Vec<(&'static str, Relief)> {
     let [columns, rows] = truth.size;
-    // A disc without data, as behind a radar's hill.
+    // A disc without data, as in a radar's shadow behind a hill.
     let is_gap = |x: u32, y: u32| {
         let away = [f64::from(x) - 0.62 * f64::from(columns), f64::from(y) - 0.55 * f64::from(rows)];
         away[0].hypot(1.3 * away[1]) < 0.16 * f64::from(columns)
     };
-    // Rows that are taken to be three samples longer than they are.
+    // Rows that are read as three samples longer than they are.
     let sheared = |x: u32, y: u32| truth.heights_m[((y * (columns + 3) + x) % (columns * rows)) as usize];
     vec![
         ("as it is", truth.changed(|_, _, h| h)),

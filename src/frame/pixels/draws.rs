@@ -1,5 +1,5 @@
 //! Draws that together make the picture of a weather: the coarse grid and its cells, and one draw for each kind of
-//! pixels. They are kept, because searching all pipelines for one takes longer than recording a draw.
+//! pixels. A view keeps them, because searching all pipelines for one takes longer than recording a draw.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::{
     stage::Pipeline,
 };
 
-/// Number of a frame's calls whose draws a view keeps.
+/// Number of calls of a frame whose draws a view keeps.
 pub(in crate::frame) const MOST_DRAWS: usize = 4;
 
 /// Key of the draws in their cache.

@@ -4,8 +4,8 @@
 //! fourth pixel of every fourth row. A second pass finds the cells of this grid in which linear interpolation is within
 //! a thousandth of the curve through the texels and their neighbours. A pixel in such a cell is interpolated from the
 //! cell's four texels if its surface is as far away as theirs. All other pixels are drawn in full: edges, thin objects,
-//! the edge of fog, the surroundings of the sun's disc. The grid has no clouds; each pixel lays its own clouds over the
-//! interpolated value.
+//! the edge of fog, the surroundings of the sun's disc. The grid has no clouds; each pixel composites its own clouds
+//! over the interpolated value.
 
 use super::{pixel_kind::Pixels, variant::Variant};
 use crate::{
@@ -17,15 +17,15 @@ use crate::{
     stage::{Sampling, Stages},
 };
 
-/// Distance of the grid's texels in pixels: EVEN_PIXELS of `shaders/frame/even.wgsl`.
+/// Spacing of the grid's texels, pixels: `EVEN_PIXELS` of `shaders/frame/even.wgsl`.
 const PIXELS: u32 = 4;
 /// Smallest side of a picture that has a grid, pixels.
 const LEAST_SIDE: u32 = 64;
 const WEATHER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-/// Whether the picture of `all` may use a grid: not if its weather has detail from pixel to pixel, nor if samples have
-/// depths of their own.
+/// Whether the picture of `all` may use a grid. It may not if its weather has detail from pixel to pixel, or if samples
+/// have depths of their own.
 pub(in crate::frame) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;

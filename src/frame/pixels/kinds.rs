@@ -4,7 +4,8 @@
 //! pixels of its own kind, before its shader runs. All draws are in one pass. Pixels interpolated from the coarse grid
 //! ([`super::even`]) are kinds of their own. The others are divided by what they show only on a software driver, which
 //! executes both sides of every branch: there a sky pixel would pay for the air in front of objects, an object for the
-//! sky behind it, and the sky for the planet's ground below it. A GPU branches, and draws them all with one pipeline.
+//! sky behind it, and the sky for the planet's ground below it. A GPU skips the side of a branch that is not taken, so
+//! it draws all the others with one pipeline.
 
 use super::{
     pixel_kind::{FORMAT, Pixels},

@@ -16,8 +16,8 @@
 //!
 //! | cache | holds | belongs to |
 //! |---|---|---|
-//! | pipelines | one for each [`variant`], the 32 last used | a device ([`composite`]) |
-//! | grid pipelines | those that draw the grid or interpolate from it, the 32 last used | a device ([`composite`]) |
+//! | pipelines | one for each [`variant`], the 96 last used | a device ([`composite`]) |
+//! | grid pipelines | those that draw the grid or interpolate from it, the 96 last used | a device ([`composite`]) |
 //! | kind pipelines | those that write the kind of each pixel, the 8 last used | a device ([`composite`]) |
 //! | draws | the draws of the last 4 calls of a frame, with their pipelines | a view ([`draws`]) |
 //! | images | the grid, its cells and the kinds, for one picture size | a view ([`even`], [`kinds`]) |

@@ -24,7 +24,7 @@ impl Variant {
         wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
     }
 
-    /// Returns the shader, without what the variant does not draw, and its entry point.
+    /// Returns the shader, without the steps that the variant does not draw, and its entry point.
     pub fn program(&self) -> (String, &'static str) {
         let [(composed, entry), _] = self.sampling.shaders();
         let diagnoses = self.constants.composed.value("DIAGNOSTIC") > 0.0;

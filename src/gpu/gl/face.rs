@@ -1,8 +1,8 @@
-//! Filter for what wgpu asks of a context while it opens: `glGetString` and `glGetStringi` are answered by this room.
+//! Filter for wgpu's queries while it opens a context: this room answers `glGetString` and `glGetStringi`.
 //!
 //! There are two reasons. A forced tier 0 must draw as on OpenGL 3.3 or OpenGL ES 3.0, even if the driver can do more,
-//! so the version, the shading language and later extensions are hidden. And wgpu takes float formats for renderable
-//! and filterable only if an OpenGL 2 extension says so. Core profiles no longer list that extension, because OpenGL
+//! so the version, the shading language and later extensions are hidden. And wgpu treats float formats as renderable
+//! and filterable only if an OpenGL 2 extension is listed. Core profiles no longer list that extension, because OpenGL
 //! 3.0 made both part of itself (OpenGL 3.0 specification, table 3.16); this room adds it to the list again.
 
 use std::{
@@ -94,7 +94,7 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
     })
 }
 
-/// Guard: the two functions use this thread's [`Face`] as long as it lives.
+/// Guard: as long as it lives, the two functions answer from this thread's [`Face`].
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {

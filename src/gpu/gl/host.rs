@@ -1,5 +1,5 @@
-//! Entering and leaving of a host's OpenGL: which context is current, which one waits for the other, and what is
-//! restored.
+//! Entering and leaving a host's OpenGL: makes contexts current, makes one context wait for the other, and restores the
+//! host's state.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -14,12 +14,12 @@ use crate::error::{Error, Result, Status, check_range, shown};
 /// Keywords of the header, in lower case. GDAL writes `dx` and `dy` where cells are not square.
 const KEYWORDS: [&str; 10] =
     ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
-/// Largest coordinate of a place in amount.
+/// Largest absolute value of a coordinate.
 const MOST_PLACE: f64 = 1e12;
-/// Bytes that some programs put before text (Unicode's mark of byte order in UTF-8).
+/// Bytes that some programs write before a text (Unicode's byte order mark in UTF-8).
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Place of a word in the text, from 1.
+/// Place of a word in the text; line and column count from 1.
 #[derive(Clone, Copy)]
 struct TextPlace {
     line: usize,
@@ -32,7 +32,7 @@ impl fmt::Display for TextPlace {
     }
 }
 
-/// Words of a text, one after another.
+/// Reader of a text, word by word.
 struct Words<'a> {
     rest: &'a [u8],
     place: TextPlace,
@@ -64,12 +64,12 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Returns the keyword that a word is.
+/// Returns the index of a word among the keywords; `None` for other words.
 fn keyword(word: &[u8]) -> Option<usize> {
     KEYWORDS.iter().position(|k| word.eq_ignore_ascii_case(k.as_bytes()))
 }
 
-/// Returns whether a file begins as a grid does.
+/// Returns whether a file begins like an ESRI ASCII grid.
 pub fn is_grid(bytes: &[u8]) -> bool {
     keyword(Words::new(&bytes[..bytes.len().min(1000)]).peek()).is_some()
 }
@@ -82,7 +82,7 @@ fn parse<T: std::str::FromStr>(word: &[u8], place: TextPlace, what: &str) -> Res
     })
 }
 
-/// Value of a keyword.
+/// Value of a keyword, and its place.
 #[derive(Clone, Copy)]
 struct HeaderValue {
     value: f64,
@@ -119,7 +119,7 @@ impl Header {
         self.values[KEYWORDS.iter().position(|k| *k == name)?]
     }
 
-    /// Returns the value of a keyword that must be there and lie in a range.
+    /// Returns the value of a keyword that the header must have, checked against a range.
     fn needed(&self, name: &str, low: f64, high: f64) -> Result<f64> {
         let found = self.value(name).ok_or_else(|| {
             let listed = "ncols, nrows and cellsize (or dx and dy)";

@@ -19,7 +19,7 @@ use crate::error::{Error, Result, Status, shown};
 const MOST_BYTES: u64 = 16 * MAX_HEIGHT_SAMPLES;
 
 impl HeightMap {
-    /// Reads a file of heights; [`HeightMap::from_bytes`] says which.
+    /// Reads a file of heights in a format of [`HeightMap::from_bytes`].
     ///
     /// # Errors
     /// [`Status::Io`] if the file cannot be read; otherwise the errors of [`HeightMap::from_bytes`], after the name of
@@ -45,9 +45,10 @@ impl HeightMap {
     /// or 16 bits, Terragen `.ter`, or an ESRI ASCII grid. The heights lie within 100 000 m of 0.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming a field of the settings; [`Status::Unsupported`] for other files and for what
-    /// a format has beyond this; [`Status::Parse`] for bytes that are cut short, contradict themselves or are no
-    /// heights; [`Status::OutOfMemory`]. The message names the place in the file, and what is accepted there.
+    /// [`Status::InvalidArgument`] naming a field of the settings; [`Status::Unsupported`] for other files and for
+    /// variants of these formats that are not read; [`Status::Parse`] for bytes that are cut short, contradict
+    /// themselves or are no heights; [`Status::OutOfMemory`]. The message names the place in the file, and what is
+    /// accepted there.
     pub fn from_bytes(bytes: &[u8], settings: &HeightSettings) -> Result<Self> {
         settings.check().map_err(|e| e.within("settings"))?;
         if let Some(raw) = &settings.raw {
@@ -97,7 +98,7 @@ impl HeightMap {
     }
 }
 
-/// Returns the error for a file of no format that is read here.
+/// Returns the error for a file of an unknown format.
 fn unknown(bytes: &[u8]) -> Error {
     let is_tiff = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| bytes.starts_with(&magic[..]));
     let begins = if is_tiff { "this is a TIFF" } else { "byte 0 begins none of these" };

@@ -1,4 +1,4 @@
-//! Numbers of heights for files with whole numbers.
+//! Conversion of heights to the whole numbers of a file.
 
 use super::super::{
     map::HeightMap,

@@ -20,7 +20,7 @@ use crate::error::{Error, Result, Status};
 
 pub const MAGIC: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Bytes before the first chunk that may be data: signature and header.
+/// Number of bytes before the first chunk that may hold pixels: signature and header.
 const BEFORE_DATA: usize = 33;
 // Offsets of the header's fields, bytes.
 const AT_WIDTH: usize = 16;

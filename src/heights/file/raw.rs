@@ -1,4 +1,4 @@
-//! Raw files: numbers and nothing else.
+//! Raw files, which hold only numbers.
 
 use super::{
     super::{
@@ -33,7 +33,7 @@ pub fn read(bytes: &[u8], raw: &RawHeights, settings: &HeightSettings) -> Result
     Ok(samples.finish(raw.row_order))
 }
 
-/// Returns the number in these bytes, which are as many as the kind of number has.
+/// Returns the number in `bytes`, which have the length of the file's kind of number.
 fn number_of(bytes: &[u8], raw: &RawHeights) -> f64 {
     let mut four = [0; 4];
     let size = bytes.len().min(4);

@@ -14,7 +14,7 @@ pub struct Samples<'a> {
     columns: u32,
     rows: u32,
     heights_m: Vec<f32>,
-    /// Number that means no data by the file's own word.
+    /// Number that means no data according to the file's header.
     pub own_no_data: Option<f64>,
 }
 
@@ -26,7 +26,7 @@ impl<'a> Samples<'a> {
         Ok(Self { settings, columns, rows, heights_m, own_no_data: None })
     }
 
-    /// Takes the next number, which stands at `place` in the file.
+    /// Adds the next number, which is at `place` in the file.
     pub fn take(&mut self, number: f64, place: impl Display) -> Result<()> {
         if self.settings.is_no_data(number) || self.own_no_data.is_some_and(|none| is_same(none, number)) {
             return self.take_none(place);
@@ -41,7 +41,7 @@ impl<'a> Samples<'a> {
         self.push(height as f32, place)
     }
 
-    /// Takes a sample without height.
+    /// Adds a sample without a height.
     pub fn take_none(&mut self, place: impl Display) -> Result<()> {
         self.push(f32::NAN, place)
     }

@@ -12,16 +12,16 @@ use crate::error::{Error, Result, Status};
 
 pub const MAGIC: &[u8] = b"TERRAGENTERRAIN ";
 
-/// Metres for each unit of a terrain that does not say.
+/// Metres for each unit of a terrain whose file does not give its scale.
 const DEFAULT_SCALE: f32 = 30.0;
-/// Longest side that programs read which take it for a signed number.
+/// Longest side that all programs read; some read it as a signed number.
 const LONGEST: u32 = 32_767;
 /// Chunks of fixed size, with their marker, bytes.
 const FIXED: [(&[u8], usize); 7] =
     [(b"SIZE", 8), (b"XPTS", 8), (b"YPTS", 8), (b"SCAL", 16), (b"CRAD", 8), (b"CRVM", 8), (b"EOF ", 4)];
-/// Room for all that a written file has besides its heights, bytes.
+/// Largest size of a written file without its heights, bytes.
 const MOST_BEFORE_HEIGHTS: u64 = 128;
-/// Chunk of heights, and the bytes of its marker, scale and base.
+/// Marker of the chunk of heights, and the size of its marker, scale and base, bytes.
 const HEIGHTS: (&[u8], usize) = (b"ALTW", 8);
 
 /// Fields of the chunks so far.
@@ -39,7 +39,7 @@ struct Fields {
 }
 
 impl Fields {
-    /// Takes a chunk of fixed size that begins at byte `begin`.
+    /// Adds the fields of a chunk of fixed size that begins at byte `begin`.
     fn take(&mut self, marker: &[u8], bytes: &[u8], begin: usize) -> Result<()> {
         let short = |i: usize| u16::from_le_bytes([bytes[i], bytes[i + 1]]);
         let float = |i: usize| f32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]]);
@@ -62,7 +62,7 @@ impl Fields {
         Ok(())
     }
 
-    /// Returns columns and rows, as far as they are known: those of XPTS and YPTS, or else SIZE + 1.
+    /// Returns columns and rows if they are known: from XPTS and YPTS, otherwise SIZE + 1.
     fn sides(&self) -> Option<[u32; 2]> {
         let square = self.size.map(|size| u32::from(size) + 1);
         let side = |points: Option<u16>| points.map(u32::from).or(square);
@@ -80,8 +80,8 @@ fn fixed(marker: &[u8]) -> Option<(&'static [u8], usize)> {
     FIXED.into_iter().find(|(name, _)| *name == marker)
 }
 
-/// Returns the end of the heights' chunk, which begins at byte `start`. XPTS and YPTS may stand behind it; they are
-/// then found from the end of the file.
+/// Returns the end of the heights' chunk, which begins at byte `start`. XPTS and YPTS may follow it; they are then
+/// found from the end of the file.
 fn heights_end(bytes: &[u8], start: usize, fields: &Fields) -> Result<usize> {
     if fields.x_points.is_some() && fields.y_points.is_some() {
         return Ok(start + fields.heights_size().unwrap_or_default());
@@ -103,7 +103,7 @@ fn heights_end(bytes: &[u8], start: usize, fields: &Fields) -> Result<usize> {
             _ => break,
         }
     }
-    // The end that SIZE gives, so that the error is about the first byte that does not fit.
+    // Uses the end that SIZE gives, so that the error is about the first byte that does not fit.
     fields.heights_size().or(known.heights_size()).map(|size| start + size).ok_or_else(|| {
         let sentence =
             format!("byte {start}: ALTW needs a chunk SIZE, or XPTS and YPTS, for the number of its heights");

@@ -1,4 +1,4 @@
-//! Files that GDAL made, and files that are written here.
+//! Files that GDAL wrote, and files that Welkin writes.
 
 use super::{super::HeightScale, *};
 
@@ -22,7 +22,7 @@ fn made_by_gdal(name: &str) -> &'static [u8] {
     }
 }
 
-/// Settings for one of GDAL's files, told by its name.
+/// Settings for one of GDAL's files, by its name.
 fn settings_for(name: &str, columns: u32, rows: u32) -> HeightSettings {
     let sample = match &name[..3] {
         "u16" => RawSample::U16,

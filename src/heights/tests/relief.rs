@@ -19,7 +19,7 @@ fn a_seed_gives_one_terrain() {
     let hashes =
         [(ReliefKind::Fractal, 0), (ReliefKind::Fractal, 1), (ReliefKind::Ridged, 0), (ReliefKind::Ridged, 1 << 40)]
             .map(|(kind, seed)| hash(&map(kind, seed)));
-    // The same on every machine.
+    // Bits that every machine must give.
     assert_eq!(
         hashes.map(|h| format!("{h:016x}")),
         ["a5ea949fc747444e", "10246ae71f667466", "bc61d2950c461cdb", "3afb237dfc2ab1e6"]
@@ -38,7 +38,7 @@ fn neighbouring_maps_fit_together() {
     }
 }
 
-/// Mean squared difference of heights so many samples apart.
+/// Mean squared difference of heights `lag` samples apart.
 fn structure(map: &HeightMap, lag: u32) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for (x, y) in (0..map.columns() - lag).flat_map(|x| (0..map.rows()).map(move |y| (x, y))) {
@@ -64,7 +64,7 @@ fn differences_grow_as_the_hurst_exponent_says() {
     }
 }
 
-/// Sharpest bends downwards and upwards of a single octave along a line, between places so far apart.
+/// Sharpest bends downwards and upwards of a single octave along a line, between places `step_m` apart.
 fn sharpest_bends(kind: ReliefKind, step_m: f64) -> [f64; 2] {
     let terrain = NoiseTerrain { kind, wavelength_m: 400.0, ..Default::default() };
     let height = |i: i32| terrain.height_m(step_m * f64::from(i), 137.0, 400.0);
@@ -72,7 +72,7 @@ fn sharpest_bends(kind: ReliefKind, step_m: f64) -> [f64; 2] {
     bends.fold([0.0, 0.0], |[down, up], bend| [f64::min(down, bend), f64::max(up, bend)])
 }
 
-/// Over half the distance a bend has a quarter of the size where ground is smooth, and half of it along a crease.
+/// If the step is halved, bends shrink to a quarter on smooth ground, and to half at a crease.
 #[test]
 fn crests_of_ridges_are_creases_and_all_else_is_smooth() {
     let ratios = |kind| {

@@ -52,7 +52,8 @@ fn planes_stay_planes_and_places_move_with_the_cells() {
     }
 }
 
-/// Means of a wave over cells are known in closed form; made four times finer, heights err by the third power of cells.
+/// The means of a wave over cells have a closed form. Heights on a grid four times finer are wrong by an error of third
+/// order in the cell size.
 #[test]
 fn smooth_ground_is_met_to_third_order() {
     let error = |cells: u32| {
@@ -89,7 +90,7 @@ fn holes_stay_holes_and_do_not_pull_their_neighbours() {
     }
     let none = HeightMap::new(3, 3, vec![f32::NAN; 9]).unwrap();
     assert_eq!((none.resampled(7, 2).unwrap().missing(), none.mean_m(), none.range_m()), (14, None, None));
-    // With each new sample weighted by what of its cell is known, the mean stays: here each has a third or all.
+    // The mean stays if each new sample is weighted by the known share of its cell, which is a third or all here.
     let row = HeightMap::new(6, 1, vec![10.0, f32::NAN, 20.0, 40.0, 60.0, 80.0]).unwrap();
     let new = row.resampled(2, 1).unwrap();
     assert!((new.heights_m()[0] - 15.0).abs() < 1e-4 && (new.heights_m()[1] - 60.0).abs() < 1e-4);

@@ -16,7 +16,7 @@ use crate::error::{Error, Result, Status, shown};
 const MOST_BYTES: u64 = 2 * MOST_TEXELS;
 
 impl NoiseImage {
-    /// Reads a DDS or KTX2 file; [`NoiseImage::from_bytes`] says which.
+    /// Reads a DDS or KTX2 file of a format that [`NoiseImage::from_bytes`] accepts.
     ///
     /// # Errors
     /// [`Status::Io`] if the file cannot be read; otherwise the errors of [`NoiseImage::from_bytes`].

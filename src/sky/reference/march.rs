@@ -62,7 +62,7 @@ pub fn march(
     marks.retain(|s| (span.0..=span.1).contains(s));
     marks.sort_by(f64::total_cmp);
     for pair in marks.windows(2) {
-        // Where two marks mean the same point, rounding leaves a tiny interval, which is skipped.
+        // Where two ends of panels coincide, rounding leaves a tiny interval, which is skipped.
         if pair[1] - pair[0] > 1e-12 * (pair[1].abs() + 1.0) {
             let side = if 0.5 * (pair[0] + pair[1]) < to_perigee { -1.0 } else { 1.0 };
             walk.panel(side, ray.u_at(pair[0]).0, ray.u_at(pair[1]).0, 0);

@@ -20,21 +20,22 @@ pub fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
 
-/// One case of how a host's depth is.
+/// One convention of a host's depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Mapped {
     pub camera: Camera,
     pub mapping: DepthMapping,
 }
 
-/// North, a little down; of a projection that this makes of a focal length.
+/// Creates a convention with a camera that looks north and a little down; `projection` makes the matrix from a focal
+/// length.
 pub fn mapped(kind: DepthKind, reversed: bool, clip: ClipSpace, projection: impl Fn(f64) -> DMat4) -> Mapped {
     let mut camera = Camera::look_to(EYE, DVec3::new(0.05, 1.0, -0.12), DVec3::Z, 1.0, ASPECT, 0.5);
     camera.projection = projection(1.0 / 0.5f64.tan());
     Mapped { camera, mapping: DepthMapping { kind, reversed, clip } }
 }
 
-/// Clip z = a z + b of eye-space z, w = -z.
+/// Perspective projection with clip z = a z + b, where z is the eye-space depth, and w = -z.
 pub fn perspective(focal: f64, a: f64, b: f64) -> DMat4 {
     DMat4::from_cols(
         DVec4::new(focal / ASPECT, 0.0, 0.0, 0.0),
@@ -44,7 +45,7 @@ pub fn perspective(focal: f64, a: f64, b: f64) -> DMat4 {
     )
 }
 
-/// Clip z = a z + b, w = 1; 80 m high.
+/// Parallel projection of a picture 80 m high with clip z = a z + b and w = 1.
 pub fn parallel(a: f64, b: f64) -> DMat4 {
     DMat4::from_cols(
         DVec4::new(1.0 / 40.0 / ASPECT, 0.0, 0.0, 0.0),
@@ -88,7 +89,7 @@ impl Mapped {
     }
 }
 
-/// Middle of a pixel, counted from the picture's top left.
+/// Normalised device coordinates of the middle of a pixel; pixels count from the picture's top left.
 pub fn ndc(pixel: usize) -> DVec2 {
     let (x, y) = (pixel % SIZE.0 as usize, pixel / SIZE.0 as usize);
     DVec2::new((x as f64 + 0.5) / f64::from(SIZE.0) * 2.0 - 1.0, 1.0 - (y as f64 + 0.5) / f64::from(SIZE.1) * 2.0)
@@ -98,8 +99,8 @@ pub fn pixels() -> std::ops::Range<usize> {
     0..(SIZE.0 * SIZE.1) as usize
 }
 
-/// Metres along the pixel's ray to the host's wall: 60 m north of the camera, 24 m wide, from the world's floor to 15
-/// m.
+/// Distance along the pixel's ray to the host's wall, m: the wall is 60 m north of the camera, 24 m wide, from the
+/// world's floor to 15 m.
 pub fn to_wall(rays: &ViewRays, ndc: DVec2) -> f64 {
     let ray = rays.view_ray(ndc);
     let range = (60.0 - ray.origin.y) / ray.direction.y;
@@ -108,7 +109,7 @@ pub fn to_wall(rays: &ViewRays, ndc: DVec2) -> f64 {
     if hit { range } else { RANGE_SKY_M }
 }
 
-/// Metres along the pixel's ray to Welkin's plane, and the luminance of the square that is met.
+/// Distance along the pixel's ray to Welkin's plane, m, and the luminance of the square that the ray meets.
 pub fn to_plane(rays: &ViewRays, ndc: DVec2) -> (f64, f64) {
     let ray = rays.view_ray(ndc);
     let range = (PLANE_M - EYE.z - ray.origin.z) / ray.direction.z;
@@ -140,7 +141,7 @@ const READ: &str = "
 }
 ";
 
-/// The pipeline of a triangle over the whole picture, and the layout of its one texture.
+/// Creates the pipeline of a triangle over the whole picture, and the layout of its one texture.
 fn covering(
     device: &wgpu::Device,
     text: &str,
@@ -272,7 +273,7 @@ impl Host {
         cover(&self.device, COVER, &from, (&self.color, Some((&self.depth, far))));
     }
 
-    /// One sample of each pixel of a texture.
+    /// Reads one sample of each pixel of a texture.
     pub fn read(&self, texture_of: &wgpu::Texture, sample: u32) -> Vec<[f32; 4]> {
         let kind = if texture_of.sample_count() > 1 { "texture_multisampled_2d" } else { "texture_2d" };
         let text =
@@ -290,7 +291,7 @@ impl Host {
         self.read(&self.color, 0)
     }
 
-    /// Records a frame of a new number, changed by `change`.
+    /// Records a frame with a new number, after `change` has modified it.
     pub fn record(&mut self, case: &Mapped, stages: Stages, change: impl FnOnce(&mut Frame<'_>)) {
         let (color, depth) = (self.color.clone(), self.depth.clone());
         self.frame_id += 1;

@@ -194,8 +194,8 @@ fn clouds(p: &Parsed, rule: CloudAmountRule, w: &mut Weather, assumed: &mut Vec<
     name_the_thundercloud(w);
 }
 
-/// Names the cumulonimbus from which thunder comes. If no layer is one, the lowest that covers half the sky becomes
-/// one, else the lowest.
+/// Makes sure that thunder has a cumulonimbus. If no layer is one, the lowest that covers half the sky becomes one, or
+/// the lowest of all if none covers half.
 fn name_the_thundercloud(w: &mut Weather) {
     let named = w.clouds.iter().any(|c| c.kind == CloudKind::Cumulonimbus);
     if !w.precipitation.thunderstorm || named {
@@ -286,7 +286,8 @@ fn weather(p: &Parsed, rule: CloudAmountRule, assumed: &mut Vec<&'static str>) -
         None => assumed.push("pressure_hpa"),
     }
     obscurations(p, &mut w);
-    // The rate of snow needs the visibility, and an open-ended visibility needs the rate: a first value serves both.
+    // The rate of snow needs the visibility, and a visibility without an upper bound needs the rate. The rate is
+    // therefore computed from a first value of the visibility.
     w.visibility_m = p.visibility.map_or(10_000.0, |v| v.metres);
     w.precipitation = precipitation(p, &w);
     w.visibility_m = visibility_m(p, &w, assumed);

@@ -1,8 +1,8 @@
 //! Parser for aerodrome reports (METAR and SPECI, WMO-No. 306 FM 15 and FM 16), from an airport's text to a `Weather`.
 //!
-//! The grammar is our own. The crate `metar` reads the same code, but it panics on some malformed reports (`010VVRB`),
-//! refuses SPECI, winds of three digits and `M1/4SM`, and its errors list what it expected letter by letter. A library
-//! that must neither panic nor print cannot use it. The tests use it as a second opinion.
+//! The parser is Welkin's own. The crate `metar` reads the same code, but it panics on some malformed reports
+//! (`010VVRB`), refuses SPECI, winds of three digits and `M1/4SM`, and its errors list the expected text letter by
+//! letter. Welkin must not panic, so only its tests use that crate, to compare results.
 
 mod amounts;
 mod assumed;

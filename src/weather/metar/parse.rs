@@ -1,4 +1,4 @@
-//! Reads the groups of a report one after another: which word is which group, and which words are none.
+//! Assigns the words of a report to groups, one after another, and keeps the words that are no group.
 //!
 //! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), join groups without a space,
 //! change their order and add words of their own. A word is therefore read as any group that it fits, in any order up

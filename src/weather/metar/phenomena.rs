@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(read("TS"), Some((I::Moderate, Some(D::Thunderstorm), vec![])));
         assert_eq!(read("FZFG"), Some((I::Moderate, Some(D::Freezing), vec![P::Fog])));
         assert_eq!(weather("//"), Some(None));
-        // Not in the code, but sent by stations.
+        // Stations send this group, although the code does not have it.
         assert_eq!(read("-SHTSRA"), Some((I::Light, Some(D::Thunderstorm), vec![P::Rain])));
         assert_eq!(read("TSSHRA"), Some((I::Moderate, Some(D::Thunderstorm), vec![P::Rain])));
         assert_eq!(read("-RABR"), Some((I::Light, None, vec![P::Rain, P::Mist])));

@@ -75,7 +75,7 @@ pub struct MetarReport {
     /// Remarks (after RMK), empty without any. They are not parsed, except for PWINO, which means that the present
     /// weather is unknown.
     pub remarks: String,
-    /// Byte ranges of these parts in the text.
+    /// Byte ranges of runway visual ranges, trend, remarks and the first unread word in the text.
     pub places: MetarPlaces,
 }
 

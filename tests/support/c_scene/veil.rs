@@ -17,7 +17,7 @@ pub const CASES: [(bool, wk_color_space); 3] =
 /// Distances of the object from the camera, m.
 pub const FAR_M: [f64; 4] = [12.0, 60.0, 250.0, 1500.0];
 
-/// Creates a view in fog or in rain, with the sun to the side, and asks for its veil.
+/// Creates a view in fog or in rain, with the sun to the side, and requests its veil.
 pub fn scene(device: *mut wk_device, rain: bool) -> Scene {
     let scene = Scene::new(device);
     let sun = wk_given_direction { azimuth_deg: 110.0, elevation_deg: 35.0, ..init("wk_given_direction") };

@@ -44,7 +44,7 @@ impl Dice {
         self.below(n) == 0
     }
 
-    /// Uniform in [0, 1).
+    /// A number in [0, 1), evenly distributed.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }

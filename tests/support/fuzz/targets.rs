@@ -211,7 +211,7 @@ pub fn heights(data: &[u8]) {
     heights_by(numbers, &HeightSettings { raw: Some(raw), no_data: Some(-9999.0), ..Default::default() });
 }
 
-/// Small files of heights in each format that is told by its beginning.
+/// Small files of heights in each format that is recognised by its first bytes.
 pub fn height_files() -> Vec<Vec<u8>> {
     let terrain = NoiseTerrain { wavelength_m: 100.0, ..Default::default() };
     let map = |columns, rows| HeightMap::generate(columns, rows, 10.0, [0.0; 2], &terrain).expect("good terrain");
