@@ -69,7 +69,7 @@ fn comment(lines: &[String]) -> String {
 }
 
 /// Topics of the table of contents, each by the section that it begins with.
-const TOPICS: [(&str, &str); 9] = [
+const TOPICS: [(&str, &str); 10] = [
     ("status", "What every call answers"),
     ("device", "Devices and hosts"),
     ("weather_kinds", "Weather, place and time"),
@@ -79,6 +79,7 @@ const TOPICS: [(&str, &str); 9] = [
     ("wind_grid", "Wind, shelter and lamps"),
     ("stars", "Stars, clouds and lightning"),
     ("windscreen", "Glass and ground"),
+    ("sea", "The sea"),
 ];
 
 /// The table of contents: a section's name in brackets, as its banner has it, and its title, under topics.

@@ -141,6 +141,9 @@
  *   [ground_texture]  Water on the host's terrain as a texture
  *   [snowpack]        Lying snow
  *   [terrain]         Terrain in tiles
+ *
+ * The sea
+ *   [sea]             The sea: settings and queries
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -361,6 +364,16 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUD_MAP 86
 /** wk_metar_options */
 #define WK_STRUCT_TYPE_METAR_OPTIONS 90
+/** wk_sea */
+#define WK_STRUCT_TYPE_SEA 110
+/** wk_sea_swell */
+#define WK_STRUCT_TYPE_SEA_SWELL 111
+/** wk_sea_wave */
+#define WK_STRUCT_TYPE_SEA_WAVE 112
+/** wk_sea_region */
+#define WK_STRUCT_TYPE_SEA_REGION 113
+/** wk_sea_state */
+#define WK_STRUCT_TYPE_SEA_STATE 114
 
 /**
  * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
@@ -7144,6 +7157,508 @@ WK_API wk_status wk_terrain_init(wk_terrain *out, uint32_t struct_size);
 WK_API
 wk_status wk_terrain_cells_init(wk_terrain_cells *out,
                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [sea] The sea: settings and queries
+ *
+ * Say what your sea is like, and ask at any time where its surface is, how steep it is and how the water moves; a hull
+ * can float by the answers. Without settings a context has no sea. What you set here replaces the wave height and the
+ * swell of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m); what you leave out follows the
+ * weather: its wind raises waves by fetch and duration. Heights keep what was asked within 1 %, no two places look
+ * alike, and the same time gives the same bits on every machine. Regions say where there is no water, where a harbour
+ * shelters it, and where a lake has a level of its own.
+ *
+ * wk_sea sea = WK_SEA_INIT;
+ * sea.has = WK_SEA_HAS_HEIGHT | WK_SEA_HAS_PEAK_PERIOD;
+ * sea.significant_height_m = 2.1;
+ * sea.peak_period_s = 6.2;
+ * wk_context_set_sea(context, &sea);
+ * wk_context_get_sea_at(context, corners_m, 4, sizeof corners_m[0], time_s, 0.0, points, sizeof points[0]);
+ * ====================================================================================================
+ */
+
+/** Flags of the optional fields of a wk_sea that are set. */
+typedef uint32_t wk_sea_has_flags;
+
+/** fetch_m */
+#define WK_SEA_HAS_FETCH 1
+/** significant_height_m; not together with SEA_STATE or BEAUFORT. */
+#define WK_SEA_HAS_HEIGHT 2
+/** peak_period_s; needs HEIGHT. */
+#define WK_SEA_HAS_PEAK_PERIOD 4
+/** peak_gamma; needs HEIGHT. */
+#define WK_SEA_HAS_PEAK_GAMMA 8
+/** sea_state; not together with HEIGHT or BEAUFORT. */
+#define WK_SEA_HAS_SEA_STATE 16
+/** beaufort; not together with HEIGHT or SEA_STATE. */
+#define WK_SEA_HAS_BEAUFORT 32
+/** wind_sea_from_deg */
+#define WK_SEA_HAS_WIND_SEA_FROM 64
+/** swells: they replace the weather's swell, also with swell_count 0. */
+#define WK_SEA_HAS_SWELLS 128
+/** temperature_c */
+#define WK_SEA_HAS_TEMPERATURE 256
+/** clarity_percent, in place of water_type. */
+#define WK_SEA_HAS_CLARITY 512
+/** ice_cover, ice_floe_m and ice_width_m */
+#define WK_SEA_HAS_ICE 1024
+
+/** Properties of a sea. */
+typedef uint32_t wk_sea_flags;
+
+/** Waves break without foam. */
+#define WK_SEA_WITHOUT_WHITECAPS 1
+/** There is water only inside regions (wk_context_set_sea_regions). */
+#define WK_SEA_ONLY_IN_REGIONS 2
+
+/** Optical type of water (Jerlov 1976). */
+typedef uint32_t wk_water_type;
+
+/** Ocean I, the clearest. */
+#define WK_WATER_TYPE_I 0
+/** Ocean IB. */
+#define WK_WATER_TYPE_IB 1
+/** Ocean II. */
+#define WK_WATER_TYPE_II 2
+/** Ocean III. */
+#define WK_WATER_TYPE_III 3
+/** Coast 1C. */
+#define WK_WATER_TYPE_1C 4
+/** Coast 3C. */
+#define WK_WATER_TYPE_3C 5
+/** Coast 5C. */
+#define WK_WATER_TYPE_5C 6
+/** Coast 7C, the most turbid. */
+#define WK_WATER_TYPE_7C 7
+
+/** A swell: waves from far away. */
+typedef struct wk_sea_swell {
+    /** sizeof(wk_sea_swell) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_SWELL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Significant height, m. Range [0, 20], default 0; at most a fifteenth of the wave length at the peak. */
+    double height_m;
+    /** Peak period, s. Range [1, 30], default 10. */
+    double period_s;
+    /** Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    double from_deg;
+    /** Directional width, degrees. Range [1, 60]; 0, the default, is 15. */
+    double spread_deg;
+} wk_sea_swell;
+
+/** Every field of `wk_sea_swell` at its default. */
+#define WK_SEA_SWELL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_swell), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_SWELL, \
+    /* next */ NULL, \
+    /* height_m */ 0.0, \
+    /* period_s */ 10.0, \
+    /* from_deg */ 0.0, \
+    /* spread_deg */ 0.0 \
+}
+
+/** A regular wave of infinite crests, added to all others. */
+typedef struct wk_sea_wave {
+    /** sizeof(wk_sea_wave) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_WAVE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Height from trough to crest, m. Range [0, 40], default 0. The steepnesses of all such waves together are at most
+     * 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
+     */
+    double height_m;
+    /** Wave length, m. Range [0.1, 2000]; 0, the default, where period_s says it. */
+    double length_m;
+    /** Period, s. Range [0.25, 40]; 0, the default, where length_m says it. One of the two must be set. */
+    double period_s;
+    /** Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    double from_deg;
+    /**
+     * Time of a crest at the world's origin, in degrees of the period after simulation time 0. Range [-360, 360],
+     * default 0.
+     */
+    double phase_deg;
+} wk_sea_wave;
+
+/** Every field of `wk_sea_wave` at its default. */
+#define WK_SEA_WAVE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_wave), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_WAVE, \
+    /* next */ NULL, \
+    /* height_m */ 0.0, \
+    /* length_m */ 0.0, \
+    /* period_s */ 0.0, \
+    /* from_deg */ 0.0, \
+    /* phase_deg */ 0.0 \
+}
+
+/** The sea of a context. Optional fields have a flag in `has`. */
+typedef struct wk_sea {
+    /** sizeof(wk_sea) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Flags of the optional fields that are set. Default 0. */
+    wk_sea_has_flags has;
+    /** Properties. Default 0. */
+    wk_sea_flags flags;
+    /** Mean level, m above mean sea level. Range [-500, 9000], default 0. */
+    double level_m;
+    /**
+     * Depth of the water below the mean level, m, the same everywhere. Range [0.5, 12000], default 4000. It sets the
+     * lengths and speeds of waves; where the terrain has a bed, answers have the depth above that.
+     */
+    double depth_m;
+    /**
+     * Height of high water above the mean level, m; the tide has the period of the moon's half-day, 12.4206 h. Range
+     * [0, 10]; 0, the default, is no tide.
+     */
+    double tide_amplitude_m;
+    /** Simulation time of a high water, s. Range [-1e10, 1e10], default 0. */
+    double tide_high_water_s;
+    /** Optional: distance over which the wind raises waves, m. Range [10, 2e7]; else the open sea. */
+    double fetch_m;
+    /**
+     * Optional: significant height of the wind sea, m. Range [0, 30], at most a fifteenth of the wave length at the
+     * peak; else by sea_state, beaufort, or the weather.
+     */
+    double significant_height_m;
+    /**
+     * Optional: peak period of the wind sea, s. Range [0.5, 30]; else that of a fully developed sea of this height.
+     */
+    double peak_period_s;
+    /** Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without. */
+    double peak_gamma;
+    /** Optional: Beaufort number. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch. */
+    double beaufort;
+    /**
+     * Optional: direction that the wind sea comes from, degrees clockwise from true north. Range [0, 360]; else that
+     * of the wind that raised it.
+     */
+    double wind_sea_from_deg;
+    /** Optional: temperature of the water, degrees Celsius. Range [-3, 45]; else the weather's. */
+    double temperature_c;
+    /** Salinity, g/kg. Range [0, 45], default 35. */
+    double salinity_g_kg;
+    /**
+     * Optional: share of downward blue light (450 nm) that a metre of water leaves, percent. Range [41.1, 98.1], which
+     * are types 7C and I; else by water_type.
+     */
+    double clarity_percent;
+    /** Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice. */
+    double ice_cover;
+    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them. */
+    double ice_floe_m;
+    /**
+     * Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by Meylan,
+     * Bennetts and Kohout (2014).
+     */
+    double ice_width_m;
+    /**
+     * Optional: WMO sea state, code table 3700. Range 0 to 9: the middle of its range of heights, fully developed.
+     */
+    uint32_t sea_state;
+    /** Optical type of the water. Default WK_WATER_TYPE_IB. */
+    wk_water_type water_type;
+    /** Optional: the swells; may be NULL if there are none. Read during the call only. Else the weather's swell. */
+    const wk_sea_swell *swells;
+    /** Number of swells, at most 4. Default 0. */
+    uint32_t swell_count;
+    /** Bytes from one swell to the next: sizeof(wk_sea_swell) of your header, which is the default. */
+    uint32_t swell_stride;
+    /** Single waves; may be NULL if there are none. Read during the call only. */
+    const wk_sea_wave *waves;
+    /** Number of single waves, at most 16. Default 0. */
+    uint32_t wave_count;
+    /** Bytes from one wave to the next: sizeof(wk_sea_wave) of your header, which is the default. */
+    uint32_t wave_stride;
+} wk_sea;
+
+/** Every field of `wk_sea` at its default. */
+#define WK_SEA_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* flags */ 0, \
+    /* level_m */ 0.0, \
+    /* depth_m */ 4000.0, \
+    /* tide_amplitude_m */ 0.0, \
+    /* tide_high_water_s */ 0.0, \
+    /* fetch_m */ 0.0, \
+    /* significant_height_m */ 0.0, \
+    /* peak_period_s */ 0.0, \
+    /* peak_gamma */ 0.0, \
+    /* beaufort */ 0.0, \
+    /* wind_sea_from_deg */ 0.0, \
+    /* temperature_c */ 0.0, \
+    /* salinity_g_kg */ 35.0, \
+    /* clarity_percent */ 0.0, \
+    /* ice_cover */ 0.0, \
+    /* ice_floe_m */ 20.0, \
+    /* ice_width_m */ 1000.0, \
+    /* sea_state */ 0, \
+    /* water_type */ WK_WATER_TYPE_IB, \
+    /* swells */ NULL, \
+    /* swell_count */ 0, \
+    /* swell_stride */ (uint32_t)sizeof(wk_sea_swell), \
+    /* waves */ NULL, \
+    /* wave_count */ 0, \
+    /* wave_stride */ (uint32_t)sizeof(wk_sea_wave) \
+}
+
+/** Kind of water inside a region. */
+typedef uint32_t wk_sea_region_kind;
+
+/** No water: inside a hull or an empty dock. Such a region counts before all others. */
+#define WK_SEA_REGION_DRY 0
+/** The sea with lower waves: a harbour. */
+#define WK_SEA_REGION_SHELTERED 1
+/** Water with a level of its own: a lake, a lock. */
+#define WK_SEA_REGION_LAKE 2
+
+/** A region of the ground plan with water of its own, or without water. */
+typedef struct wk_sea_region {
+    /** sizeof(wk_sea_region) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_REGION. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Corners of the outline, m to the right and ahead of the centre, in order, either way around, each within 1e6 m.
+     * The outline must not cross or touch itself. Read during the call only.
+     */
+    const double (*corners_m)[2];
+    /** Number of corners. Range 3 to 64. */
+    uint32_t corner_count;
+    /** Kind of water inside. Default WK_SEA_REGION_DRY. */
+    wk_sea_region_kind kind;
+    /**
+     * Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin. Its height does not
+     * matter. Default 0, 0, 0.
+     */
+    double center_m[3];
+    /** Heading of `ahead` at at_s, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double heading_deg;
+    /** Velocity east and north, m/s, of at most 60 m/s. Default 0, 0. */
+    double velocity_m_s[2];
+    /** Rate of turn, degrees clockwise a second. Range [-90, 90], default 0. */
+    double turn_deg_s;
+    /** Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. */
+    double at_s;
+    /** Lakes: level without waves, m above mean sea level. Range [-500, 9000], default 0. */
+    double level_m;
+    /**
+     * Lakes: depth below that level, m. Range [0.1, 12000], default 10. Waves keep the lengths that they have over the
+     * sea's depth.
+     */
+    double depth_m;
+    /** Lakes and sheltered regions: height of the waves over that on the open sea. Range [0, 1], default 1. */
+    double wave_share;
+    /**
+     * Sheltered regions: width of the band inside the outline over which waves become lower, m. Range [0, 10000],
+     * default 0: at once.
+     */
+    double rim_m;
+} wk_sea_region;
+
+/** Every field of `wk_sea_region` at its default. */
+#define WK_SEA_REGION_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_region), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_REGION, \
+    /* next */ NULL, \
+    /* corners_m */ NULL, \
+    /* corner_count */ 0, \
+    /* kind */ WK_SEA_REGION_DRY, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* heading_deg */ 0.0, \
+    /* velocity_m_s */ { 0.0, 0.0 }, \
+    /* turn_deg_s */ 0.0, \
+    /* at_s */ 0.0, \
+    /* level_m */ 0.0, \
+    /* depth_m */ 10.0, \
+    /* wave_share */ 1.0, \
+    /* rim_m */ 0.0 \
+}
+
+/**
+ * The sea at a place and time. Element of an array, without struct_size; calls take its sizeof instead. Where there is
+ * no water, surface_m is the position that was asked about, normal is up, and all other numbers are 0.
+ */
+typedef struct wk_sea_point {
+    /** Height of the surface above mean sea level, m. */
+    double height_m;
+    /**
+     * Largest error of the height, m: 4 standard deviations of the waves left out, and the tolerances of the sums.
+     */
+    double height_error_m;
+    /** Point of the surface above or below the position, in the host's world, m. */
+    double surface_m[3];
+    /** Unit normal of the surface (east, north, up). */
+    double normal[3];
+    /** Velocity of the water at the surface, m/s (east, north, up), without its slow drift. */
+    double velocity_m_s[3];
+    /** Acceleration of the water at the surface, m/s^2 (east, north, up). */
+    double acceleration_m_s2[3];
+    /** Depth of the water under the surface, m. */
+    double depth_m;
+    /** Share of the place under foam of waves that break now, 0 to 1. */
+    double foam;
+    /** 1 where there is water, else 0. */
+    uint32_t has_water;
+    /** 0. */
+    uint32_t reserved0;
+} wk_sea_point;
+
+/** Statistics of the sea at a time. */
+typedef struct wk_sea_state {
+    /** sizeof(wk_sea_state) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_STATE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Level without waves, m above mean sea level: the mean level and the tide. */
+    double level_m;
+    /**
+     * Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
+     */
+    double significant_height_m;
+    /** Period of the strongest waves, s; 0 without waves. */
+    double peak_period_s;
+    /**
+     * Mean direction that the waves come from, degrees clockwise from true north, weighted by variance; 0 without
+     * waves.
+     */
+    double mean_from_deg;
+    /**
+     * Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
+     */
+    double mean_square_slope;
+    /** Part of it that the waves of the surface have; the rest is in waves too short for it. */
+    double drawn_square_slope;
+    /**
+     * Height of the largest wave expected in an hour, m, crest to trough (Longuet-Higgins 1952), plus the heights of
+     * all single waves.
+     */
+    double highest_in_hour_m;
+    /** Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980), less under ice. */
+    double whitecap_share;
+    /** Temperature of the water, degrees Celsius. */
+    double water_temperature_c;
+    /** Refractive index of the water against air at 550 nm (Quan and Fry 1995). */
+    double refractive_index;
+    /** Diffuse attenuation of downward light at 450, 550 and 650 nm, 1/m (Jerlov 1976). */
+    double attenuation_per_m[3];
+} wk_sea_state;
+
+/** Every field of `wk_sea_state` at its default. */
+#define WK_SEA_STATE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_state), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_STATE, \
+    /* next */ NULL, \
+    /* level_m */ 0.0, \
+    /* significant_height_m */ 0.0, \
+    /* peak_period_s */ 0.0, \
+    /* mean_from_deg */ 0.0, \
+    /* mean_square_slope */ 0.0, \
+    /* drawn_square_slope */ 0.0, \
+    /* highest_in_hour_m */ 0.0, \
+    /* whitecap_share */ 0.0, \
+    /* water_temperature_c */ 0.0, \
+    /* refractive_index */ 0.0, \
+    /* attenuation_per_m */ { 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * Sets the sea; NULL removes it. Part of the state that wk_context_save keeps. Set it before the first update: what
+ * it says about fetch holds for all weather that the timeline still knows. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
+ */
+WK_API wk_status wk_context_set_sea(wk_context *context, const wk_sea *sea);
+
+/**
+ * Replaces the list of regions; count 0 removes all. At most 64. Regions that move at a constant velocity and rate of
+ * turn move by themselves: set them again when these change. Later regions count before earlier ones, dry ones before
+ * all. Part of the state that wk_context_save keeps. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range: outlines that cross themselves, too.
+ */
+WK_API
+wk_status wk_context_set_sea_regions(wk_context *context,
+                                     const wk_sea_region *regions,
+                                     uint32_t count,
+                                     uint32_t stride);
+
+/**
+ * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
+ * them. Only the place on the ground of a position counts, not its height. There is no water in dry regions, and where
+ * the terrain's tiles lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. `shortest_wave_m`, range
+ * [0, 10000], leaves out waves shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are
+ * the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for
+ * points. The first call for a time costs some milliseconds; the sums of the last two times are kept, and each place
+ * then costs some microseconds. No device is needed, and nothing is allocated after the first calls.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
+ * wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sea_at(const wk_context *context,
+                                const double (*positions_m)[3],
+                                uint32_t count,
+                                uint32_t position_size,
+                                double time_s,
+                                double shortest_wave_m,
+                                wk_sea_point *points,
+                                uint32_t point_size);
+
+/**
+ * Gets the statistics of the open sea at a simulation time, past or future.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a sea; for times as wk_context_get_conditions.
+ */
+WK_API wk_status wk_context_get_sea_state(const wk_context *context, double time_s, wk_sea_state *out_state);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_SWELL_INIT`. `struct_size` is `sizeof(wk_sea_swell)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_swell_init(wk_sea_swell *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_WAVE_INIT`. `struct_size` is `sizeof(wk_sea_wave)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_wave_init(wk_sea_wave *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_INIT`. `struct_size` is `sizeof(wk_sea)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_init(wk_sea *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_REGION_INIT`. `struct_size` is `sizeof(wk_sea_region)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_region_init(wk_sea_region *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_STATE_INIT`. `struct_size` is `sizeof(wk_sea_state)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -180,6 +180,23 @@ public:
     /* WK_PENDING: steps of a simulated ground remain; call it again with the same time. */
     wk_status update(double time_s) { return checked(wk_context_update(get(), time_s)); }
     wk_status get_state_time(double &state_time_s) const { return checked(wk_context_get_state_time(get(), &state_time_s)); }
+    /* NULL removes the sea. */
+    wk_status set_sea(const wk_sea *sea) { return checked(wk_context_set_sea(get(), sea)); }
+    wk_status set_sea_regions(const wk_sea_region *regions, uint32_t count)
+    {
+        return checked(wk_context_set_sea_regions(get(), regions, count, sizeof(wk_sea_region)));
+    }
+    /* `positions_m` are three numbers each, without gaps. */
+    wk_status get_sea_at(const double (*positions_m)[3], uint32_t count, double time_s, double shortest_wave_m,
+                         wk_sea_point *points) const
+    {
+        return checked(wk_context_get_sea_at(get(), positions_m, count, sizeof(*positions_m), time_s, shortest_wave_m,
+                                             points, sizeof(wk_sea_point)));
+    }
+    wk_status get_sea_state(double time_s, wk_sea_state &state) const
+    {
+        return checked(wk_context_get_sea_state(get(), time_s, &state));
+    }
     wk_status build_sky(wk_progress_fn progress = nullptr, void *user = nullptr)
     {
         return checked(wk_context_build_sky(get(), progress, user));

@@ -99,6 +99,8 @@ pub mod snowpack;
 
 pub mod terrain;
 
+pub mod sea;
+
 mod boundary;
 mod host;
 mod occluder_map;

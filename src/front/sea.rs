@@ -1,15 +1,60 @@
-//! The sea: its settings, and queries of its surface and statistics.
+//! The sea: its settings and regions, and queries of its surface and statistics.
 
-use glam::DVec3;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
 
 use crate::{
     context::Context,
-    error::{Result, check_range},
-    sea::{SeaPoint, SeaSettings, SeaStatistics},
+    error::{Error, Result, check_range},
+    sea::{SeaPoint, SeaRegion, SeaSettings, SeaStatistics, SeaSurface},
+    terrain::SurfaceClass,
 };
 
 /// Longest wave that a query may leave out, m.
 const MOST_SHORTEST_M: f64 = 1e4;
+
+/// The sea of a context at a time, for many places.
+pub(crate) struct SeaQuery<'a> {
+    context: &'a Context,
+    surface: Arc<SeaSurface>,
+    time_s: f64,
+    shortest_wave_m: f64,
+}
+
+impl SeaQuery<'_> {
+    /// Returns the sea at a position.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if `position` is not a place.
+    pub fn at(&self, position: DVec3) -> Result<SeaPoint> {
+        let world = &self.context.world;
+        let local = world.frame.place_at("position", position)?;
+        let Some(water) = self.context.held.sea.water_at(position, self.time_s) else {
+            return Ok(SeaPoint::dry(position));
+        };
+        let map_m = DVec2::from_array(world.map_place(position, &local));
+        let mut point = self.surface.within(&water, map_m, self.shortest_wave_m);
+        if let Some(bed) = self.context.sea_bed(position, local.place.altitude_m) {
+            let depth_m = point.height_m - bed.altitude_m;
+            if depth_m > 0.0 {
+                point.depth_m = depth_m;
+            } else if !bed.is_water {
+                return Ok(SeaPoint::dry(position));
+            }
+        }
+        let up = local.world_to_enu.transpose().z_axis;
+        point.surface = position + up * (point.height_m - local.place.altitude_m);
+        Ok(point)
+    }
+}
+
+/// The host's terrain under a place.
+struct SeaBed {
+    altitude_m: f64,
+    /// Whether the host's terrain is water there, whose heights need not be those of its bed.
+    is_water: bool,
+}
 
 impl Context {
     /// Sets the sea; `None` removes it. Part of the saved state. Set it before the first update, because its fetch
@@ -26,9 +71,26 @@ impl Context {
         self.held.sea.settings()
     }
 
-    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. The height
-    /// of a position has no influence. `shortest_wave_m`, [0, 1e4], leaves out shorter waves, and tiles that have only
-    /// such waves; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may be off.
+    /// Replaces the regions of water and of dry places; an empty list removes all. Part of the saved state. Regions
+    /// that move at a constant velocity move by themselves; set them again when it changes.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_REGIONS`](crate::sea::MAX_SEA_REGIONS), or naming the
+    /// region and its field; nothing changes then.
+    pub fn set_sea_regions(&mut self, regions: Vec<SeaRegion>) -> Result<()> {
+        self.held.sea.set_regions(&self.world, regions)
+    }
+
+    /// Returns the regions of water and of dry places, as they were set.
+    pub fn sea_regions(&self) -> impl ExactSizeIterator<Item = &SeaRegion> {
+        self.held.sea.regions()
+    }
+
+    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
+    /// place on the ground of a position counts, not its height. There is no water in dry regions, and where the
+    /// terrain's tiles lie above the surface, except in cells of [`SurfaceClass::Water`]. `shortest_wave_m`, [0, 1e4],
+    /// leaves out shorter waves, and tiles that hold no longer ones; 0 leaves out none. [`SeaPoint::height_error_m`]
+    /// says by how much the height may be off.
     ///
     /// The first query of a time sums the short waves (some milliseconds); the sums of the last two times are kept.
     /// Nothing is allocated after the first queries.
@@ -43,20 +105,46 @@ impl Context {
         shortest_wave_m: f64,
         points: &mut [SeaPoint],
     ) -> Result<()> {
-        check_range("shortest_wave_m", shortest_wave_m, 0.0, MOST_SHORTEST_M, "m")?;
         if points.len() != positions.len() {
             let accepted = format!("as long as positions, {}", positions.len());
-            return Err(crate::Error::range("points", &accepted, points.len()));
+            return Err(Error::range("points", &accepted, points.len()));
         }
         for (i, position) in positions.iter().enumerate() {
-            let named = |e: crate::Error| e.renamed("position", &format!("positions[{i}]"));
+            let named = |e: Error| e.renamed("position", &format!("positions[{i}]"));
             self.world.frame.place_at("position", *position).map_err(named)?;
         }
-        let surface = self.held.sea.surface(&self.world, time_s)?;
+        let query = self.sea_query(time_s, shortest_wave_m)?;
         for (position, point) in positions.iter().zip(points) {
-            *point = surface.at(self.world.map_at(*position), shortest_wave_m);
+            *point = query.at(*position)?;
         }
         Ok(())
+    }
+
+    /// Returns the sea at a time, for queries of many places.
+    ///
+    /// # Errors
+    /// As [`Context::sea_at`].
+    pub(crate) fn sea_query(&self, time_s: f64, shortest_wave_m: f64) -> Result<SeaQuery<'_>> {
+        check_range("shortest_wave_m", shortest_wave_m, 0.0, MOST_SHORTEST_M, "m")?;
+        let surface = self.held.sea.surface(&self.world, time_s)?;
+        Ok(SeaQuery { context: self, surface, time_s, shortest_wave_m })
+    }
+
+    /// Checks a position of a query.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if `position` is not a place.
+    pub(crate) fn check_sea_position(&self, position: DVec3) -> Result<()> {
+        self.world.frame.place_at("position", position).map(|_| ())
+    }
+
+    /// Returns the terrain's tiles under a position at an altitude; `None` where no tile has ground.
+    fn sea_bed(&self, position: DVec3, altitude_m: f64) -> Option<SeaBed> {
+        let terrain = self.world.set.tiles.as_ref()?;
+        let found = terrain.point_at(position)?;
+        let (_, above_origin_m) = terrain.cells_at(position);
+        let is_water = found.surface_class == SurfaceClass::Water;
+        Some(SeaBed { altitude_m: altitude_m - above_origin_m + found.height_m, is_water })
     }
 
     /// Returns the statistics of the sea at simulation time `time_s`: heights, period, direction, slopes, whitecaps.

@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::{
     dispersion::wave_number,
+    ice::SeaIce,
     spectrum::{depth_share, jonswap_shape},
     spreading::{donelan_banner_beta, sech_squared, sech_squared_share},
 };
@@ -106,6 +107,12 @@ impl Heading {
     }
 }
 
+/// Returns the unit vector (east, north) in which waves travel that come from a direction.
+pub(super) fn toward_of(from_deg: f64) -> DVec2 {
+    let (sin, cos) = libm::sincos(from_deg.to_radians());
+    DVec2::new(-sin, -cos)
+}
+
 /// Returns an angle within \[-pi, pi).
 pub(super) fn wrapped(angle: f64) -> f64 {
     angle - 2.0 * PI * (angle / (2.0 * PI) + 0.5).floor()
@@ -133,6 +140,8 @@ pub(super) struct Bins {
     pub level: [f64; MAX_SYSTEMS],
     /// Wave number at which the tiles' energy ends, 1/m.
     pub end_per_m: f64,
+    /// Ice that dampens the waves.
+    pub ice: Option<SeaIce>,
     /// Frequency of the wind sea's peak, rad/s.
     peak_rad_s: f64,
     depth_m: f64,
@@ -152,6 +161,7 @@ impl Bins {
             k_per_m,
             level: [0.0; MAX_SYSTEMS],
             end_per_m: 0.0,
+            ice: None,
             peak_rad_s: 1.0,
             depth_m,
         }
@@ -183,6 +193,18 @@ impl Bins {
         let factor = if drawn > 0.0 { asked / drawn } else { 1.0 };
         self.waves_m2.iter_mut().chain(&mut self.tiles_m2).flatten().for_each(|e| *e *= factor);
         self.level.iter_mut().for_each(|level| *level *= factor);
+        if self.ice.is_some() {
+            for b in 0..BINS {
+                let kept = self.kept_by_ice(bin_rad_s(b as f64 + 0.5), self.k_per_m[b]);
+                self.waves_m2[b].iter_mut().chain(&mut self.tiles_m2[b]).for_each(|energy| *energy *= kept);
+            }
+        }
+    }
+
+    /// Returns the share of the energy at a frequency that ice leaves; 1 without ice.
+    fn kept_by_ice(&self, w_rad_s: f64, k_per_m: f64) -> f64 {
+        let share = self.ice.map_or(1.0, |ice| ice.amplitude_share(w_rad_s / (2.0 * PI), k_per_m));
+        share * share
     }
 
     /// Fills the energies of a system, whole. Returns its variance at the depth.
@@ -242,9 +264,9 @@ impl Bins {
         (tiled, kept)
     }
 
-    /// Returns the density over frequency of a system, m^2 s, at a frequency.
-    pub fn density(&self, s: usize, w_rad_s: f64) -> f64 {
-        self.level[s] * self.systems[s].shape(w_rad_s, self.depth_m)
+    /// Returns the density over frequency of a system, m^2 s, at a frequency with its wave number.
+    pub fn density(&self, s: usize, w_rad_s: f64, k_per_m: f64) -> f64 {
+        self.level[s] * self.systems[s].shape(w_rad_s, self.depth_m) * self.kept_by_ice(w_rad_s, k_per_m)
     }
 
     /// Returns the variance of what is drawn, m^2.

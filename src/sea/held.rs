@@ -2,14 +2,18 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    clarity::WaterClarity,
     growth::GrowthState,
     history::DatedGrowth,
+    ice::SeaIce,
     model::{PreparedSea, SeaStatistics, SeaWorkshop, WeatherPast},
+    regions::{MAX_SEA_REGIONS, PlacedRegion, SeaRegion, WaterBody, water_at},
     settings::{SeaSettings, SeaSwell, Tide, WindSea},
+    single::SingleWave,
     surface::SeaSurface,
 };
 use crate::{
@@ -22,6 +26,7 @@ use crate::{
 #[derive(Default)]
 pub(crate) struct HeldSea {
     sea: Option<PreparedSea>,
+    regions: Vec<PlacedRegion>,
     /// States at the ends of changes that the timeline has forgotten or may forget next.
     kept: Vec<DatedGrowth>,
     /// Values that follow from all this and from the timeline; empty until the first query.
@@ -54,12 +59,27 @@ struct SavedSea {
     beaufort: Option<f64>,
     from_deg: Option<f64>,
     swells: Option<Vec<SavedSwell>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    waves: Vec<SingleWave>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ice: Option<SeaIce>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    clarity: WaterClarity,
+    #[serde(default, skip_serializing_if = "is_default")]
+    without_whitecaps: bool,
+    #[serde(default, skip_serializing_if = "is_default")]
+    only_in_regions: bool,
     /// Time, then the fields of the state.
     grown: Option<[f64; 12]>,
 }
 
-/// Key of the sea in a saved state.
+/// Keys of the sea and of its regions in a saved state.
 const KEY: &str = "sea";
+const REGIONS_KEY: &str = "sea_regions";
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
 
 fn numbers_of(dated: &DatedGrowth) -> [f64; 12] {
     let s = &dated.state;
@@ -117,6 +137,11 @@ impl SavedSea {
             beaufort: None,
             from_deg: settings.from_deg,
             swells: settings.swells.as_ref().map(|swells| swells.iter().map(swell).collect()),
+            waves: settings.waves.clone(),
+            ice: settings.ice,
+            clarity: settings.clarity,
+            without_whitecaps: settings.without_whitecaps,
+            only_in_regions: settings.only_in_regions,
             grown: grown.map(numbers_of),
         };
         match settings.wind_sea {
@@ -156,10 +181,32 @@ impl SavedSea {
             wind_sea,
             from_deg: self.from_deg,
             swells: self.swells.as_ref().map(|swells| swells.iter().map(swell).collect()),
+            waves: self.waves.clone(),
+            ice: self.ice,
+            clarity: self.clarity,
+            without_whitecaps: self.without_whitecaps,
+            only_in_regions: self.only_in_regions,
         };
         settings.validate().map_err(|e| e.found_in("saved state"))?;
         Ok(settings)
     }
+}
+
+/// Checks regions and places them in the world.
+fn placed(world: &World, regions: Vec<SeaRegion>) -> Result<Vec<PlacedRegion>> {
+    if regions.len() > MAX_SEA_REGIONS {
+        return Err(Error::range("regions", &format!("at most {MAX_SEA_REGIONS} regions"), regions.len()));
+    }
+    let place =
+        |(i, region)| PlacedRegion::new(region, &world.frame).map_err(|e: Error| e.within(&format!("regions[{i}]")));
+    regions.into_iter().enumerate().map(place).collect()
+}
+
+/// Takes the regions out of a saved state.
+fn read_regions(world: &World, state: &mut toml::Table) -> Result<Vec<PlacedRegion>> {
+    let Some(value) = state.remove(REGIONS_KEY) else { return Ok(Vec::new()) };
+    let regions: Vec<SeaRegion> = value.try_into().map_err(|e| parse_error(format_args!("{REGIONS_KEY}: {e}")))?;
+    placed(world, regions).map_err(|e| e.found_in("saved state"))
 }
 
 impl HeldSea {
@@ -187,13 +234,34 @@ impl HeldSea {
     /// # Errors
     /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
     pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
-        let Some(value) = state.remove(KEY) else { return Ok(Self::default()) };
+        let regions = read_regions(world, state)?;
+        let Some(value) = state.remove(KEY) else { return Ok(Self { regions, ..Self::default() }) };
         let saved: SavedSea = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
         if saved.grown.is_some_and(|numbers| numbers.iter().any(|n| !n.is_finite())) {
             return Err(parse_error(format_args!("{KEY}: numbers must be finite")));
         }
         let sea = Some(PreparedSea::new(saved.settings()?, world.seed));
-        Ok(Self { sea, kept: saved.grown.iter().map(dated_of).collect(), workshop: Mutex::default() })
+        Ok(Self { sea, regions, kept: saved.grown.iter().map(dated_of).collect(), workshop: Mutex::default() })
+    }
+
+    /// Replaces the regions.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] for too many, or naming the region and its field; nothing changes then.
+    pub fn set_regions(&mut self, world: &World, regions: Vec<SeaRegion>) -> Result<()> {
+        self.regions = placed(world, regions)?;
+        Ok(())
+    }
+
+    /// Returns the regions.
+    pub fn regions(&self) -> impl ExactSizeIterator<Item = &SeaRegion> {
+        self.regions.iter().map(|placed| &placed.region)
+    }
+
+    /// Returns the water at a position and time; `None` where there is none.
+    pub fn water_at(&self, position: DVec3, time_s: f64) -> Option<WaterBody> {
+        let is_sea = self.settings().is_some_and(|settings| !settings.only_in_regions);
+        water_at(&self.regions, is_sea, position, time_s)
     }
 
     /// Calls `act` with the sea's workshop.
@@ -247,10 +315,14 @@ impl HeldEffect for HeldSea {
     }
 
     fn save_in(&self, world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
+        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
+        if !self.regions.is_empty() {
+            let regions: Vec<&SeaRegion> = self.regions().collect();
+            state.insert(REGIONS_KEY.into(), toml::Value::try_from(regions).map_err(written)?);
+        }
         let Some(sea) = &self.sea else { return Ok(()) };
         let known_s = world.timeline.known_from_s();
         let grown = self.kept.iter().find(|dated| dated.time_s == known_s);
-        let written = |e| Error::new(Status::Internal, format!("the state cannot be written: {e}"));
         let value = toml::Value::try_from(SavedSea::new(&sea.settings, grown)).map_err(written)?;
         state.insert(KEY.into(), value);
         Ok(())

@@ -17,6 +17,9 @@
 //!   variance.
 //! * Every wave has a fixed frequency, direction and phase and an amplitude that follows the spectrum: no random
 //!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
+//! * [`SingleWave`]s of the host are added to the surface, after the spectrum.
+//! * [`SeaIce`] dampens each wave by its frequency and length.
+//! * [`SeaRegion`]s are water with a level or a share of the waves of its own, or places without water.
 //! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is
 //!   corrected for it. A query solves for the particle that is at the place.
 //!
@@ -24,8 +27,8 @@
 //! speeds, slopes, light, whitecaps, shores, ships' wakes, ice and the horizon, each with its author.
 //!
 //! # Settings
-//! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, water. Without settings there is
-//! no sea.
+//! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
+//! settings there is no sea. Regions are set apart, since hulls move.
 //!
 //! # Cost
 //! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
@@ -40,11 +43,12 @@
 //! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
-//! No drawing, no shore, hulls, wakes or ice on the surface, no outlines of lakes, no memory of foam: their laws are
-//! here, but the surface does not use them yet. There is no `view.rs`, `passes.rs` or `candidates.rs`, because nothing
+//! No drawing, no shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A
+//! lake has the waves of the sea around it, as high as its region says. There is no `view.rs`, `passes.rs` or `candidates.rs`, because nothing
 //! is drawn; no `reference.rs`, because all of it is the f64 reference.
 
 mod bins;
+mod clarity;
 pub mod dispersion;
 pub mod far;
 mod fft;
@@ -52,10 +56,17 @@ pub mod foam;
 mod growth;
 mod held;
 mod history;
+mod ice;
+mod lanes;
 mod lattice;
+mod mode;
 mod model;
+mod outline;
+pub mod probe;
+mod regions;
 mod settings;
 pub mod shore;
+mod single;
 pub mod slopes;
 pub mod spectrum;
 pub mod spreading;
@@ -67,7 +78,14 @@ mod turn;
 pub mod wake;
 pub mod water;
 
+pub use clarity::WaterClarity;
 pub(crate) use held::HeldSea;
+pub use ice::SeaIce;
+pub use mode::SeaMode;
 pub use model::SeaStatistics;
+pub use outline::MAX_OUTLINE_CORNERS;
+pub use regions::{MAX_SEA_REGIONS, SeaRegion, SeaRegionKind};
 pub use settings::{MAX_SWELLS, MOST_STEEPNESS, SeaSettings, SeaSwell, Tide, WindSea};
+pub use single::{MAX_SINGLE_WAVES, MOST_SINGLE_STEEPNESS, SingleWave, WaveScale};
 pub use surface::SeaPoint;
+pub(crate) use surface::SeaSurface;

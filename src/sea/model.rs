@@ -5,13 +5,14 @@ use std::{f64::consts::TAU, sync::Arc};
 use glam::DVec2;
 
 use super::{
-    bins::{BINS, Bins, MAX_SYSTEMS, Spreading, WaveSystem, bin_rad_s},
+    bins::{BINS, Bins, MAX_SYSTEMS, Spreading, WaveSystem, bin_rad_s, toward_of},
     dispersion::wave_length_m,
     foam::{fold_threshold, whitecap_share},
     growth::{GrowthState, gamma_of_variance, kept_variance_m2, peak_of_variance_rad_s},
     history::{DatedGrowth, GrowthHistory},
     lattice::{SeaWave, list},
     settings::{MAX_SWELLS, MOST_STEEPNESS, SeaSettings, WindSea, developed_period_s},
+    single::SingleWave,
     slopes::mean_square_slope,
     spectrum::{GROWING_GAMMA, highest_over_significant, significant_height_m},
     spreading::{beta_of_width, swell_width},
@@ -37,9 +38,9 @@ const HOUR_S: f64 = 3600.0;
 pub struct SeaStatistics {
     /// Level without waves, m above mean sea level.
     pub level_m: f64,
-    /// Significant height of all waves, m: four standard deviations of the surface's height.
+    /// Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
     pub significant_height_m: f64,
-    /// Period of the strongest waves, s; 0 without waves.
+    /// Period of the strongest waves, s; that of the highest single wave if there are no others, 0 without waves.
     pub peak_period_s: f64,
     /// Direction that the waves come from, degrees clockwise from true north, the mean weighted by variance; 0 without
     /// waves.
@@ -48,14 +49,16 @@ pub struct SeaStatistics {
     pub mean_square_slope: f64,
     /// Part of it that the waves of the surface have; the rest is in waves too short for it.
     pub drawn_square_slope: f64,
-    /// Height of the largest wave expected in an hour, m, crest to trough.
+    /// Height of the largest wave expected in an hour, m, crest to trough, plus the heights of all single waves.
     pub highest_in_hour_m: f64,
-    /// Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980).
+    /// Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980), less under ice.
     pub whitecap_share: f64,
     /// Temperature of the water, degrees Celsius.
     pub water_temperature_c: f64,
     /// Refractive index of the water against air at 550 nm (Quan and Fry 1995).
     pub refractive_index: f64,
+    /// Diffuse attenuation of downward light, 1/m, at 450, 550 and 650 nm (Jerlov 1976).
+    pub attenuation_per_m: [f64; 3],
 }
 
 /// Systems of waves, and the wind under which the short ones stand.
@@ -75,14 +78,10 @@ pub(super) struct PreparedSea {
     seed: u64,
     /// Swells of the settings.
     swells: [WaveSystem; MAX_SWELLS],
+    /// Single waves of the settings, as ice leaves them.
+    singles: Vec<SeaWave>,
     /// The weather's swell, but for height, period and direction.
     weathers_swell: WaveSystem,
-}
-
-/// Returns the unit vector in which waves travel that come from a direction.
-fn toward_of(from_deg: f64) -> DVec2 {
-    let (sin, cos) = libm::sincos(from_deg.to_radians());
-    DVec2::new(-sin, -cos)
 }
 
 /// Returns the variance, m^2, of a significant height.
@@ -110,7 +109,13 @@ impl PreparedSea {
             let beta = from.spread_deg.map_or(beta, |deg| beta_of_width(deg.to_radians()));
             *to = swell(from.height_m, from.period_s, toward_of(from.from_deg), beta);
         }
-        Self { settings, seed, swells, weathers_swell }
+        let single = |wave: &SingleWave| {
+            let wave = wave.wave(settings.depth_m);
+            let kept = settings.ice.map_or(1.0, |ice| ice.amplitude_share(wave.frequency_hz, TAU * wave.turns_per_m));
+            SeaWave { amplitude_m: wave.amplitude_m * kept, ..wave }
+        };
+        let singles = settings.waves.iter().map(single).collect();
+        Self { settings, seed, swells, singles, weathers_swell }
     }
 
     /// Returns the wave systems of a state of growth.
@@ -213,12 +218,14 @@ impl SeaWorkshop {
     /// Creates the workshop of a sea.
     pub fn new(sea: &PreparedSea) -> Self {
         let depth_m = sea.settings.depth_m;
+        let mut bins = Bins::new(depth_m);
+        bins.ice = sea.settings.ice;
         let kept = |_| KeptSurface { time_s: f64::NAN, used: 0, surface: Arc::new(SeaSurface::new()) };
         Self {
             timeline_revision: None,
             history: GrowthHistory::default(),
             systems: None,
-            bins: Bins::new(depth_m),
+            bins,
             waves: Vec::with_capacity(512),
             tiles: WaveTiles::new(sea.seed, depth_m),
             statistics: SeaStatistics::default(),
@@ -249,11 +256,18 @@ impl SeaWorkshop {
         }
         self.bins.fill(&systems.list[..systems.count], systems.most_slope);
         list(&self.bins, sea.seed, sea.settings.depth_m, &mut self.waves);
-        self.waves.sort_unstable_by(|a, b| a.turns_per_m.total_cmp(&b.turns_per_m).then(a.phase.total_cmp(&b.phase)));
+        self.sort_waves();
         self.tiles.fill(&self.bins);
         self.systems = Some(systems);
         let factor = self.strengthen();
-        self.count(&systems, factor);
+        self.count(sea, &systems, factor);
+        self.waves.extend_from_slice(&sea.singles);
+        self.sort_waves();
+    }
+
+    /// Sorts the waves from long to short; those of a length by their phases.
+    fn sort_waves(&mut self) {
+        self.waves.sort_unstable_by(|a, b| a.turns_per_m.total_cmp(&b.turns_per_m).then(a.phase.total_cmp(&b.phase)));
     }
 
     /// Strengthens all waves so that heights at fixed places have the variance that was asked. Horizontal motion
@@ -285,8 +299,8 @@ impl SeaWorkshop {
         factor
     }
 
-    /// Works out the statistics of the waves, which were strengthened by a factor.
-    fn count(&mut self, systems: &Systems, factor: f64) {
+    /// Works out the statistics of the waves, which were strengthened by a factor, and of the single waves.
+    fn count(&mut self, sea: &PreparedSea, systems: &Systems, factor: f64) {
         let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
         let mut slope = self.tiles.tiles.iter().map(|t| t.mean_square_slope).sum::<f64>();
         let mut compression = self.tiles.tiles.iter().map(|t| t.compression).sum::<f64>();
@@ -297,21 +311,27 @@ impl SeaWorkshop {
             slope += own * k * k;
             compression += own * k * k * wave.stretch * wave.stretch;
         }
-        let significant = significant_height_m(variance / factor);
+        let random = significant_height_m(variance / factor);
+        let own = |wave: &SeaWave| 0.5 * wave.amplitude_m * wave.amplitude_m;
+        let single: f64 = sea.singles.iter().map(own).sum();
+        slope +=
+            sea.singles.iter().map(|wave| own(wave) * (TAU * wave.turns_per_m) * (TAU * wave.turns_per_m)).sum::<f64>();
         let energy = |b: usize| self.bins.waves_m2[b].iter().chain(&self.bins.tiles_m2[b]).sum::<f64>();
         let second: f64 = (0..BINS).map(|b| energy(b) * bin_rad_s(b as f64 + 0.5).powi(2)).sum();
         // Per bin the density over frequency falls as 1 / w.
         let dense = |b: usize| energy(b) / bin_rad_s(b as f64 + 0.5);
         let peak = (0..BINS).fold(0, |best, b| if dense(b) > dense(best) { b } else { best });
+        let open = 1.0 - sea.settings.ice.map_or(0.0, |ice| ice.cover);
         let waves_in_hour = if variance > 0.0 { HOUR_S * (second * factor / variance).sqrt() / TAU } else { 1.0 };
         self.statistics = SeaStatistics {
-            significant_height_m: significant,
-            peak_period_s: if variance > 0.0 { TAU / self.peak_rad_s(peak) } else { 0.0 },
-            mean_from_deg: mean_from_deg(systems),
-            mean_square_slope: mean_square_slope(systems.wind_m_s).max(slope),
+            significant_height_m: significant_height_m(variance / factor + single),
+            peak_period_s: if variance > 0.0 { TAU / self.peak_rad_s(peak) } else { highest_period_s(&sea.singles) },
+            mean_from_deg: mean_from_deg(systems, &sea.singles),
+            mean_square_slope: (open * mean_square_slope(systems.wind_m_s)).max(slope),
             drawn_square_slope: slope,
-            highest_in_hour_m: significant * highest_over_significant(waves_in_hour),
-            whitecap_share: whitecap_share(systems.wind_m_s),
+            highest_in_hour_m: random * highest_over_significant(waves_in_hour)
+                + sea.singles.iter().map(|wave| 2.0 * wave.amplitude_m).sum::<f64>(),
+            whitecap_share: if sea.settings.without_whitecaps { 0.0 } else { open * whitecap_share(systems.wind_m_s) },
             ..SeaStatistics::default()
         };
         self.foam_from = fold_threshold(self.statistics.whitecap_share, compression);
@@ -342,15 +362,15 @@ impl SeaWorkshop {
             level_m: sea.settings.level_at_m(time_s),
             water_temperature_c,
             refractive_index: refractive_index(sea.settings.salinity_g_kg, water_temperature_c, SEEN_NM),
+            attenuation_per_m: sea.settings.clarity.diffuse_attenuation_per_m(),
             ..self.statistics
         }
     }
 
-    /// Returns the single waves at a time, from long to short.
-    #[cfg(test)]
-    pub fn waves(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) -> &[SeaWave] {
+    /// Returns the waves at a time, from long to short, and the tiles.
+    pub fn waves(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) -> (&[SeaWave], &WaveTiles) {
         self.follow(sea, past, time_s);
-        &self.waves
+        (&self.waves, &self.tiles)
     }
 
     /// Returns the surface at a time.
@@ -381,10 +401,18 @@ impl SeaWorkshop {
     }
 }
 
+/// Returns the period of the highest wave, s; 0 without waves.
+fn highest_period_s(waves: &[SeaWave]) -> f64 {
+    let highest = waves.iter().filter(|wave| wave.amplitude_m > 0.0);
+    highest.max_by(|a, b| a.amplitude_m.total_cmp(&b.amplitude_m)).map_or(0.0, |wave| 1.0 / wave.frequency_hz)
+}
+
 /// Returns the direction that waves come from, degrees, weighted by variance.
-fn mean_from_deg(systems: &Systems) -> f64 {
+fn mean_from_deg(systems: &Systems, singles: &[SeaWave]) -> f64 {
     let of = |s: &WaveSystem| s.toward * s.m0_m2;
-    let toward: DVec2 = systems.list[..systems.count].iter().map(of).sum();
+    let single = |wave: &SeaWave| wave.toward * (0.5 * wave.amplitude_m * wave.amplitude_m);
+    let toward: DVec2 =
+        systems.list[..systems.count].iter().map(of).sum::<DVec2>() + singles.iter().map(single).sum::<DVec2>();
     if toward.length_squared() <= 0.0 {
         return 0.0;
     }

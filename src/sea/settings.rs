@@ -1,8 +1,11 @@
 //! Settings by which a host says what its sea is like: level, tide, fetch, depth, waves, water.
 
 use super::{
+    clarity::WaterClarity,
     dispersion::wave_length_m,
+    ice::SeaIce,
     shore::LUNAR_TIDE_S,
+    single::{self, SingleWave},
     spectrum::{GROWING_GAMMA, developed_peak_rad_s},
 };
 use crate::{
@@ -82,6 +85,17 @@ pub struct SeaSettings {
     pub from_deg: Option<f64>,
     /// Swells, at most [`MAX_SWELLS`]; `None`, the default, is the weather's swell.
     pub swells: Option<Vec<SeaSwell>>,
+    /// Single waves, added to all others, at most [`MAX_SINGLE_WAVES`](super::MAX_SINGLE_WAVES). Default none.
+    pub waves: Vec<SingleWave>,
+    /// Ice, which dampens all waves. Default none.
+    pub ice: Option<SeaIce>,
+    /// Clarity of the water. Default the clear open sea.
+    pub clarity: WaterClarity,
+    /// Whether waves break without foam. Default `false`.
+    pub without_whitecaps: bool,
+    /// Whether there is water only inside regions ([`Context::set_sea_regions`](crate::context::Context)). Default
+    /// `false`: the sea is everywhere.
+    pub only_in_regions: bool,
 }
 
 impl Default for SeaSettings {
@@ -96,6 +110,11 @@ impl Default for SeaSettings {
             wind_sea: WindSea::Weather,
             from_deg: None,
             swells: None,
+            waves: Vec::new(),
+            ice: None,
+            clarity: WaterClarity::default(),
+            without_whitecaps: false,
+            only_in_regions: false,
         }
     }
 }
@@ -158,7 +177,10 @@ impl SeaSettings {
         check_range("salinity_g_kg", self.salinity_g_kg, 0.0, 45.0, "g/kg")?;
         check_range("temperature_c", self.temperature_c.unwrap_or(10.0), -3.0, 45.0, "degrees")?;
         check_range("from_deg", self.from_deg.unwrap_or(0.0), 0.0, 360.0, "degrees")?;
+        self.clarity.validate()?;
+        self.ice.as_ref().map_or(Ok(()), SeaIce::validate)?;
         self.wind_sea.validate(self.depth_m)?;
+        single::validate(&self.waves, self.depth_m)?;
         let Some(swells) = &self.swells else { return Ok(()) };
         if swells.len() > MAX_SWELLS {
             return Err(Error::range("swells", &format!("at most {MAX_SWELLS} swells"), swells.len()));
@@ -190,7 +212,10 @@ impl SeaSwell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Status;
+    use crate::{error::Status, sea::WaveScale};
+
+    const SINGLE: SingleWave =
+        SingleWave { height_m: 0.8, scale: WaveScale::Length(40.0), from_deg: 10.0, phase_deg: 0.0 };
 
     #[test]
     fn faults_are_named_with_their_range() {
@@ -212,6 +237,10 @@ mod tests {
             ("wind_sea.sea_state", SeaSettings { wind_sea: WindSea::SeaState(10), ..base() }),
             ("wind_sea.sea_state", SeaSettings { wind_sea: WindSea::SeaState(9), depth_m: 2.0, ..base() }),
             ("wind_sea.beaufort", SeaSettings { wind_sea: WindSea::Beaufort(12.5), ..base() }),
+            ("clarity.percent", SeaSettings { clarity: WaterClarity::Percent(20.0), ..base() }),
+            ("ice.cover", SeaSettings { ice: Some(SeaIce { cover: -0.1, ..SeaIce::default() }), ..base() }),
+            ("waves", SeaSettings { waves: vec![SINGLE; 17], ..base() }),
+            ("waves[0].height_m", SeaSettings { waves: vec![SINGLE], depth_m: 0.5, ..base() }),
             ("swells", SeaSettings { swells: Some(vec![swell; 5]), ..base() }),
             (
                 "swells[1].period_s",

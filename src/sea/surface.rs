@@ -5,22 +5,17 @@
 //! acceleration of that particle. Because crests are narrower than troughs, the mean level over fixed places would fall
 //! by the sum of k coth(k h) times variance; the surface is raised by as much.
 
-use std::f64::consts::TAU;
-
 use glam::{DVec2, DVec3};
 
 use super::{
     fft::SIDE,
+    lanes::{Displacement, IncludedLanes, ParticleMotion, Phases, WaveLanes},
     lattice::SeaWave,
+    regions::WaterBody,
     tiles::{TILES, TileWork, VALUES, WaveTiles, sample},
-    turn::{fraction, sin_cos},
 };
 use crate::numerics::smoothstep;
 
-/// Waves that are summed at a time.
-const LANES: usize = 4;
-/// Most groups of them: a list has at most some 300 waves.
-const MOST_GROUPS: usize = 128;
 /// Largest distance, m, between the place asked for and the one solved for, and most steps towards it.
 const SOLVED_M: f64 = 5e-4;
 const MOST_STEPS: usize = 12;
@@ -30,9 +25,14 @@ const BOUND_DEVIATIONS: f64 = 4.0;
 const FOAM_EDGE: f64 = 0.05;
 const LEAST_FOAM_EDGE: f64 = 1e-3;
 
-/// The sea at a place and time.
+/// The sea at a place and time. Where there is no water all numbers are 0, and the normal is up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeaPoint {
+    /// Whether there is water.
+    pub has_water: bool,
+    /// Point of the surface above or below the place that was asked about, in the host's world, m; without water that
+    /// place itself.
+    pub surface: DVec3,
     /// Height of the surface above mean sea level, m.
     pub height_m: f64,
     /// Largest error of the height, m: 4 standard deviations of the waves left out and of the interpolation in tiles,
@@ -49,86 +49,6 @@ pub struct SeaPoint {
     /// Share of the place under foam of waves that break now, 0 to 1. Foam left by earlier waves is not in this
     /// version.
     pub foam: f64,
-}
-
-/// Properties of [`LANES`] waves, in the form in which they are summed.
-#[derive(Clone, Copy, Debug, Default)]
-struct WaveGroup {
-    /// Wave vector, turns per metre.
-    turns_x: [f64; LANES],
-    turns_y: [f64; LANES],
-    /// Phase at the surface's time, turns.
-    phase: [f64; LANES],
-    /// Amplitude of height and of displacement, m.
-    height: [f64; LANES],
-    shift_x: [f64; LANES],
-    shift_y: [f64; LANES],
-    /// Unit vector times wave number, 1/m.
-    rise_x: [f64; LANES],
-    rise_y: [f64; LANES],
-    /// Frequency, rad/s.
-    w: [f64; LANES],
-}
-
-/// The single waves at the surface's time, long waves first.
-#[derive(Clone, Debug, Default)]
-struct WaveLanes {
-    groups: Vec<WaveGroup>,
-    /// Sums over a wave and all longer ones: variance, and lowering of the mean level.
-    variance_m2: Vec<f64>,
-    lowering_m: Vec<f64>,
-    /// Lengths of the waves, m.
-    length_m: Vec<f64>,
-}
-
-impl WaveLanes {
-    fn fill(&mut self, waves: &[SeaWave], time_s: f64) {
-        self.groups.clear();
-        for list in [&mut self.variance_m2, &mut self.lowering_m, &mut self.length_m] {
-            list.clear();
-        }
-        let (mut variance, mut lowering) = (0.0, 0.0);
-        for members in waves.chunks(LANES).take(MOST_GROUPS) {
-            // Waves without amplitude fill the last group.
-            let mut group = WaveGroup::default();
-            for (l, wave) in members.iter().enumerate() {
-                let k = TAU * wave.turns_per_m;
-                let (a, along) = (wave.amplitude_m, wave.toward);
-                (group.turns_x[l], group.turns_y[l]) = (along.x * wave.turns_per_m, along.y * wave.turns_per_m);
-                group.phase[l] = wave.phase - fraction(wave.frequency_hz * time_s);
-                group.height[l] = a;
-                (group.shift_x[l], group.shift_y[l]) = (along.x * a * wave.stretch, along.y * a * wave.stretch);
-                (group.rise_x[l], group.rise_y[l]) = (along.x * k, along.y * k);
-                group.w[l] = TAU * wave.frequency_hz;
-                variance += 0.5 * a * a;
-                lowering += 0.5 * a * a * k * wave.stretch;
-                self.variance_m2.push(variance);
-                self.lowering_m.push(lowering);
-                self.length_m.push(1.0 / wave.turns_per_m);
-            }
-            self.groups.push(group);
-        }
-    }
-}
-
-/// Sines and cosines of the waves' phases at a place.
-struct Phases([[[f64; LANES]; 2]; MOST_GROUPS]);
-
-/// Displacement of the particle at rest at a place, and its derivatives.
-#[derive(Clone, Copy, Debug, Default)]
-struct Displacement {
-    shift: DVec2,
-    /// d(shift.x)/dx, d(shift.x)/dy, d(shift.y)/dx, d(shift.y)/dy.
-    slopes: [f64; 4],
-}
-
-/// Height and motion of a particle.
-#[derive(Clone, Copy, Debug, Default)]
-struct ParticleMotion {
-    height: f64,
-    slope: DVec2,
-    velocity: DVec3,
-    acceleration: DVec3,
 }
 
 /// A tile's fields at the surface's time.
@@ -177,10 +97,19 @@ struct SolvedParticle {
 /// Waves of a query.
 #[derive(Clone, Copy)]
 struct IncludedWaves {
-    waves: usize,
+    lanes: IncludedLanes,
     tiles: [bool; TILES],
     raised_m: f64,
     error_m: f64,
+    /// Share of their amplitude that all of them have.
+    share: f64,
+}
+
+impl SeaPoint {
+    /// Returns the answer for a place without water.
+    pub(crate) fn dry(position: DVec3) -> Self {
+        Self { surface: position, normal: DVec3::Z, ..Self::default() }
+    }
 }
 
 impl SeaSurface {
@@ -209,7 +138,7 @@ impl SeaSurface {
     ) {
         self.still = still;
         self.lanes.fill(waves, time_s);
-        self.variance_m2 = self.lanes.variance_m2.last().copied().unwrap_or(0.0);
+        self.variance_m2 = self.lanes.variance_m2();
         for (to, tile) in self.tiles.iter_mut().zip(&tiles.tiles) {
             (to.length_m, to.turn, to.shortest_m) = (tile.length_m, tile.turn, tile.shortest_m);
             (to.variance_m2, to.lowering_m, to.image_m2) =
@@ -222,15 +151,25 @@ impl SeaSurface {
         }
     }
 
-    /// Returns the sea at a place (east and north of the world's origin, m), with waves of at least `shortest_m` and
-    /// tiles that have such waves.
+    /// Returns the open sea at a place, as [`SeaSurface::within`].
+    #[cfg(test)]
     pub fn at(&self, place_m: DVec2, shortest_m: f64) -> SeaPoint {
-        let included = self.included(shortest_m);
-        let mut phases = Phases([[[0.0; LANES]; 2]; MOST_GROUPS]);
+        self.within(&WaterBody { lake: None, wave_share: 1.0 }, place_m, shortest_m)
+    }
+
+    /// Returns the water at a place (east and north of the world's origin, m), with waves of at least `shortest_m` and
+    /// tiles that have such waves. All waves have the share of their amplitude that the water says. The point's
+    /// `surface` is left to the caller, who knows the world.
+    pub fn within(&self, water: &WaterBody, place_m: DVec2, shortest_m: f64) -> SeaPoint {
+        let share = water.wave_share;
+        let included = IncludedWaves { share, ..self.included(shortest_m) };
+        let mut phases = Phases::new();
         let SolvedParticle { rest, moved, off } = self.solve(place_m, &included, &mut phases, MOST_STEPS);
         let motion = self.motion(rest, &included, &phases);
         let slope = transposed_inverse_times(&moved.slopes, motion.slope);
-        let height = motion.height + included.raised_m + slope.dot(off);
+        // The level falls by the square of the amplitudes.
+        let height = motion.height + share * share * included.raised_m + slope.dot(off);
+        let [level_m, depth_m] = water.lake.unwrap_or([self.still.level_m, self.still.depth_m]);
         let compression = -(moved.slopes[0] + moved.slopes[3]);
         let foam_from = self.still.foam_from;
         let foam = if foam_from.is_finite() {
@@ -240,12 +179,14 @@ impl SeaSurface {
             0.0
         };
         SeaPoint {
-            height_m: self.still.level_m + height,
-            height_error_m: included.error_m + off.length() * slope.length() + SOLVED_M,
+            has_water: true,
+            surface: DVec3::ZERO,
+            height_m: level_m + height,
+            height_error_m: share * included.error_m + off.length() * slope.length() + SOLVED_M,
             normal: DVec3::new(-slope.x, -slope.y, 1.0).normalize(),
             velocity_m_s: motion.velocity,
             acceleration_m_s2: motion.acceleration,
-            depth_m: (self.still.depth_m + height).max(0.0),
+            depth_m: (depth_m + height).max(0.0),
             foam,
         }
     }
@@ -253,7 +194,7 @@ impl SeaSurface {
     /// Returns how far from a place the solution for it is after some steps, m.
     #[cfg(test)]
     pub(super) fn solved_off_m(&self, place_m: DVec2, steps: usize) -> f64 {
-        let mut phases = Phases([[[0.0; LANES]; 2]; MOST_GROUPS]);
+        let mut phases = Phases::new();
         self.solve(place_m, &self.included(0.0), &mut phases, steps).off.length()
     }
 
@@ -281,10 +222,8 @@ impl SeaSurface {
 
     /// Returns what a query with this shortest wave sums, and what it leaves out.
     fn included(&self, shortest_m: f64) -> IncludedWaves {
-        let lanes = &self.lanes;
-        let waves = lanes.length_m.partition_point(|length| *length >= shortest_m);
-        let last = |list: &[f64]| if waves > 0 { list[waves - 1] } else { 0.0 };
-        let (mut raised_m, mut variance, mut images) = (last(&lanes.lowering_m), last(&lanes.variance_m2), 0.0);
+        let lanes = self.lanes.included(shortest_m);
+        let (mut raised_m, mut variance, mut images) = (lanes.lowering_m, lanes.variance_m2, 0.0);
         let mut tiles = [false; TILES];
         for (is_in, tile) in tiles.iter_mut().zip(&self.tiles) {
             *is_in = tile.variance_m2 > 0.0 && tile.longest_m >= shortest_m;
@@ -297,31 +236,11 @@ impl SeaSurface {
         let left_out = (self.variance_m2 - variance).max(0.0);
         // Rounding leaves some 1e-16 of the variance.
         let left_out = if left_out < 1e-12 * self.variance_m2 { 0.0 } else { left_out };
-        IncludedWaves { waves, tiles, raised_m, error_m: BOUND_DEVIATIONS * (left_out + images).sqrt() }
+        IncludedWaves { lanes, tiles, raised_m, error_m: BOUND_DEVIATIONS * (left_out + images).sqrt(), share: 1.0 }
     }
 
     fn displacement(&self, rest: DVec2, included: &IncludedWaves, phases: &mut Phases) -> Displacement {
-        let mut sums = [[0.0; LANES]; 5];
-        let groups = self.lanes.groups.iter().take(included.waves.div_ceil(LANES));
-        for (n, (group, [sines, cosines])) in groups.zip(&mut phases.0).enumerate() {
-            let kept = included.waves - n * LANES;
-            for l in 0..LANES {
-                let is_in = if l < kept { 1.0 } else { 0.0 };
-                let (sin, cos) = sin_cos(group.turns_x[l] * rest.x + group.turns_y[l] * rest.y + group.phase[l]);
-                (sines[l], cosines[l]) = (is_in * sin, is_in * cos);
-            }
-            for l in 0..LANES {
-                let (x, y) = (group.shift_x[l], group.shift_y[l]);
-                let (along_x, along_y) = (x * cosines[l], y * cosines[l]);
-                sums[0][l] -= x * sines[l];
-                sums[1][l] -= y * sines[l];
-                sums[2][l] -= along_x * group.rise_x[l];
-                sums[3][l] -= along_x * group.rise_y[l];
-                sums[4][l] -= along_y * group.rise_y[l];
-            }
-        }
-        let [x, y, xx, xy, yy] = sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]));
-        let mut out = Displacement { shift: DVec2::new(x, y), slopes: [xx, xy, xy, yy] };
+        let mut out = self.lanes.displacement(rest, &included.lanes, phases);
         for (tile, _) in self.tiles.iter().zip(included.tiles).filter(|(_, is_in)| *is_in) {
             let found = sample::<3>(&tile.fields, tile.length_m, to_tile(tile.turn, rest));
             out.shift += from_tile(tile.turn, DVec2::new(found.values[1], found.values[2]));
@@ -333,36 +252,12 @@ impl SeaSurface {
             let turned = [east.x, north.x, east.y, north.y];
             out.slopes.iter_mut().zip(turned).for_each(|(sum, slope)| *sum += slope);
         }
-        out
+        Displacement { shift: out.shift * included.share, slopes: out.slopes.map(|slope| slope * included.share) }
     }
 
     /// Returns height and motion of the particle at rest at a place whose phases are known.
     fn motion(&self, rest: DVec2, included: &IncludedWaves, phases: &Phases) -> ParticleMotion {
-        let mut sums = [[0.0; LANES]; 9];
-        let groups = self.lanes.groups.iter().take(included.waves.div_ceil(LANES));
-        for (group, [sines, cosines]) in groups.zip(&phases.0) {
-            for l in 0..LANES {
-                let (sin, cos, w) = (sines[l], cosines[l], group.w[l]);
-                let (up_sin, up_cos) = (group.height[l] * sin, group.height[l] * cos);
-                let (w_sin, w_cos) = (w * w * sin, w * cos);
-                sums[0][l] += up_cos;
-                sums[1][l] -= up_sin * group.rise_x[l];
-                sums[2][l] -= up_sin * group.rise_y[l];
-                sums[3][l] += up_sin * w;
-                sums[4][l] += group.shift_x[l] * w_cos;
-                sums[5][l] += group.shift_y[l] * w_cos;
-                sums[6][l] -= up_cos * w * w;
-                sums[7][l] += group.shift_x[l] * w_sin;
-                sums[8][l] += group.shift_y[l] * w_sin;
-            }
-        }
-        let sums = sums.map(|s| (s[0] + s[1]) + (s[2] + s[3]));
-        let mut out = ParticleMotion {
-            height: sums[0],
-            slope: DVec2::new(sums[1], sums[2]),
-            velocity: DVec3::new(sums[4], sums[5], sums[3]),
-            acceleration: DVec3::new(sums[7], sums[8], sums[6]),
-        };
+        let mut out = self.lanes.motion(&included.lanes, phases);
         for (tile, _) in self.tiles.iter().zip(included.tiles).filter(|(_, is_in)| *is_in) {
             let found = sample::<VALUES>(&tile.fields, tile.length_m, to_tile(tile.turn, rest));
             let v = found.values;
@@ -371,7 +266,13 @@ impl SeaSurface {
             out.velocity += from_tile(tile.turn, DVec2::new(v[4], v[5])).extend(v[3]);
             out.acceleration += from_tile(tile.turn, DVec2::new(v[7], v[8])).extend(v[6]);
         }
-        out
+        let share = included.share;
+        ParticleMotion {
+            height: out.height * share,
+            slope: out.slope * share,
+            velocity: out.velocity * share,
+            acceleration: out.acceleration * share,
+        }
     }
 }
 

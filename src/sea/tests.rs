@@ -8,8 +8,11 @@ use super::{
     dispersion::{angular_frequency, wave_length_m},
     foam::whitecap_share,
     history::DatedGrowth,
+    ice::SeaIce,
     model::{PreparedSea, SeaStatistics, SeaWorkshop, WeatherPast},
+    regions::WaterBody,
     settings::{SeaSettings, SeaSwell, Tide, WindSea},
+    single::{SingleWave, WaveScale},
     slopes::mean_square_slope,
     surface::{SeaPoint, SeaSurface},
 };
@@ -167,7 +170,7 @@ fn waves_travel_by_dispersion() {
         let mut sea = TestSea::of(0.5, tp, depth, 2);
         let revision = 1;
         let past = WeatherPast { timeline: &sea.timeline, revision, kept: &[] };
-        for wave in sea.workshop.waves(&sea.sea, &past, 0.0) {
+        for wave in sea.workshop.waves(&sea.sea, &past, 0.0).0 {
             let w = angular_frequency(TAU * wave.turns_per_m, depth);
             assert!((w / (TAU * wave.frequency_hz) - 1.0).abs() < 1e-10);
         }
@@ -314,6 +317,78 @@ fn statistics_are_those_of_the_settings() {
         TestSea::new(SeaSettings { level_m: 10.0, tide, ..state(WindSea::SeaState(0)) }, 1, blowing(0.0, 0.0));
     let point = level.surface(0.0).at(DVec2::ZERO, 0.0);
     assert_eq!((point.height_m, point.depth_m), (11.5, 4001.5));
+}
+
+#[test]
+fn single_waves_come_on_top_and_keep_their_form() {
+    let calm = SeaSettings { wind_sea: WindSea::SeaState(0), depth_m: 20.0, ..SeaSettings::default() };
+    let wave = SingleWave { height_m: 3.0, scale: WaveScale::Period(9.0), from_deg: 180.0, phase_deg: 30.0 };
+    let length_m = wave_length_m(9.0, 20.0);
+    let k = TAU / length_m;
+    let mut sea = TestSea::new(SeaSettings { waves: vec![wave], ..calm.clone() }, 1, blowing(0.0, 0.0));
+    // A crest passes the origin a twelfth of the period after time 0, and again 1e6 periods later.
+    for (time_s, y) in [(0.75, 0.0), (0.75 + 9e6, 0.0), (9.75, -length_m)] {
+        let crest = sea.surface(time_s).at(DVec2::new(-400.0, y), 0.0);
+        let raised = 0.5 * 1.5 * 1.5 * k / libm::tanh(k * 20.0);
+        assert!((crest.height_m - 1.5 - raised).abs() < 1e-4, "{time_s}: {crest:?} {raised}");
+        let along = 1.5 * TAU / 9.0 / libm::tanh(k * 20.0);
+        assert!((crest.velocity_m_s - DVec3::Y * along).length() < 1e-3, "{crest:?}");
+        let fall = -1.5 * (TAU / 9.0).powi(2);
+        assert!((crest.acceleration_m_s2 - DVec3::Z * fall).length() < 1e-3, "{crest:?}");
+    }
+    // The mean over a period is the level.
+    let heights: f64 = (0..90).map(|i| sea.surface(0.1 * f64::from(i)).at(DVec2::new(7.0, 7.0), 0.0).height_m).sum();
+    assert!((heights / 90.0).abs() < 2e-3, "{heights}");
+    // Added to a sea, it changes no phase of the others.
+    let rough = SeaSettings { wind_sea: WindSea::SeaState(3), ..calm };
+    let mut alone = TestSea::new(rough.clone(), 1, blowing(0.0, 0.0));
+    let both = SeaSettings { waves: vec![SingleWave { height_m: 0.02, ..wave }], ..rough };
+    let mut both = TestSea::new(both, 1, blowing(0.0, 0.0));
+    let [hs, with] = [&mut alone, &mut both].map(|sea| sea.statistics(0.0).significant_height_m);
+    assert!((with - (hs * hs + 8.0 * 1e-4).sqrt()).abs() < 1e-9, "{hs} {with}");
+    for i in 0..50 {
+        let place = DVec2::new(13.0 * f64::from(i), 5.0);
+        let [a, b] = [&mut alone, &mut both].map(|sea| sea.surface(3.0).at(place, 0.0).height_m);
+        assert!((a - b).abs() < 0.02, "{a} {b}");
+    }
+}
+
+#[test]
+fn ice_takes_the_short_waves_and_shelter_all_alike() {
+    let ice = SeaIce { cover: 1.0, floe_m: 0.1, width_m: 1e4 };
+    let wind_sea = WindSea::Height { significant_m: 2.0, peak_period_s: Some(7.0), gamma: None };
+    let settings = SeaSettings { wind_sea, ice: Some(ice), ..SeaSettings::default() };
+    let mut sea = TestSea::new(settings, 2, blowing(15.0, 250.0));
+    // The spectrum's integral with the law of Meylan et al., step by step in frequency.
+    let (mut whole, mut left) = (0.0, 0.0);
+    for i in 300..6000 {
+        let x = 1e-3 * f64::from(i);
+        let density = super::spectrum::jonswap_shape(x, 3.3);
+        let hz = x / 7.0;
+        whole += density;
+        left += density * (-1e4 * (2.12e-3 * hz.powi(2) + 4.59e-2 * hz.powi(4))).exp();
+    }
+    let wanted = 2.0 * (left / whole).sqrt();
+    let s = sea.statistics(0.0);
+    assert!((s.significant_height_m / wanted - 1.0).abs() < 0.01 && wanted < 1.4, "{s:?} {wanted}");
+    assert!(s.peak_period_s > 7.05 && s.mean_square_slope < 2e-3 && s.whitecap_share == 0.0, "{s:?}");
+    let (mean, found) = heights(&sea.surface(70.0), DVec2::ZERO, 8000.0, 120);
+    assert!((found / wanted - 1.0).abs() < 0.01 && mean.abs() < 5e-3, "{found} {wanted} {mean}");
+
+    let mut open = TestSea::of(2.0, 7.0, 4000.0, 2);
+    let surface = open.surface(70.0);
+    let harbour = WaterBody { lake: None, wave_share: 0.3 };
+    let (mut squares, mut sum, mut worst) = (0.0, 0.0, 0.0f64);
+    for i in 0..20_000 {
+        let point = surface.within(&harbour, DVec2::new(37.0 * f64::from(i % 150), 61.0 * f64::from(i / 150)), 0.0);
+        squares += point.height_m.powi(2);
+        sum += point.height_m;
+        worst = worst.max(point.height_error_m);
+    }
+    let (found, mean) = (4.0 * (squares / 2e4).sqrt(), sum / 2e4);
+    assert!((found / 0.6 - 1.0).abs() < 0.02 && mean.abs() < 3e-3 && worst < 2e-3, "{found} {mean} {worst}");
+    let lake = surface.within(&WaterBody { lake: Some([50.0, 4.0]), wave_share: 0.0 }, DVec2::ONE, 0.0);
+    assert_eq!((lake.height_m, lake.depth_m, lake.normal, lake.foam), (50.0, 4.0, DVec3::Z, 0.0));
 }
 
 #[test]

@@ -11,9 +11,10 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::{
-    bins::{Bins, LOWEST_RAD_S, MAX_SYSTEMS},
+    bins::{Bins, LOWEST_RAD_S, MAX_SYSTEMS, wrapped},
     dispersion::{angular_frequency, group_speed_m_s},
     fft::{Complex, SIDE, Transform},
+    mode::SeaMode,
     turn::{fraction, sin_cos},
 };
 use crate::{
@@ -202,6 +203,18 @@ impl WaveTile {
         }
     }
 
+    /// Returns all waves.
+    pub fn modes(&self) -> impl Iterator<Item = SeaMode> + '_ {
+        self.modes.iter().flat_map(|mode| {
+            let k_per_m = self.rings[(mode.x * mode.x + mode.y * mode.y) as usize].k_per_m;
+            [0, 1].map(|i| SeaMode {
+                k_per_m,
+                direction: wrapped(mode.direction + i as f64 * PI),
+                variance_m2: 0.5 * mode.amplitudes_m[i] * mode.amplitudes_m[i],
+            })
+        })
+    }
+
     /// Multiplies the variance of all waves by a factor.
     pub fn strengthen(&mut self, factor: f64) {
         let root = factor.sqrt();
@@ -225,7 +238,7 @@ impl WaveTile {
             // From a density over frequency to one over wave vectors: dw/dk over the circle's k dk dtheta.
             let into = share * group_speed_m_s(ring.k_per_m, depth_m) / ring.k_per_m;
             for (s, system) in bins.systems.iter().enumerate() {
-                ring.densities[s] = into * bins.density(s, w);
+                ring.densities[s] = into * bins.density(s, w, ring.k_per_m);
                 ring.betas[s] = system.beta(w);
             }
         }

@@ -1,5 +1,7 @@
 //! Sine and cosine of angles in turns: fast, and with the same bits on every machine.
 
+use glam::Vec4;
+
 /// Returns `x` minus the nearest whole number, within \[-0.5, 0.5\]. `x` must be within 2^51.
 #[inline(always)]
 pub(super) fn fraction(x: f64) -> f64 {
@@ -33,9 +35,44 @@ pub(super) fn sin_cos(turns: f64) -> (f64, f64) {
     (sine(folded.copysign(u)), sine(0.25 - size))
 }
 
+/// Returns the sine of 2 pi `quarter`, within \[-0.25, 0.25\]: the polynomial of power 9 with the least error, 4e-9
+/// before rounding.
+#[inline(always)]
+fn sine_four(quarter: Vec4) -> Vec4 {
+    let z = quarter * quarter;
+    let [a, b, c, d, e] = SINE_FOUR.map(Vec4::splat);
+    quarter * (a + z * (b + z * (c + z * (d + z * e))))
+}
+
+/// Coefficients of [`sine_four`].
+const SINE_FOUR: [f32; 5] = [6.283_185, -41.341_656, 81.601_006, -76.549_78, 39.536_72];
+
+/// Returns the sines and cosines of four angles within \[-0.5, 0.5\] turns, within 3e-7. As [`sin_cos`], it gives the
+/// same bits on every machine.
+#[inline(always)]
+pub(super) fn sin_cos_four(turns: Vec4) -> (Vec4, Vec4) {
+    let size = turns.abs();
+    let folded = size.min(Vec4::splat(0.5) - size);
+    (sine_four(folded.copysign(turns)), sine_four(Vec4::splat(0.25) - size))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn four_turns_are_those_of_the_library() {
+        for i in -25_000..25_000 {
+            let turns = Vec4::new(0.0, 1.0, 2.0, 3.0) * 5e-6 + Vec4::splat(2e-5 * i as f32);
+            let turns = turns.clamp(Vec4::splat(-0.5), Vec4::splat(0.5));
+            let (sin, cos) = sin_cos_four(turns);
+            for l in 0..4 {
+                let (s, c) = libm::sincos(std::f64::consts::TAU * f64::from(turns[l]));
+                let off = (f64::from(sin[l]) - s).abs().max((f64::from(cos[l]) - c).abs());
+                assert!(off < 3e-7, "{}: {off}", turns[l]);
+            }
+        }
+    }
 
     #[test]
     fn all_turns_are_those_of_the_library() {

@@ -1,7 +1,9 @@
 //! Optics of sea water: index, reflectance of flat and rough surfaces, attenuation by water type, scattering.
 
+use serde::{Deserialize, Serialize};
+
 /// Optical water types of Jerlov (1976), from the clearest ocean to the most turbid coast.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WaterType {
     /// Ocean I: the clearest.
     I,
@@ -22,6 +24,10 @@ pub enum WaterType {
 }
 
 impl WaterType {
+    /// All types, from clear to turbid.
+    pub const ALL: [Self; 8] =
+        [Self::I, Self::IB, Self::II, Self::III, Self::Coast1, Self::Coast3, Self::Coast5, Self::Coast7];
+
     /// Returns the diffuse attenuation of downward light, 1/m, at 450, 550 and 650 nm (Jerlov 1976; Solonenko and
     /// Mobley 2015, table 3).
     pub fn diffuse_attenuation_per_m(self) -> [f64; 3] {

@@ -283,7 +283,7 @@ impl World {
     }
 
     /// Returns the place on the map of a position, m east and north of the world's origin, in its local frame.
-    fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
+    pub fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
         let o = &self.frame.origin;
         match self.frame.kind {

@@ -7,7 +7,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
+    query::*, radiance::*, rain::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
     texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
@@ -141,6 +141,16 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_get_flash_light", "context", false, |h| unsafe {
             wk_context_get_flash_light(h.cast(), null(), 0.0, 0.0, null_mut())
+        }),
+        case("wk_context_set_sea", "context", false, |h| unsafe { wk_context_set_sea(h.cast(), null()) }),
+        case("wk_context_set_sea_regions", "context", false, |h| unsafe {
+            wk_context_set_sea_regions(h.cast(), null(), 0, 0)
+        }),
+        case("wk_context_get_sea_at", "context", false, |h| unsafe {
+            wk_context_get_sea_at(h.cast(), null(), 0, 0, 0.0, 0.0, null_mut(), 0)
+        }),
+        case("wk_context_get_sea_state", "context", false, |h| unsafe {
+            wk_context_get_sea_state(h.cast(), 0.0, null_mut())
         }),
         case("wk_context_set_stars", "context", false, |h| unsafe { wk_context_set_stars(h.cast(), null()) }),
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),

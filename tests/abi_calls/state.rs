@@ -9,7 +9,7 @@ use std::{
 
 use welkin::capi::{
     area::*, cloud_map::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*,
-    lightning::*, query::*, rain::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
+    lightning::*, query::*, rain::*, sea::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
     wind_field::*, wind_grid::*,
 };
 
@@ -158,6 +158,38 @@ unsafe fn set_shelters(context: *mut wk_context) {
     ok(unsafe { wk_context_set_shelters(context, shelters.as_ptr(), 2, size_of::<wk_shelter>() as u32) });
 }
 
+unsafe fn set_sea(context: *mut wk_context) {
+    let swells = [wk_sea_swell { height_m: 1.5, period_s: 11.0, spread_deg: 8.0, ..init("wk_sea_swell") }];
+    let waves = [wk_sea_wave { height_m: 0.5, period_s: 7.0, phase_deg: 90.0, ..init("wk_sea_wave") }];
+    let sea = wk_sea {
+        has: WK_SEA_HAS_BEAUFORT | WK_SEA_HAS_FETCH | WK_SEA_HAS_SWELLS | WK_SEA_HAS_CLARITY | WK_SEA_HAS_ICE,
+        flags: WK_SEA_WITHOUT_WHITECAPS | WK_SEA_ONLY_IN_REGIONS,
+        level_m: 0.5,
+        depth_m: 30.0,
+        tide_amplitude_m: 1.25,
+        fetch_m: 8e4,
+        beaufort: 5.5,
+        clarity_percent: 77.5,
+        ice_cover: 0.25,
+        swells: swells.as_ptr(),
+        swell_count: 1,
+        waves: waves.as_ptr(),
+        wave_count: 1,
+        ..init("wk_sea")
+    };
+    ok(unsafe { wk_context_set_sea(context, &sea) });
+}
+
+unsafe fn set_sea_regions(context: *mut wk_context) {
+    let corners = [[-8.0, -20.0], [8.0, -20.0], [0.0, 25.0]];
+    let region = wk_sea_region { corners_m: corners.as_ptr(), corner_count: 3, ..init("wk_sea_region") };
+    let regions = [
+        wk_sea_region { velocity_m_s: [3.0, -4.0], turn_deg_s: 0.5, ..region },
+        wk_sea_region { kind: WK_SEA_REGION_LAKE, level_m: 31.5, wave_share: 0.25, ..region },
+    ];
+    ok(unsafe { wk_context_set_sea_regions(context, regions.as_ptr(), 2, size_of::<wk_sea_region>() as u32) });
+}
+
 unsafe fn set_stars(context: *mut wk_context) {
     let turn = [0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let flags = WK_STARS_TURNED | WK_STARS_NO_PLANETS;
@@ -221,11 +253,11 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..21].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..23].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 22] = [
+const SETTERS: [(&str, Set); 24] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_cloud_map", set_cloud_map),
     ("wk_context_set_cloud_model", set_cloud_model),
@@ -238,6 +270,8 @@ const SETTERS: [(&str, Set); 22] = [
     ("wk_context_set_moon", set_moon),
     ("wk_context_set_planet", set_planet),
     ("wk_context_set_rain_areas", set_rain_areas),
+    ("wk_context_set_sea", set_sea),
+    ("wk_context_set_sea_regions", set_sea_regions),
     ("wk_context_set_shelters", set_shelters),
     ("wk_context_set_stars", set_stars),
     ("wk_context_set_sun", set_sun),

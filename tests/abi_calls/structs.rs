@@ -9,8 +9,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*,
-    plan::*, query::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*,
+    plan::*, query::*, rain::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
+    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*,
     windscreen::*,
 };
 
@@ -144,6 +144,20 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_flash_light", "out_light", false, move |p| unsafe {
             wk_context_get_flash_light(context, &ORIGIN, 0.0, 0.0, p.cast())
         }),
+        case("wk_sea", "sea", true, move |p| unsafe { wk_context_set_sea(context, p.cast()) }),
+        case("wk_sea_swell", "sea.swells[0]", true, move |p| {
+            let (swells, swell_stride) = (p.cast(), 2 << 20);
+            let sea = wk_sea { has: WK_SEA_HAS_SWELLS, swells, swell_count: 1, swell_stride, ..init("wk_sea") };
+            unsafe { wk_context_set_sea(context, &sea) }
+        }),
+        case("wk_sea_wave", "sea.waves[0]", true, move |p| {
+            let sea = wk_sea { waves: p.cast(), wave_count: 1, wave_stride: 2 << 20, ..init("wk_sea") };
+            unsafe { wk_context_set_sea(context, &sea) }
+        }),
+        case("wk_sea_region", "regions[0]", true, move |p| unsafe {
+            wk_context_set_sea_regions(context, p.cast(), 1, 1 << 24)
+        }),
+        case("wk_sea_state", "out_state", false, move |p| unsafe { wk_context_get_sea_state(context, 0.0, p.cast()) }),
         case("wk_stars", "stars", true, move |p| unsafe { wk_context_set_stars(context, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),
         case("wk_sky_settings", "wk_sky_settings", true, move |p| {
@@ -229,6 +243,7 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_cell",
     "wk_terrain_point",
     "wk_lying_snow",
+    "wk_sea_point",
     "wk_segment",
     "wk_between",
     "wk_sky_radiance",

@@ -45,6 +45,15 @@ int main()
         if (context.create(device) != WK_OK || context.build_sky() != WK_OK || view.create(context) != WK_OK) return 3;
         if (context.update(1.0) != WK_OK || view.record(frame, WK_STAGE_PREPARE) != WK_OK) return 4;
         if (!fails(device)) return 5;
+        wk_sea sea = WK_SEA_INIT;
+        wk_sea_state state = WK_SEA_STATE_INIT;
+        wk_sea_point points[2];
+        const double corners_m[2][3] = {{0.0, 0.0, 0.0}, {12.0, 3.0, 0.0}};
+        sea.has = WK_SEA_HAS_SEA_STATE;
+        sea.sea_state = 4;
+        if (context.set_sea(&sea) != WK_OK || context.set_sea_regions(nullptr, 0) != WK_OK) return 7;
+        if (context.get_sea_state(2.0, state) != WK_OK || context.get_sea_at(corners_m, 2, 2.0, 0.0, points) != WK_OK) return 8;
+        if (!points[1].has_water || points[0].height_m == points[1].height_m || !(state.significant_height_m > 1.8)) return 9;
     }
     /* Everything ended in the right order, or the device would still be alive. */
     if (wk_device_get_status(raw) != WK_ERROR_BAD_HANDLE) return 6;

@@ -9,7 +9,7 @@ use welkin::sky::probe::{Probe, Question};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 use welkin::{Error, Result, Status};
 
-use crate::{clouds, flow, fog, lightning, rain, sky, snow, soil};
+use crate::{clouds, flow, fog, lightning, rain, sea, sky, snow, soil};
 
 /// Usage text with every question and option.
 pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
@@ -28,6 +28,8 @@ pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--mod
                      probe cavity --re R --n N\n       \
                      probe taylor-green --n N --cfl C [--scheme NAME]\n       \
                      probe wind --scene FILE < places.csv\n       \
+                     probe sea --hs METRES --tp SECONDS --depth METRES [--seed S]\n       \
+                     probe sea-at --hs METRES --tp SECONDS --depth METRES [--seed S] < places.csv\n       \
                      probe --help | --version";
 
 /// Options by name, each with its value.
@@ -145,6 +147,15 @@ fn wind(rest: impl Iterator<Item = String>) -> Result<String> {
     flow::wind(&text, &read_input()?)
 }
 
+/// Answers `sea`, or `sea-at` with the places of the standard input.
+fn sea(is_at: bool, rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--hs", "--tp", "--depth", "--seed"], rest)?;
+    let [hs_m, tp_s] = [options.any_number("--hs")?, options.any_number("--tp")?];
+    let depth_m = options.any_number("--depth")?;
+    let seed = options.get("--seed").map_or(Ok(0), |_| options.count("--seed"))?.into();
+    if is_at { sea::surface(hs_m, tp_s, depth_m, seed, &read_input()?) } else { sea::modes(hs_m, tp_s, depth_m, seed) }
+}
+
 /// Answers `soil-sinkage`; its warnings go to standard error.
 fn sinkages(input: &str) -> Result<String> {
     let (answers, warnings) = soil::sinkages(input)?;
@@ -178,6 +189,8 @@ pub fn run(mut arguments: impl Iterator<Item = String>) -> Result<String> {
         "lightning" => lightning(arguments),
         "cavity" => cavity(arguments),
         "wind" => wind(arguments),
+        "sea" => sea(false, arguments),
+        "sea-at" => sea(true, arguments),
         "taylor-green" => taylor_green(arguments),
         other if other.starts_with('-') => Err(usage(&format!("unknown option `{other}`"))),
         other => Err(usage(&format!("unknown question `{other}`"))),

@@ -8,6 +8,7 @@ pub mod fog;
 pub mod lightning;
 pub mod rain;
 pub mod scene;
+pub mod sea;
 pub mod sky;
 pub mod snow;
 pub mod soil;

@@ -18,6 +18,8 @@
 //! probe cavity --re R --n N
 //! probe taylor-green --n N --cfl C [--scheme semi-lagrangian|maccormack|reflection]
 //! probe wind --scene FILE
+//! probe sea --hs METRES --tp SECONDS --depth METRES [--seed S]
+//! probe sea-at --hs METRES --tp SECONDS --depth METRES [--seed S]
 //! ```
 //! Wrong input: prints line and column on standard error and nothing on standard output, with exit code 2.
 

@@ -9,7 +9,7 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     sky::probe::{Probe, Question},
 };
-use welkin_probe::{clouds, flow, fog, lightning, rain, sky, snow, soil};
+use welkin_probe::{clouds, flow, fog, lightning, rain, sea, sky, snow, soil};
 use welkin_support::coarse_sky::coarse_sky;
 
 fn device() -> Arc<Device> {
@@ -233,4 +233,30 @@ fn soil_answers_as_its_laws_and_names_faults() {
     let e = soil::heaps("volume_m3,repose_deg,cell_m\n1,35,1\n").unwrap_err().to_string();
     assert!(e.starts_with("line 2, column 1: cell_m must be in [0.0069, 0.3697] m"), "{e}");
     assert!(soil::walls("c_kpa,phi_deg\n1,2\n").unwrap_err().to_string().contains("no column density_kg_m3"));
+}
+
+#[test]
+fn seas_are_as_high_as_asked_and_move_as_their_waves() {
+    let modes = sea::modes(2.0, 7.0, 40.0, 3).unwrap();
+    let variances = column(&modes, "variance");
+    let (k, direction) = (column(&modes, "k"), column(&modes, "direction"));
+    assert!((4.0 * variances.iter().sum::<f64>().sqrt() / 2.0 - 1.0).abs() < 0.006, "{}", variances.len());
+    assert!(direction.iter().all(|d| (-3.2..3.2).contains(d)) && k.iter().all(|k| *k > 0.0));
+    let out = sea::surface(2.0, 7.0, 40.0, 3, "x,y,t\n10,20,1000\n10,20,1000.01\n10.01,20,1000\n").unwrap();
+    let of = |name| column(&out, name);
+    let (height, w) = (of("height_m"), of("w"));
+    let (slope_x, slope_y) = (-of("nx")[0] / of("nz")[0], -of("ny")[0] / of("nz")[0]);
+    assert!(((height[2] - height[0]) / 0.01 - slope_x).abs() < 0.02, "{out}");
+    // The surface rises by what the water does less what flows along the slope.
+    let rate = w[0] - of("u")[0] * slope_x - of("v")[0] * slope_y;
+    assert!(((height[1] - height[0]) / 0.01 - rate).abs() < 0.02, "{out}");
+    for (hs, tp, depth, name) in
+        [(5.0, 4.0, 40.0, "--hs"), (2.0, 0.1, 40.0, "--tp"), (2.0, 7.0, f64::NAN, "--depth"), (-1.0, 7.0, 40.0, "--hs")]
+    {
+        let e = sea::modes(hs, tp, depth, 0).unwrap_err();
+        assert_eq!(e.status, Status::InvalidArgument);
+        assert!(e.to_string().starts_with(name), "{e}");
+    }
+    let e = sea::surface(2.0, 7.0, 40.0, 0, "x,y,t\n0,0,nan\n").unwrap_err();
+    assert!(e.to_string().contains("line 2, column 5: t must be a number"), "{e}");
 }

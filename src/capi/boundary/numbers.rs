@@ -168,6 +168,16 @@ pub const WK_STRUCT_TYPE_CLOUD_SHADOWS: wk_struct_type = 85;
 pub const WK_STRUCT_TYPE_CLOUD_MAP: wk_struct_type = 86;
 /// wk_metar_options
 pub const WK_STRUCT_TYPE_METAR_OPTIONS: wk_struct_type = 90;
+/// wk_sea
+pub const WK_STRUCT_TYPE_SEA: wk_struct_type = 110;
+/// wk_sea_swell
+pub const WK_STRUCT_TYPE_SEA_SWELL: wk_struct_type = 111;
+/// wk_sea_wave
+pub const WK_STRUCT_TYPE_SEA_WAVE: wk_struct_type = 112;
+/// wk_sea_region
+pub const WK_STRUCT_TYPE_SEA_REGION: wk_struct_type = 113;
+/// wk_sea_state
+pub const WK_STRUCT_TYPE_SEA_STATE: wk_struct_type = 114;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

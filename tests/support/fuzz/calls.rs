@@ -6,7 +6,7 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, report::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
+    query::*, radiance::*, rain::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
     terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
     windscreen::*,
 };
@@ -467,6 +467,49 @@ pub const CALLS: &[(&str, Call)] = &[
         let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
         let exposure = if d.one_in(4) { d.float() } else { d.unit() };
         get("wk_flash_light", |p| unsafe { wk_context_get_flash_light(context, &at, time, exposure, p.cast()) })
+    }),
+    ("wk_context_set_sea", |d, w| {
+        let mut sea = Struct::random(d, "wk_sea", 12);
+        sea.set("has", d.pick(&[0, 0x2, 0x6, 0x1f, 0x81, 0x7c0, 0x790]));
+        if d.one_in(2) {
+            let (swells, count) = Struct::random_list(d, "wk_sea_swell", 20);
+            sea.set("swell_count", count);
+            sea.set("swell_stride", swells.stride());
+            sea.set_struct("swells", swells);
+        }
+        if d.one_in(2) {
+            let (mut waves, count) = Struct::random_list(d, "wk_sea_wave", 20);
+            waves.set("period_s", 5.0 * d.unit());
+            sea.set("wave_count", count);
+            sea.set("wave_stride", waves.stride());
+            sea.set_struct("waves", waves);
+        }
+        let sea = if d.one_in(8) { null() } else { sea.ptr().cast_const().cast() };
+        unsafe { wk_context_set_sea(handle(d, &w.contexts), sea) }.into()
+    }),
+    ("wk_context_set_sea_regions", |d, w| {
+        let corners: [[f64; 2]; 4] =
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| c.map(|v| 50.0 * v + 30.0 * d.unit()));
+        let (mut regions, count) = Struct::random_list(d, "wk_sea_region", 20);
+        regions.set("corners_m", corners.as_ptr());
+        regions.set("corner_count", if d.one_in(8) { d.below(5) as u32 } else { 4 });
+        let (context, stride) = (handle(d, &w.contexts), regions.stride());
+        unsafe { wk_context_set_sea_regions(context, regions.ptr().cast(), count.min(1), stride) }.into()
+    }),
+    ("wk_context_get_sea_at", |d, w| {
+        let places: [_; MOST as usize] = std::array::from_fn(|_| position(d));
+        let mut points = room(unsafe { std::mem::zeroed::<wk_sea_point>() });
+        let (context, time, count) = (handle(d, &w.contexts), w.time(d), d.below(MOST as usize + 1) as u32);
+        let shortest = if d.one_in(4) { d.float() } else { 3.0 * d.unit() };
+        let (size, to) = (size_of_element::<wk_sea_point>(d), points.as_mut_ptr());
+        let status = unsafe { wk_context_get_sea_at(context, places.as_ptr(), count, 24, time, shortest, to, size) };
+        let finite = |p: &wk_sea_point| p.height_m.is_finite() && p.normal.iter().all(|v| v.is_finite());
+        let is_whole = points.iter().all(finite);
+        Answer { status, faults: if is_whole { vec![] } else { vec!["a point is not finite".into()] } }
+    }),
+    ("wk_context_get_sea_state", |d, w| {
+        let (context, time) = (handle(d, &w.contexts), w.time(d));
+        get("wk_sea_state", |p| unsafe { wk_context_get_sea_state(context, time, p.cast()) })
     }),
     ("wk_context_set_stars", |d, w| {
         let context = handle(d, &w.contexts);
