@@ -97,6 +97,7 @@ mod particles;
 pub mod plan;
 pub mod planet;
 pub mod rain;
+pub mod regions;
 pub mod scene;
 pub mod sea;
 pub mod sky;

@@ -295,11 +295,12 @@ impl wk_cloud_slab {
     }
 }
 
-/// Gets the conditions at a position and a past or future simulation time. Precipitation is that at the position
-/// itself: it includes the rain areas there (wk_context_set_rain_areas), weighted by their rims, and is zero above the
-/// cloud that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
-/// precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
-/// the weather's: the same everywhere, at the station's height unless they say otherwise.
+/// Gets the conditions at a position and a past or future simulation time, with the weather regions there
+/// (wk_context_set_weather_regions). Precipitation is that at the position itself: it includes the rain areas there
+/// (wk_context_set_rain_areas), weighted by their rims, and is zero above the cloud that it falls from. rain_mm_h and
+/// drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at. precipitation_extinction_per_m, extinction_per_m and
+/// visibility_m include that precipitation. All other fields are those of the station's height unless they say
+/// otherwise.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
 /// forgotten every time before the end of the last change of weather that was over at the last update.

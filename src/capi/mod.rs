@@ -70,6 +70,8 @@ pub mod snow;
 
 pub mod area;
 
+pub mod region;
+
 pub mod wind_grid;
 
 pub mod wind_field;

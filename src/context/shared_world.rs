@@ -259,11 +259,11 @@ impl Context {
         self.world.utc_at(time_s)
     }
 
-    /// Returns the conditions at `position` and a past or future simulation time `time_s`. Precipitation is that at the
-    /// position itself: it includes the rain areas there ([`Context::set_rain_areas`]), weighted by their rims, and is
-    /// zero above the cloud that it falls from. Rain and drizzle are those of [`Context::rain_at`]. The extinction of
-    /// the precipitation, the total extinction and the visibility include it. Everything else is the weather's: the
-    /// same everywhere, at the station's height (each field says so).
+    /// Returns the conditions at `position` and a past or future simulation time `time_s`, with the weather regions
+    /// there ([`Context::set_weather_regions`]). Precipitation is that at the position itself: it includes the rain
+    /// areas there ([`Context::set_rain_areas`]), weighted by their rims, and is zero above the cloud that it falls
+    /// from. Rain and drizzle are those of [`Context::rain_at`]. The extinction of the precipitation, the total
+    /// extinction and the visibility include it. Everything else is that of the station's height (each field says so).
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid, or if the time is not finite, out of range, or

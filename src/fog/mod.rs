@@ -99,5 +99,5 @@ pub use viewpoint::{FogLight, Viewpoint};
 pub use visibility::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m, koschmieder_visibility_m};
 
 pub(crate) use held::HeldFog;
-pub(crate) use of_weather::{LowAir, dim};
+pub(crate) use of_weather::{LowAir, LowMedia, dim};
 pub(crate) use view::FogView;

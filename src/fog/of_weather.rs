@@ -8,7 +8,9 @@ use super::{
     curtains::{CURTAIN_WAVES, Curtains},
     layer::{FogLayer, Law, Patches, Profile},
     model::{FogKind, FogModel},
-    path::layer_depth_above,
+    path::{falling_path, layer_depth_above, layer_path},
+    patterns::patch_mean,
+    queries::NO_LIGHT,
     viewpoint::{FogLight, Viewpoint},
 };
 use crate::{
@@ -66,6 +68,47 @@ impl LowAir {
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn model(&self, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
         Ok(FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?.led_by(self.detour.clone()))
+    }
+
+    /// Returns the media along rays from a place, each alone.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the parameter.
+    pub fn media(&self, view: &Viewpoint) -> Result<LowMedia> {
+        let layer = FogModel::of_weather(self.layer.as_ref(), &FallingLayer::NONE, &NO_LIGHT, view)?;
+        let falling = FogModel::of_weather(None, &self.falling, &NO_LIGHT, view)?;
+        Ok(LowMedia { layer: layer.led_by(self.detour.clone()), falling })
+    }
+}
+
+/// Media of a weather near the ground along rays from a place, each alone.
+pub(crate) struct LowMedia {
+    /// Low layer without precipitation.
+    layer: FogModel,
+    /// Precipitation without the layer.
+    falling: FogModel,
+}
+
+impl LowMedia {
+    /// Returns the optical depths of the layer per channel over the first `range_m` metres along `unit` (east, north,
+    /// up).
+    pub fn layer_depths(&self, unit: DVec3, range_m: f64) -> [f64; 3] {
+        let m = &self.layer;
+        if m.kind == FogKind::Clear || range_m <= 0.0 {
+            return [0.0; 3];
+        }
+        let path = layer_path(m, m.altitude, unit.z.clamp(-1.0, 1.0), range_m);
+        let patches = if m.patch_amount > 0.0 { patch_mean(m, DVec3::ZERO, unit, path.first, path.last) } else { 1.0 };
+        (m.ratio * (path.depth * patches)).to_array()
+    }
+
+    /// Returns the optical depths of the precipitation per channel over the first `range_m` metres along `unit`.
+    pub fn falling_depths(&self, unit: DVec3, range_m: f64) -> [f64; 3] {
+        let m = &self.falling;
+        if m.falling.extinction <= 0.0 || range_m <= 0.0 {
+            return [0.0; 3];
+        }
+        (m.ratio * falling_path(m, m.altitude, unit.z.clamp(-1.0, 1.0), range_m).depth).to_array()
     }
 }
 

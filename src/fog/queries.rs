@@ -27,7 +27,7 @@ pub struct Between {
 }
 
 /// Light for models of which only the extinction is used.
-const NO_LIGHT: FogLight =
+pub(super) const NO_LIGHT: FogLight =
     FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
 
 /// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset`

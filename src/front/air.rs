@@ -83,6 +83,18 @@ impl Context {
         offset: DVec3,
         time_s: f64,
     ) -> Result<[f64; 3]> {
+        let through = match self.depths_through_regions(scene, start, offset, time_s)? {
+            Some(depths) => depths.map(|depth| (-depth).exp()),
+            None => self.through_even_air(scene, start, offset, time_s)?,
+        };
+        let clouds = clouds.map_or(0.0, |clouds| clouds.depth(offset));
+        let left = (-clouds - self.areas_depth(start, offset, time_s, &scene.conditions)?).exp();
+        Ok(through.map(|t| (t * left).min(1.0)))
+    }
+
+    /// Returns the transmittance per channel of air, haze, fog and precipitation as they are at a scene's place, over
+    /// `offset` metres (east, north, up) from there.
+    fn through_even_air(&self, scene: &Scene, start: DVec3, offset: DVec3, time_s: f64) -> Result<[f64; 3]> {
         let distance = offset.length();
         let medium = Medium::of(&scene.planet);
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
@@ -99,9 +111,7 @@ impl Context {
             let fog = low.transmittance(&view, offset)?;
             through = [0, 1, 2].map(|i| through[i] * fog[i]);
         }
-        let clouds = clouds.map_or(0.0, |clouds| clouds.depth(offset));
-        let left = (-clouds - self.areas_depth(start, offset, time_s, &scene.conditions)?).exp();
-        Ok(through.map(|t| (t * left).min(1.0)))
+        Ok(through)
     }
 
     /// Returns the sky's light on surfaces of any slope at `position` and simulation time `time_s`: nine spherical

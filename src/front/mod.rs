@@ -6,6 +6,7 @@ mod clouds;
 mod ground;
 mod lightning;
 mod rain;
+mod regions;
 mod sea;
 mod sky;
 mod snowpack;

@@ -51,13 +51,15 @@ impl Context {
     }
 
     /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away,
-    /// (east, north, up) of the first: the mean over their curtains. It is negative where the areas have less rain than
-    /// the weather.
+    /// (east, north, up) of the first: the mean over their curtains. It is negative where they thin the weather's rain,
+    /// which is that outside all weather regions.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {
             return Ok(0.0);
         }
+        let outside = (!over.weather_regions.is_empty()).then(|| over.known(time_s));
+        let c = outside.as_ref().unwrap_or(c);
         let local = world.frame.frame_at(position);
         let field = AreaField::new(
             over.shafts_at(time_s, c)?,

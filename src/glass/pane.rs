@@ -71,7 +71,8 @@ impl PaneAt {
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
         let (normal, air) = (to_enu * self.out, to_enu * self.air_m_s);
         let known_s = now.time_s.max(over.timeline().known_from_s());
-        let weathers = over.wind.at(known_s).velocity_m_s().extend(0.0);
+        let outside = || over.wind.at(known_s).velocity_m_s().extend(0.0);
+        let weathers = over.carrying_at(self.origin, known_s).unwrap_or_else(|_| outside());
         let wind = now.wind_about(self.at([0.5; 2]), weathers);
         let middles = std::array::from_fn(|i| (i as f64 + 0.5) / SIZES as f64);
         let mut drops = sizes.diameters(Weight::Water, SMALLEST_MM, middles).map(|d| {

@@ -90,7 +90,7 @@ fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, scree
     if !now.is_sheltered() {
         return Ok((Reach::ALL, None));
     }
-    let known = now.weather.falling_at(now.eye, now.time_s, now.weather.known(now.time_s));
+    let known = now.weather.falling_at(now.eye, now.time_s, now.weather.weather_at(now.eye, now.time_s));
     let sizes = DropSizes::new(&known.precipitation, factor_in(&known.air, now.scene.place.altitude_m));
     let pane = PaneAt::new(&frame.camera, plane, screen);
     let drops = pane.drops(now, &sizes);
@@ -129,7 +129,7 @@ impl DrawnEffect for GlassView {
             camera: &frame.camera,
             up: now.scene.world_to_enu.transpose().z_axis,
             altitude_m: now.scene.place.altitude_m,
-            weather: &|t| now.weather.falling_at(now.eye, t, now.weather.known(t)),
+            weather: &|t| now.weather.falling_at(now.eye, t, now.weather.weather_at(now.eye, t)),
             reach: &|plane, screen| reached(now, frame, plane, screen),
             cut: frame.is_pure(),
         };

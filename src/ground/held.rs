@@ -10,7 +10,7 @@ use super::{
     host::{GroundCell, HostGround},
     saved::SavedGround,
     seen::GroundSeen,
-    state::{GroundModel, GroundState, GroundStep},
+    state::{GroundModel, GroundState, GroundStep, forcing_from},
     terrain::CellWater,
     texture::TerrainTextures,
     tiled::{Changed, SavedTiles, TiledWater},
@@ -224,13 +224,13 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover at a place. In a rain area the ground is at least as wet as the steady rain there would keep
-    /// it.
+    /// Returns the cover at a place. In a rain area or a weather region the ground is at least as wet as the steady rain
+    /// there would keep it.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
-        let weather = world.timeline.at(world.time_s);
+        let weather = world.over().weather_at(position, world.time_s);
         let here = world.over().at_place(position, world.time_s, weather).precipitation;
-        if here == weather.precipitation {
+        if here == world.timeline.at(world.time_s).precipitation {
             return cover;
         }
         let kept = cover_under_rain(&here, weather.air.relative_humidity);
@@ -279,7 +279,7 @@ impl HeldGround {
                 surface_class,
             });
         }
-        let reported = world.timeline.at(world.time_s).surface;
+        let reported = world.over().weather_at(position, world.time_s).surface;
         let cover = self.cover_at(world, position, reported);
         let kept = GroundWater::of_cover(&cover);
         let water = match self.water(world) {
@@ -401,7 +401,14 @@ impl HeldEffect for HeldGround {
             let (before, from_s, seconds) = (state.water(), state.time_s, end_s - state.time_s);
             let c = world.timeline.at(0.5 * (from_s + end_s));
             let forcing = forcing(world, &c, &state);
-            let step = GroundStep { from_s, seconds, conditions: &c, forcing: &forcing, water: &before };
+            let step = GroundStep {
+                from_s,
+                seconds,
+                conditions: &c,
+                forcing: &forcing,
+                sunlight_w_m2: state.sunlight_w_m2,
+                water: &before,
+            };
             if !self.step_tiles(world, &step, budget)? {
                 return Ok(Status::Pending);
             }
@@ -453,9 +460,7 @@ impl HeldEffect for HeldGround {
 /// Returns the liquid (rain or meltwater) and the evaporation that act on the ground from the state's time on, in the
 /// weather `c`.
 fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
-    let forcing = Forcing::of(c, state.sunlight_w_m2);
-    let snow = world.snow.as_ref().and_then(|snow| snow.meltwater(state.time_s));
-    snow.map_or(forcing, |water| forcing.under_snow(c, water))
+    forcing_from(world, c, state.sunlight_w_m2, state.time_s)
 }
 
 /// Returns the snow on level, open ground: the simulated snow, else snow of the reported depth that is some days old.

@@ -122,15 +122,7 @@ impl HeldGround {
         if !tiled.is_of(terrain) {
             return Ok(true);
         }
-        let step = TiledStep {
-            world,
-            terrain,
-            middle_s: step.from_s + 0.5 * step.seconds,
-            seconds: step.seconds,
-            conditions: step.conditions,
-            forcing: step.forcing,
-            water: step.water,
-        };
+        let step = TiledStep { world, terrain, ground: *step };
         let stepped = tiled.step(&step, Some(budget))?;
         self.revision += u64::from(stepped.is_some_and(|s| s.changes));
         Ok(stepped.is_some())

@@ -103,7 +103,9 @@ impl HostGround {
 
     /// Advances the water by the step `step` of level, open ground. Returns whether it may have changed.
     pub fn advance(&mut self, world: &World, step: &GroundStep<'_>) -> Result<bool> {
-        let GroundStep { from_s, seconds, conditions, forcing, water } = *step;
+        let GroundStep { from_s, seconds, water, .. } = *step;
+        let local = step.in_regions(world, self.rain.whole.middle);
+        let (conditions, forcing) = local.as_ref().map_or((step.conditions, step.forcing), |(c, forcing)| (c, forcing));
         let overs = self.rain.overs(world, from_s + 0.5 * seconds, conditions)?;
         let shelters = &world.set.shelters;
         if !self.begun {
@@ -123,7 +125,7 @@ impl HostGround {
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
         // Updated as often as a state is stepped: weather and areas may change at any time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
-        let c = world.timeline.at(slot_s);
+        let c = world.over().weather_at(self.rain.whole.middle, slot_s);
         if self.begun && c.surface.ice == 0.0 && !self.rain.is_iced() {
             return Ok(false);
         }

@@ -62,7 +62,7 @@ pub(super) fn liquid(f: &Falling) -> f64 {
 /// Bounds of some cells of a grid.
 pub(super) struct CellBounds {
     /// Middle of the cells in the host's world, m.
-    middle: DVec3,
+    pub(super) middle: DVec3,
     /// Radius around the middle within which they lie, m.
     reach_m: f64,
     /// Their lowest and highest altitude, m.

@@ -1,5 +1,6 @@
 //! State of the water on level, open ground: its source, and the values that are simulated.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::water::{Forcing, GroundWater, STEP_S};
@@ -76,6 +77,27 @@ pub(super) struct GroundStep<'a> {
     pub conditions: &'a Conditions,
     /// Liquid that falls and water that evaporates in the step.
     pub forcing: &'a Forcing,
+    /// Sunlight on level ground, W/m^2.
+    pub sunlight_w_m2: f64,
     /// Water of level ground at the beginning of the step.
     pub water: &'a GroundWater,
+}
+
+impl GroundStep<'_> {
+    /// Returns the weather and its effect on the ground at a place, if weather regions make them differ there.
+    pub fn in_regions(&self, world: &World, place: DVec3) -> Option<(Conditions, Forcing)> {
+        if world.set.weather_regions.is_empty() {
+            return None;
+        }
+        let c = world.over().in_regions(place, self.from_s + 0.5 * self.seconds, *self.conditions);
+        (c != *self.conditions).then(|| (c, forcing_from(world, &c, self.sunlight_w_m2, self.from_s)))
+    }
+}
+
+/// Returns the liquid that falls and the water that evaporates under a weather, with the meltwater of lying snow in a
+/// step that begins at `from_s`.
+pub(super) fn forcing_from(world: &World, c: &Conditions, sunlight_w_m2: f64, from_s: f64) -> Forcing {
+    let forcing = Forcing::of(c, sunlight_w_m2);
+    let snow = world.snow.as_ref().and_then(|snow| snow.meltwater(from_s));
+    snow.map_or(forcing, |water| forcing.under_snow(c, water))
 }

@@ -110,7 +110,7 @@ pub(crate) fn light_at(
     check_range("exposure_s", exposure_s, 0.0, MOST_EXPOSURE_S, "s")?;
     let storms = Storms { world, held };
     let span = Span { from_s: time_s - exposure_s, until_s: time_s };
-    let extinction_per_m = world.timeline.at(time_s).extinction_per_m;
+    let extinction_per_m = world.over().weather_at(position, time_s).extinction_per_m;
     let (mut sum, mut level, mut towards) = (0.0, 0.0, DVec3::ZERO);
     let begin = Storms::begin_within(span.from_s, span.until_s);
     storms.visit((storms.on_map(position), LIGHT_REACH_M), begin, |flash, by| {

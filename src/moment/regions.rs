@@ -12,9 +12,10 @@ use crate::{
         drops::factor_in,
         sizes::DropSizes,
     },
+    regions::{HeldRegion, RegionsHere},
     scene::WorldFrame,
-    weather::{CloudMap, Conditions, Falling, Timeline, timeline::MAX_TIME_S},
-    wind::{Blowing, Carrying, LayerDrifts, WindOver},
+    weather::{CloudMap, Conditions, Falling, Timeline, WeatherParts, timeline::MAX_TIME_S},
+    wind::{Blowing, Carrying, LayerDrifts, WindOver, up_share},
 };
 
 /// A region with rain of its own, and the displacement of the wind that belongs to it.
@@ -37,6 +38,8 @@ pub(crate) struct WeatherOver<'a> {
     pub world: &'a WorldFrame,
     pub wind: WindOver<'a>,
     pub regions: &'a [Region],
+    /// Regions with a weather of their own.
+    pub weather_regions: &'a [HeldRegion],
     /// The host's map of local cloud cover, if it has set one.
     pub cloud_map: Option<&'a Arc<CloudMap>>,
 }
@@ -50,6 +53,43 @@ impl<'a> WeatherOver<'a> {
     /// Returns the weather at a time outside all regions. Before the first known time it is the weather of that time.
     pub fn known(&self, time_s: f64) -> Conditions {
         self.timeline().at(time_s)
+    }
+
+    /// Returns the weather at a place and time, with the weather regions and without the rain areas there.
+    pub fn weather_at(&self, position: DVec3, time_s: f64) -> Conditions {
+        self.in_regions(position, time_s, self.known(time_s))
+    }
+
+    /// Returns the weather `c` of a time with the parts that weather regions have at a place.
+    pub fn in_regions(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
+        if self.weather_regions.is_empty() {
+            return c;
+        }
+        let here = RegionsHere::new(self.weather_regions, self.world, position, time_s);
+        if here.is_empty() { c } else { here.merged(&c) }
+    }
+
+    /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of a
+    /// weather region is one that has always blown; its displacement is not used: the displacement is the world's at
+    /// every place, so that nothing that moves by it jumps at a border.
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn blowing_at(&self, position: DVec3, time_s: f64) -> Result<(Blowing, f64)> {
+        let world = self.wind_at(time_s)?;
+        if self.weather_regions.is_empty() {
+            return Ok((world, 0.0));
+        }
+        let here = RegionsHere::new(self.weather_regions, self.world, position, time_s);
+        let shares = here.shares(WeatherParts::WIND);
+        let mut mean = world.shared(shares.base);
+        let mut up_m_s = 0.0;
+        for (_, region, share) in here.with_shares(shares) {
+            let wind = &region.conditions.wind;
+            mean = mean.with(&self.wind.wind.steady(wind, time_s).shared(share));
+            up_m_s += wind.up_m_s * share;
+        }
+        Ok((mean, up_m_s))
     }
 
     /// Checks that the weather is known at a time.
@@ -72,6 +112,19 @@ impl<'a> WeatherOver<'a> {
     pub fn carrying_until(&self, time_s: f64) -> Result<Carrying<'a>> {
         self.check_time(time_s)?;
         Ok(self.wind.carrying_until(time_s))
+    }
+
+    /// Returns the wind at 10 m with its gusts that carries what falls past a place, m/s (east, north, up).
+    ///
+    /// # Errors
+    /// As [`WeatherOver::check_time`].
+    pub fn carrying_at(&self, position: DVec3, time_s: f64) -> Result<DVec3> {
+        let (wind, up_m_s) = self.blowing_at(position, time_s)?;
+        if up_m_s == 0.0 {
+            return Ok(wind.velocity_m_s().extend(0.0));
+        }
+        let height_m = self.world.frame_at(position).place.altitude_m - self.known(time_s).air.station_altitude_m;
+        Ok(wind.velocity_m_s().extend(up_m_s * up_share(height_m)))
     }
 
     /// Returns the wind at a time.
@@ -106,6 +159,9 @@ impl<'a> WeatherOver<'a> {
     /// # Errors
     /// As [`WeatherOver::check_time`].
     pub fn shafts_at(self, time_s: f64, c: &Conditions) -> Result<impl Iterator<Item = Shaft> + 'a> {
+        // Shafts must not depend on the place from which they are seen.
+        let outside = (!self.weather_regions.is_empty()).then(|| self.known(time_s));
+        let c = outside.as_ref().unwrap_or(c);
         let wind = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
         let speed = c.wind.speed_m_s();
         let shear = if speed > 0.0 { c.wind.speed_at_height_m_s(CLOUD_WIND_M) / speed } else { 1.0 };

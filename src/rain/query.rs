@@ -94,7 +94,7 @@ impl RainSurface {
 /// rest at the rims.
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
-    let c = world.weather_at(time_s)?;
+    let c = world.weather_at(position, time_s)?;
     let here = world.over().falling_at(position, time_s, c).precipitation;
     let stones = StoneSizes::new(&here, factor_in(&c.air, place.altitude_m));
     Ok((world.over().sizes_at(position, time_s, &c)?, stones, world.carrying_at(position, time_s)?))

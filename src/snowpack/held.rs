@@ -15,6 +15,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
+    regions::RegionsOver,
     surroundings::{Meltwater, TerrainHeights},
     terrain::{Terrain, TileKey},
     weather::snow_cover,
@@ -257,7 +258,8 @@ impl HeldSnow {
         let middle_s = from_s + 0.5 * seconds;
         let c = world.timeline.at(middle_s);
         let f = &c.precipitation;
-        let snows = f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h > 0.0 || !world.set.regions.is_empty();
+        let by_place = !(world.set.regions.is_empty() && world.set.weather_regions.is_empty());
+        let snows = f.snow_mm_h + f.ice_pellets_mm_h + f.hail_mm_h > 0.0 || by_place;
         if !snows && !state.lies_anywhere() {
             state.melted = Meltwater { covered: 0.0, runoff_mm_h: 0.0 };
             self.melts.push((from_s, seconds, state.melted));
@@ -281,15 +283,18 @@ impl HeldSnow {
             let local = over.as_ref().map(|over| over as CellWind<'_>);
             let site = &*site;
             let sunlight_w_m2 = state.sunlight_w_m2;
+            let regions = RegionsOver::new(&world.set.weather_regions, &world.frame, middle_s);
             let falls = |place: [i32; 2], height_m: f64| {
-                let falling = world.over().falling_at(site.place(place, height_m), middle_s, c).precipitation;
-                ColumnForcing::new(&c, &falling, sunlight_w_m2, seconds)
+                let position = site.place(place, height_m);
+                let here = if regions.is_empty() { c } else { regions.weather_at(position, &c) };
+                let falling = world.over().falling_at(position, middle_s, here).precipitation;
+                ColumnForcing::new(&here, &falling, sunlight_w_m2, seconds)
             };
             let mean = DVec2::new(c.wind.east_m_s, c.wind.north_m_s);
             field.step(&SnowStep {
                 seconds,
                 even: &forcing,
-                falls: (!world.set.regions.is_empty()).then_some(&falls as FallsAt<'_>),
+                falls: by_place.then_some(&falls as FallsAt<'_>),
                 settling: &self.settling,
                 wind: FieldWind { mean, local },
                 country: &state.country,

@@ -80,7 +80,7 @@ impl Conditions {
 /// Returns the share of clear sky at `t` between two weathers. It is `independent`, the share that independently placed
 /// layers leave clear, less an excess. At each end the excess is what independent layers would leave clear beyond the
 /// actual share; in between it is interpolated. The result is clamped to the values at the ends.
-fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
+pub(super) fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];
     (independent - mix(less(a), less(b), t)).clamp(ends[0].min(ends[1]), ends[0].max(ends[1]))
@@ -102,7 +102,7 @@ impl Air {
 }
 
 impl AerosolLayer {
-    fn blend(&self, other: &Self, w: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, w: f64) -> Self {
         let q = share(self.extinction_per_m, other.extinction_per_m, w);
         Self {
             extinction_per_m: mix(self.extinction_per_m, other.extinction_per_m, w),
@@ -117,7 +117,7 @@ impl AerosolLayer {
 }
 
 impl GroundLayer {
-    fn blend(&self, other: &Self, w: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, w: f64) -> Self {
         let q = share(self.extinction_per_m, other.extinction_per_m, w);
         Self {
             extinction_per_m: mix(self.extinction_per_m, other.extinction_per_m, w),
@@ -135,7 +135,7 @@ impl GroundLayer {
 }
 
 impl Falling {
-    fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
         let snow_mm_h = mix(self.snow_mm_h, other.snow_mm_h, t);
         // Kinds of snow that comes or goes are weighted by their amounts.
         let kind = |share: fn(&Self) -> f64| {
@@ -184,7 +184,7 @@ impl CloudSlab {
 }
 
 impl CloudLightOverride {
-    fn blend(&self, other: &Self, t: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, t: f64) -> Self {
         let q = share(self.weight, other.weight, t);
         Self {
             weight: mix(self.weight, other.weight, t),
@@ -205,12 +205,13 @@ impl WindProfile {
             wander_deg: mix(self.wander_deg, other.wander_deg, t),
             roughness_length_m: mix(self.roughness_length_m, other.roughness_length_m, t),
             sea_roughness_length_m: mix(self.sea_roughness_length_m, other.sea_roughness_length_m, t),
+            up_m_s: mix(self.up_m_s, other.up_m_s, t),
         }
     }
 }
 
 impl SeaState {
-    fn blend(&self, other: &Self, t: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, t: f64) -> Self {
         let q = share(self.swell_height_m, other.swell_height_m, t);
         Self {
             significant_wave_height_m: mix(self.significant_wave_height_m, other.significant_wave_height_m, t),
@@ -225,7 +226,7 @@ impl SeaState {
 }
 
 impl SurfaceCover {
-    fn blend(&self, other: &Self, t: f64) -> Self {
+    pub(super) fn blend(&self, other: &Self, t: f64) -> Self {
         Self {
             wetness: mix(self.wetness, other.wetness, t),
             puddles: mix(self.puddles, other.puddles, t),

@@ -191,6 +191,9 @@ pub struct WindProfile {
     pub roughness_length_m: f64,
     /// Roughness length of the sea, m (Charnock 1955).
     pub sea_roughness_length_m: f64,
+    /// Upward velocity above 100 m, m/s, which decreases linearly to 0 at the ground; 0 but in weather regions.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub up_m_s: f64,
 }
 
 /// The sea's surface.
@@ -231,9 +234,9 @@ fn whole() -> f64 {
     1.0
 }
 
-/// Whether a share is 0. It is then not saved, because older states, which do not have the field, mean 0.
-fn is_none(share: &f64) -> bool {
-    *share == 0.0
+/// Whether a value is 0, as in states saved before it could be another.
+fn is_none(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// Returns the share of the sky that independently placed layers leave clear (random overlap): the product of 1 -

@@ -21,6 +21,7 @@ mod mix;
 mod model;
 mod overrides;
 mod particles;
+mod parts;
 mod precipitation;
 mod presets;
 mod surface;
@@ -45,6 +46,7 @@ pub use model::{
 };
 pub use overrides::Overrides;
 pub use particles::{humidity_growth, unlimited_visibility_m};
+pub use parts::WeatherParts;
 pub use precipitation::Falling;
 pub(crate) use surface::cover_under_rain;
 pub use surface::{

@@ -71,6 +71,7 @@ pub(super) fn wind_profile(w: &Weather) -> WindProfile {
         wander_deg: w.wind.variable_deg.map_or(0.0, half_range),
         roughness_length_m: roughness,
         sea_roughness_length_m: sea_roughness_length_m(w.wind.speed_m_s),
+        up_m_s: 0.0,
     }
 }
 

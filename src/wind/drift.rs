@@ -32,6 +32,12 @@ impl Wind {
     pub fn blowing(&self, timeline: &Timeline, kept: Drift, t: f64) -> Blowing {
         Walk::new(&self.gusts, timeline, kept, t).blowing(t)
     }
+
+    /// Returns the wind at 10 m at time `t`, s, of a weather that has always held.
+    pub(crate) fn steady(&self, profile: &WindProfile, t: f64) -> Blowing {
+        let stir = stir_of(profile);
+        Walk { gusts: &self.gusts, base: *profile, changes: &[], at: Drift::ZERO, stir }.steady(t).0
+    }
 }
 
 /// Displacement of the air at 10 m at a time.
@@ -56,6 +62,28 @@ pub struct Blowing {
     pub turned_m_s: DVec2,
     /// Velocity that gusts add.
     pub gust_m_s: DVec2,
+}
+
+impl Blowing {
+    /// Returns the wind with its velocities multiplied by a share.
+    pub(crate) fn shared(&self, share: f64) -> Self {
+        Self {
+            drift: self.drift,
+            mean_m_s: self.mean_m_s * share,
+            turned_m_s: self.turned_m_s * share,
+            gust_m_s: self.gust_m_s * share,
+        }
+    }
+
+    /// Returns the wind with the velocities of another one added.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        Self {
+            drift: self.drift,
+            mean_m_s: self.mean_m_s + other.mean_m_s,
+            turned_m_s: self.turned_m_s + other.turned_m_s,
+            gust_m_s: self.gust_m_s + other.gust_m_s,
+        }
+    }
 }
 
 impl Drift {

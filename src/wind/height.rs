@@ -5,6 +5,14 @@ use glam::{DVec2, DVec3};
 use super::drift::Blowing;
 use crate::weather::WindProfile;
 
+/// Height above ground from which on the vertical wind has its full speed, m: the top of the surface layer.
+const UP_WHOLE_M: f64 = 100.0;
+
+/// Returns the share of the vertical wind at a height above ground: none at the ground, all from 100 m on.
+pub(crate) fn up_share(height_m: f64) -> f64 {
+    (height_m / UP_WHOLE_M).clamp(0.0, 1.0)
+}
+
 /// Wind at a height above ground, m/s (east, north, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindAt {
@@ -30,7 +38,8 @@ impl Blowing {
         let speed = profile.speed_m_s();
         let share = DVec2::from_array(profile.relative_at_height(height_m));
         let gusts = (2.0 * share.length()).min(1.0);
-        let level = |v: DVec2| v.extend(0.0);
+        let up_m_s = profile.up_m_s * up_share(height_m);
+        let level = |v: DVec2| v.extend(up_m_s);
         WindAt {
             velocity_m_s: level(share.rotate(self.mean_m_s + self.turned_m_s) + self.gust_m_s * gusts),
             mean_m_s: level(share.rotate(self.mean_m_s)),

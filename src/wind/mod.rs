@@ -28,5 +28,6 @@ pub(crate) use detour::{DETOUR_SIDE, Detour, DetourMap};
 pub use drift::{Blowing, Drift, Wind};
 pub use grid::{MAX_NODES, WindGrid, WindGridKind};
 pub use height::WindAt;
+pub(crate) use height::up_share;
 pub(crate) use layers::{LayerDrift, LayerDrifts, stretch, stretch_toward};
 pub(crate) use volume::WindVolume;

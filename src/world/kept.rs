@@ -31,6 +31,7 @@ struct SceneInputs {
     /// Different in each world and after each change of its weather.
     timeline_revision: u64,
     surroundings_revision: u64,
+    regions_revision: u64,
     utc_at_zero: Utc,
     given_sun: Option<GivenDirection>,
     given_moon: Option<GivenDirection>,
@@ -49,6 +50,7 @@ impl World {
             time_s: self.time_s,
             timeline_revision: self.timeline_revision,
             surroundings_revision: self.surroundings_revision,
+            regions_revision: self.regions_revision,
             utc_at_zero: self.set.utc_at_zero,
             given_sun: self.set.given_sun,
             given_moon: self.set.given_moon,

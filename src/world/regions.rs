@@ -1,4 +1,4 @@
-//! The regions of a world with rain of their own.
+//! The regions of a world: those with rain of their own, and those with a weather of their own.
 
 use glam::DVec3;
 
@@ -10,6 +10,7 @@ use crate::{
         area::{AreaMotion, RainArea},
     },
     moment::Region,
+    regions::{HeldRegion, MAX_WEATHER_REGIONS, WeatherRegion},
     weather::{Timeline, timeline::MAX_TIME_S},
 };
 
@@ -75,5 +76,37 @@ impl World {
             }
         }
         Ok(())
+    }
+
+    /// Replaces the weather regions.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_WEATHER_REGIONS`], or naming the field; the regions then
+    /// stay as they were.
+    pub fn set_weather_regions(&mut self, regions: &[WeatherRegion]) -> Result<()> {
+        if regions.len() > MAX_WEATHER_REGIONS {
+            return Err(Error::range("weather_regions", &format!("at most {MAX_WEATHER_REGIONS}"), regions.len()));
+        }
+        let station_altitude_m = self.timeline.at(self.time_s).air.station_altitude_m;
+        let held = regions.iter().enumerate().map(|(i, region)| {
+            let held = HeldRegion::new(region, station_altitude_m).and_then(|held| {
+                self.frame.place_at("weather_region.center_m", DVec3::from(region.plan.center_m))?;
+                check_range("weather_region.at_s", region.plan.at_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
+                Ok(held)
+            });
+            held.map_err(|e: Error| e.renamed("weather_region", &format!("weather_regions[{i}]")))
+        });
+        self.set.weather_regions = held.collect::<Result<_>>()?;
+        self.regions_revision += 1;
+        Ok(())
+    }
+
+    /// Whether saved weather regions are possible in this world.
+    pub(super) fn are_valid_weathers(&self, regions: &[HeldRegion]) -> bool {
+        let is_place = |center_m: [f64; 3]| self.frame.place_at("center_m", DVec3::from(center_m)).is_ok();
+        regions.len() <= MAX_WEATHER_REGIONS
+            && regions
+                .iter()
+                .all(|held| held.is_valid() && is_place(held.plan.center_m) && held.plan.at_s.abs() <= MAX_TIME_S)
     }
 }

@@ -13,6 +13,7 @@ use crate::{
     almanac::sun::{Utc, sun_position},
     error::{Error, Result, Status, beginning, check_range, shown},
     moment::Region,
+    regions::HeldRegion,
     scene::WorldKind,
     weather::{Timeline, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrift, LayerDrifts},
@@ -44,6 +45,8 @@ pub(crate) struct SavedWorld {
     settings: SavedSettings,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     areas: Vec<Region>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    weather_regions: Vec<HeldRegion>,
 }
 
 /// Creates the error for a faulty saved state. The message is cut, because a forged state could make it long.
@@ -139,6 +142,7 @@ impl World {
             night: _,
             snow: _,
             surroundings_revision: _,
+            regions_revision: _,
         } = self;
         let mut table = toml::Table::new();
         let mut put = |name: &str, value: toml::Value| table.insert(name.into(), value);
@@ -176,6 +180,7 @@ impl World {
             terrain: _,
             tiles: _,
             regions,
+            weather_regions,
             cloud_map,
             host_wind,
             given_sun,
@@ -202,6 +207,7 @@ impl World {
             created,
             settings,
             areas: regions.clone(),
+            weather_regions: weather_regions.clone(),
         })
     }
 
@@ -227,6 +233,9 @@ impl World {
         if !self.are_valid(&saved.areas, &timeline) {
             return Err(parse_error("areas must be as they can be set"));
         }
+        if !self.are_valid_weathers(&saved.weather_regions) {
+            return Err(parse_error("weather_regions must be as they can be set"));
+        }
         let mut beside = saved.settings.checked().map_err(|e| e.found_in("saved state"))?;
         let shelters = std::mem::take(&mut beside.shelters);
         let planet = beside.planet.unwrap_or(self.set.planet);
@@ -236,6 +245,7 @@ impl World {
             terrain: None,
             tiles: None,
             regions: saved.areas,
+            weather_regions: saved.weather_regions,
             cloud_map: beside.cloud_map.take(),
             host_wind: beside.wind_grid.take().map(|grid| self.host_wind(grid)),
             given_sun,
@@ -273,5 +283,6 @@ impl World {
         }
         swap(&mut self.lights, &mut other.beside.lights);
         self.surroundings_revision += 1;
+        self.regions_revision += 1;
     }
 }

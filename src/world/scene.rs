@@ -188,7 +188,8 @@ impl World {
 
     /// Returns the scene of [`World::scene_named`], with the wind if it had to be computed.
     pub(super) fn scene_and_wind(&self, name: &str, position: DVec3, time_s: f64) -> Result<(Scene, Option<Blowing>)> {
-        let conditions = self.weather_at(time_s)?;
+        self.frame.place_at(name, position)?;
+        let conditions = self.weather_at(position, time_s)?;
         let land = self.land(&conditions);
         self.scene_over((name, position), time_s, conditions, &land)
     }

@@ -9,6 +9,7 @@ use crate::{
     error::{Result, check_range},
     moment::Region,
     planet::Planet,
+    regions::HeldRegion,
     surroundings::{Shelter, TerrainHeights},
     terrain::Terrain,
     weather::CloudMap,
@@ -61,6 +62,8 @@ pub(crate) struct Settings {
     /// The host's terrain in tiles, whose heights the host keeps; never together with `terrain`.
     pub tiles: Option<Arc<Terrain>>,
     pub regions: Vec<Region>,
+    /// Regions with a weather of their own.
+    pub weather_regions: Vec<HeldRegion>,
     /// The host's map of local cloud cover.
     pub cloud_map: Option<Arc<CloudMap>>,
     /// The host's wind that varies in space.

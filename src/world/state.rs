@@ -58,6 +58,8 @@ pub(crate) struct World {
     pub(super) couplings: Couplings,
     /// Revision of the rain areas, the static shelters and the map of cloud cover.
     pub surroundings_revision: u64,
+    /// Revision of the weather regions.
+    pub(super) regions_revision: u64,
 }
 
 /// Returns a number that no timeline has had.
@@ -102,6 +104,7 @@ impl World {
                 terrain: None,
                 tiles: None,
                 regions: Vec::new(),
+                weather_regions: Vec::new(),
                 cloud_map: None,
                 host_wind: None,
                 given_sun: None,
@@ -122,6 +125,7 @@ impl World {
             ephemeris: Ephemeris::default(),
             couplings,
             surroundings_revision: 0,
+            regions_revision: 0,
         })
     }
 
@@ -145,29 +149,49 @@ impl World {
         let revision = self.timeline_revision;
         let (kept, kept_layers) = (self.drifted, &self.layers_drifted);
         let wind = WindOver { wind: &self.wind, timeline: &self.timeline, kept, kept_layers, revision };
-        WeatherOver { world: &self.frame, wind, regions: &self.set.regions, cloud_map: self.set.cloud_map.as_ref() }
+        WeatherOver {
+            world: &self.frame,
+            wind,
+            regions: &self.set.regions,
+            weather_regions: &self.set.weather_regions,
+            cloud_map: self.set.cloud_map.as_ref(),
+        }
     }
 
-    /// Returns the weather at a time, with the snow that its wind lifts from the snow lying now.
+    /// Returns the weather at a time outside all regions, with the snow that its wind lifts from the snow lying now.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
-    pub fn weather_at(&self, time_s: f64) -> Result<Conditions> {
+    pub fn weather_outside(&self, time_s: f64) -> Result<Conditions> {
         self.over().check_time(time_s)?;
-        let mut c = self.timeline.at(time_s);
+        Ok(self.with_lifted_snow(self.timeline.at(time_s)))
+    }
+
+    /// Returns the weather at a place and time, with the weather regions there and the snow that the wind lifts from the
+    /// snow lying now, without the rain areas. The position must be a place.
+    ///
+    /// # Errors
+    /// As [`World::weather_outside`].
+    pub fn weather_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
+        self.over().check_time(time_s)?;
+        Ok(self.with_lifted_snow(self.over().weather_at(position, time_s)))
+    }
+
+    /// Returns a weather with the snow that its wind lifts from the snow lying now.
+    fn with_lifted_snow(&self, mut c: Conditions) -> Conditions {
         if let Some(snow) = &self.snow {
             lift_snow(&mut c, snow.threshold_m_s, snow.cover);
         }
-        Ok(c)
+        c
     }
 
-    /// Returns the weather at a time with the precipitation at a place.
+    /// Returns the weather at a place and time with the precipitation there.
     ///
     /// # Errors
     /// As [`World::weather_at`], and [`crate::Status::InvalidArgument`] for a position that is not a place.
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.frame.place_at("position", position)?;
-        Ok(self.over().falling_at(position, time_s, self.weather_at(time_s)?))
+        Ok(self.over().falling_at(position, time_s, self.weather_at(position, time_s)?))
     }
 
     /// Sets the map of cloud cover, which replaces the earlier one.

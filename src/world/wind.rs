@@ -81,9 +81,9 @@ impl World {
     /// As [`World::conditions_at`].
     pub fn wind_at(&self, position: DVec3, time_s: f64) -> Result<WindAt> {
         let place = self.frame.place_at("position", position)?.place;
-        let conditions = self.weather_at(time_s)?;
+        let conditions = self.weather_at(position, time_s)?;
         let height_m = place.altitude_m - conditions.air.station_altitude_m;
-        let wind = self.over().wind.at(time_s).at_height(&conditions.wind, height_m);
+        let wind = self.over().blowing_at(position, time_s)?.0.at_height(&conditions.wind, height_m);
         let Some(volume) = self.wind_volume(time_s) else { return Ok(wind) };
         let Some(found) = volume.at(volume.cells_at(position)) else { return Ok(wind) };
         let (own, rest) = (found.truncate(), 1.0 - found.w);
@@ -100,7 +100,7 @@ impl World {
     /// # Errors
     /// As [`World::weather_at`].
     pub fn carrying_at(&self, position: DVec3, time_s: f64) -> Result<DVec3> {
-        let weathers = self.over().carrying_until(time_s)?.velocity_m_s();
+        let weathers = self.over().carrying_at(position, time_s)?;
         let about = self.wind_volume(time_s).and_then(|volume| volume.wind(position, weathers));
         Ok(about.unwrap_or(weathers))
     }

@@ -7,8 +7,9 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*, terrain::*,
-    texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    query::*, radiance::*, rain::*, region::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
+    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
+    windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -86,6 +87,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         }),
         case("wk_context_set_rain_areas", "context", false, |h| unsafe {
             wk_context_set_rain_areas(h.cast(), null(), 0, 0)
+        }),
+        case("wk_context_set_weather_regions", "context", false, |h| unsafe {
+            wk_context_set_weather_regions(h.cast(), null(), 0, 0)
         }),
         case("wk_context_set_shelters", "context", false, |h| unsafe {
             wk_context_set_shelters(h.cast(), null(), 0, 0)

@@ -16,6 +16,7 @@ mod plan;
 mod planets;
 mod prepare;
 mod queries;
+mod regions;
 mod sea;
 mod shelters;
 mod sky;

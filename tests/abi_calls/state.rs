@@ -9,8 +9,8 @@ use std::{
 
 use welkin::capi::{
     area::*, cloud_map::*, clouds::*, conditions::*, context::*, fog_law::*, ground::*, ground_grid::*, light::*,
-    lightning::*, query::*, rain::*, sea::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*, wind::*,
-    wind_field::*, wind_grid::*,
+    lightning::*, query::*, rain::*, region::*, sea::*, stars::*, status::*, timeline::*, weather::*, weather_kinds::*,
+    wind::*, wind_field::*, wind_grid::*,
 };
 
 use super::world::{World, init, message, update};
@@ -147,6 +147,11 @@ unsafe fn set_rain_areas(context: *mut wk_context) {
     ok(unsafe { wk_context_set_rain_areas(context, &area, 1, size_of::<wk_rain_area>() as u32) });
 }
 
+unsafe fn set_weather_regions(context: *mut wk_context) {
+    let region = wk_weather_region { has: WK_WEATHER_PART_WIND, ..init("wk_weather_region") };
+    ok(unsafe { wk_context_set_weather_regions(context, &region, 1, size_of::<wk_weather_region>() as u32) });
+}
+
 unsafe fn set_shelters(context: *mut wk_context) {
     let mut shape = wk_shelter_shape { plane_count: 1, ..init("wk_shelter_shape") };
     shape.planes[..4].copy_from_slice(&[0.0, 0.6, 0.8, 0.5]);
@@ -253,11 +258,11 @@ unsafe fn set_time(context: *mut wk_context) {
 }
 
 unsafe fn set_all(context: *mut wk_context) {
-    SETTERS[..23].iter().for_each(|(_, set)| unsafe { set(context) });
+    SETTERS[..24].iter().for_each(|(_, set)| unsafe { set(context) });
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 24] = [
+const SETTERS: [(&str, Set); 25] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_cloud_map", set_cloud_map),
     ("wk_context_set_cloud_model", set_cloud_model),
@@ -277,6 +282,7 @@ const SETTERS: [(&str, Set); 24] = [
     ("wk_context_set_sun", set_sun),
     ("wk_context_set_tone_curve", set_tone_curve),
     ("wk_context_set_weather", set_rain),
+    ("wk_context_set_weather_regions", set_weather_regions),
     ("wk_context_set_wind_field", set_wind_field),
     ("wk_context_set_wind_grid", set_wind_grid),
     ("wk_context_trigger_flash", trigger_flash),

@@ -9,9 +9,9 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*,
-    plan::*, query::*, rain::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
-    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*, wind_grid::*,
-    windscreen::*,
+    plan::*, query::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*,
+    surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*,
+    wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -118,6 +118,9 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_rain_area", "areas[0]", true, move |p| unsafe {
             wk_context_set_rain_areas(context, p.cast(), 1, 1 << 24)
+        }),
+        case("wk_weather_region", "regions[0]", true, move |p| unsafe {
+            wk_context_set_weather_regions(context, p.cast(), 1, 1 << 24)
         }),
         case("wk_occluder_map", "maps[0]", true, move |p| unsafe {
             wk_context_set_occluder_maps(context, p.cast(), 1, 1 << 24)

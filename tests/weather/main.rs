@@ -7,6 +7,7 @@ mod host;
 mod logged;
 mod random;
 mod real_reports;
+mod regions;
 mod reports;
 mod sea;
 mod seams;

@@ -128,9 +128,10 @@ pub fn numbers(c: &Conditions, out: &mut Vec<f64>) {
         wander_deg,
         roughness_length_m,
         sea_roughness_length_m,
+        up_m_s,
     } = wind;
     out.extend([east_m_s, north_m_s, gust_m_s, turbulence_intensity, wander_deg, roughness_length_m]);
-    out.push(sea_roughness_length_m);
+    out.extend([sea_roughness_length_m, up_m_s]);
     let SeaState {
         significant_wave_height_m,
         given_share,

@@ -178,6 +178,8 @@ pub const WK_STRUCT_TYPE_SEA_WAVE: wk_struct_type = 112;
 pub const WK_STRUCT_TYPE_SEA_REGION: wk_struct_type = 113;
 /// wk_sea_state
 pub const WK_STRUCT_TYPE_SEA_STATE: wk_struct_type = 114;
+/// wk_weather_region
+pub const WK_STRUCT_TYPE_WEATHER_REGION: wk_struct_type = 95;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

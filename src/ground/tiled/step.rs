@@ -7,13 +7,8 @@ use super::{
 };
 use crate::{
     error::Result,
-    ground::{
-        rain_on::RainStep,
-        terrain::Flows,
-        water::{Forcing, GroundWater, Step},
-    },
+    ground::{rain_on::RainStep, state::GroundStep, terrain::Flows, water::Step},
     terrain::{CellId, Terrain},
-    weather::Conditions,
     world::{UpdateBudget, World},
 };
 
@@ -22,15 +17,8 @@ use crate::{
 pub(crate) struct TiledStep<'a> {
     pub world: &'a World,
     pub terrain: &'a Terrain,
-    /// Simulation time in the middle of the step, s.
-    pub middle_s: f64,
-    /// Length of the step, s.
-    pub seconds: f64,
-    /// Weather in the middle of the step, and its effect on the ground.
-    pub conditions: &'a Conditions,
-    pub forcing: &'a Forcing,
-    /// Water of level, open ground at the beginning of the step.
-    pub water: &'a GroundWater,
+    /// Step of level, open ground outside all regions.
+    pub ground: GroundStep<'a>,
 }
 
 /// Water that a step added and removed, and whether any water changed.
@@ -46,7 +34,7 @@ impl TiledWater {
     /// Returns `None` while tiles remain.
     pub fn step(&mut self, now: &TiledStep<'_>, budget: Option<UpdateBudget>) -> Result<Option<SteppedTiles>> {
         let mut part = self.part.take().unwrap_or_default();
-        let step = Step::new(now.forcing, now.seconds);
+        let step = Step::new(now.ground.forcing, now.ground.seconds);
         let keys = std::mem::take(&mut self.keys);
         let done = part.last;
         let mut left = keys.iter().skip_while(|(key, _)| done.is_some_and(|last| **key <= last));
@@ -76,23 +64,27 @@ impl TiledWater {
     /// Advances the water on one tile by a step.
     fn step_tile(&mut self, slot: u32, now: &TiledStep<'_>, step: &Step, part: &mut StepInParts) -> Result<()> {
         let Some(tile) = self.tiles[slot as usize].as_mut() else { return Ok(()) };
-        let quiet = now.forcing.liquid_mm_h <= 0.0 && now.world.set.regions.is_empty();
+        let ground = &now.ground;
+        let local = ground.in_regions(now.world, tile.rain.whole.middle);
+        let (conditions, forcing) = local.as_ref().map_or((ground.conditions, ground.forcing), |(c, f)| (c, f));
+        let step = &if local.is_some() { Step::new(forcing, ground.seconds) } else { *step };
+        let quiet = forcing.liquid_mm_h <= 0.0 && now.world.set.regions.is_empty();
         if quiet && tile.begun && !tile.is_awake() {
             return Ok(());
         }
         let data = now.terrain.tile(slot);
         let cells = cells_of(now.terrain, data);
         let shelters = &now.world.set.shelters;
-        let overs = tile.rain.overs(now.world, now.middle_s, now.conditions)?;
+        let overs = tile.rain.overs(now.world, ground.from_s + 0.5 * ground.seconds, conditions)?;
         if !tile.begun {
-            let water = tile.rain.first_water(&cells, (now.conditions, now.water), &overs, shelters);
+            let water = tile.rain.first_water(&cells, (conditions, ground.water), &overs, shelters);
             // Counts the initial water as rain.
             part.flows.rain += tile.begin(data, &water);
             part.changes = true;
         }
-        let rains = overs.rain(now.forcing);
+        let rains = overs.rain(forcing);
         if rains {
-            let falling = RainStep { conditions: now.conditions, forcing: now.forcing, seconds: now.seconds };
+            let falling = RainStep { conditions, forcing, seconds: ground.seconds };
             tile.rain.fall(&cells, &falling, &overs, shelters);
         }
         part.changes |= rains || tile.is_awake();

@@ -16,6 +16,7 @@ use crate::{
     ground::{
         basins::tests::{flooded, rough},
         grid::GroundGrid,
+        state::GroundStep,
         terrain::{CellWater, GridTerrain, TerrainWater},
         water::{Forcing, GroundWater, STEP_S, Step},
     },
@@ -88,15 +89,15 @@ impl Bench {
     /// Takes a step of [`STEP_S`] and adds its flows to the sums.
     fn step(&mut self, rain_mm_h: f64, evaporation_mm_h: f64) -> SteppedTiles {
         let (c, f) = (conditions(rain_mm_h), forcing(rain_mm_h, evaporation_mm_h));
-        let now = TiledStep {
-            world: &self.world,
-            terrain: &self.terrain,
-            middle_s: 5.0,
+        let ground = GroundStep {
+            from_s: 0.0,
             seconds: STEP_S,
             conditions: &c,
             forcing: &f,
+            sunlight_w_m2: 0.0,
             water: &GroundWater::default(),
         };
+        let now = TiledStep { world: &self.world, terrain: &self.terrain, ground };
         let stepped = self.water.step(&now, None).unwrap().unwrap();
         self.fallen += stepped.flows.rain;
         self.gone += stepped.flows.evaporated + stepped.flows.leaked + stepped.flows.drained;

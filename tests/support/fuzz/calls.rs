@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
     fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
-    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
+    query::*, radiance::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*,
+    surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
     windscreen::*,
 };
 
@@ -557,6 +557,14 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_set_rain_areas", |d, w| {
         let context = handle(d, &w.contexts);
         set_list(d, "wk_rain_area", |p, n, s| unsafe { wk_context_set_rain_areas(context, p.cast(), n, s) })
+    }),
+    ("wk_context_set_weather_regions", |d, w| {
+        let context = handle(d, &w.contexts);
+        let (mut list, count) = Struct::random_list(d, "wk_weather_region", 30);
+        if d.one_in(2) {
+            list.set_struct("weather", weather(d));
+        }
+        unsafe { wk_context_set_weather_regions(context, list.ptr().cast(), count, list.stride()) }.into()
     }),
     ("wk_context_set_shelters", |d, w| {
         let context = handle(d, &w.contexts);

@@ -1,0 +1,47 @@
+//! Weather regions: parts of the world with a weather of their own, such as a fog bank, a snow shower or a sandstorm.
+//!
+//! A region has a shape on the ground plan ([`RegionShape`]), a perimeter outside it over which its weather fades into
+//! what holds around it, a velocity, and a whole [`Weather`](crate::weather::Weather) of which it takes some parts
+//! ([`WeatherParts`](crate::weather::WeatherParts)). Columns are vertical: height has no effect on the weight.
+//!
+//! # Weight
+//! Let d be the horizontal distance from the shape, m, 0 inside, and P the perimeter. The weight of a region is its
+//! strength times 1 - 3x^2 + 2x^3 with x = min(d / P, 1). Its slope is at most 1.5 / P. With P = 0 it is a step: the
+//! region holds up to its border and on it.
+//!
+//! # Overlap
+//! For each part of the weather, the world's weather and the regions have shares a_k whose sum is 1. Regions are taken
+//! in the order of the list. A region of weight w that *covers* a part gets the share w, and all earlier shares are
+//! multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge it: these together get the
+//! share 1 - (1 - m)(1 - w), where m is their share before, and divide it in proportion to their weights; all other
+//! shares are multiplied by 1 - w. Two regions that merge and both have the weight 1 thus give the mean of both; at
+//! their perimeters the regions count by their weights. The shares are continuous in all weights.
+//!
+//! # Merging
+//! A quantity x of a part is the sum of a_k x_k: extinction (not visibility), rates of precipitation, temperature,
+//! humidity, pressure, wind (as a vector), cover of each cloud slot. The geometry of a layer is weighted by the amount
+//! of the layer, as in a change over time ([`Conditions::lerp`](crate::weather::Conditions::lerp)). The total
+//! extinction is the sum of its parts. Rayleigh scattering and ozone remain the world's.
+//!
+//! # Along a way
+//! The optical depth between two points is the integral of the sum of a_k(s) e_k(s), where e_k is the extinction of the
+//! medium k with its own heights. The way is divided into pieces: one for each stretch on which all weights are
+//! constant, and pieces of at most P / 32 in a perimeter. Within a piece the shares are those of its middle, and the
+//! depth of each medium is its closed form. The midpoint rule is of fourth order for a whole perimeter, because the
+//! weight has no slope at its ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
+
+mod field;
+mod merge;
+mod region;
+mod shape;
+mod way;
+
+pub(crate) use field::RegionsOver;
+pub(crate) use merge::RegionsHere;
+pub(crate) use region::HeldRegion;
+pub use region::{RegionPlan, WeatherRegion};
+pub use shape::{MAX_REGION_CORNERS, RegionShape};
+pub(crate) use way::RegionWay;
+
+/// Largest number of weather regions at a time.
+pub const MAX_WEATHER_REGIONS: usize = 64;
