@@ -24,6 +24,7 @@ use crate::{
     glass::GlassView,
     gpu::{Device, Shared, blocks::Blocks},
     ground::{GroundModel, GroundUniform, GroundView, HeldGround, LoadedGround},
+    land::{HeldLand, LandView},
     light::{Exposure, ToneCurve},
     lightning::{HeldLightning, LightningView},
     moment::Scene,
@@ -106,6 +107,7 @@ pub(crate) struct Held {
     pub clouds: HeldClouds,
     pub lightning: HeldLightning,
     pub sea: HeldSea,
+    pub land: HeldLand,
 }
 
 /// State that was read from a saved one and is not yet in use.
@@ -138,11 +140,12 @@ impl Held {
             clouds: HeldClouds::default(),
             lightning: HeldLightning::default(),
             sea: HeldSea::default(),
+            land: HeldLand::default(),
         })
     }
 
     /// Returns all effects with simulation state, in the order in which they are advanced.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 8] {
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 9] {
         [
             &mut self.flow,
             &mut self.snowpack,
@@ -152,12 +155,23 @@ impl Held {
             &mut self.clouds,
             &mut self.lightning,
             &mut self.sea,
+            &mut self.land,
         ]
     }
 
     /// As [`Self::each`], by shared reference.
-    pub fn all(&self) -> [&dyn HeldEffect; 8] {
-        [&self.flow, &self.snowpack, &self.fog, &self.ground, &self.stars, &self.clouds, &self.lightning, &self.sea]
+    pub fn all(&self) -> [&dyn HeldEffect; 9] {
+        [
+            &self.flow,
+            &self.snowpack,
+            &self.fog,
+            &self.ground,
+            &self.stars,
+            &self.clouds,
+            &self.lightning,
+            &self.sea,
+            &self.land,
+        ]
     }
 
     /// Takes the effects' entries out of a saved state and reads them.
@@ -192,6 +206,7 @@ impl Held {
         world.set.undimmed = self.fog.law.is_some();
         self.ground.swap_in(&mut other.ground);
         world.set.terrain = self.ground.heights();
+        self.land.surface_class = self.ground.surface_class;
         self.snowpack.swap_in(world, &mut other.snowpack);
         std::mem::swap(&mut self.stars, &mut other.stars);
         std::mem::swap(&mut self.clouds, &mut other.clouds);
@@ -256,6 +271,7 @@ pub(crate) struct Effects {
     pub clouds: CloudsView,
     pub lightning: LightningView,
     pub bow: BowView,
+    pub land: LandView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
     /// Indices into [`Effects::each`]: the order in which effects gather, and the order in which they compose and draw.
@@ -264,7 +280,7 @@ pub(crate) struct Effects {
 }
 
 /// Number of effects of a view.
-const COUNT: usize = if cfg!(test) { 11 } else { 10 };
+const COUNT: usize = if cfg!(test) { 12 } else { 11 };
 
 impl Effects {
     /// Creates the effects of a view.
@@ -284,6 +300,7 @@ impl Effects {
             clouds: CloudsView::default(),
             lightning: LightningView::default(),
             bow: BowView::default(),
+            land: LandView::new(blocks),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
             gathers: [0; COUNT],
@@ -308,6 +325,7 @@ impl Effects {
             &mut self.glass,
             &mut self.lightning,
             &mut self.bow,
+            &mut self.land,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -326,6 +344,7 @@ impl Effects {
             &self.glass,
             &self.lightning,
             &self.bow,
+            &self.land,
             #[cfg(test)]
             &self.plane,
         ]

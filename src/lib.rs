@@ -88,6 +88,7 @@ pub mod glass;
 pub mod gpu;
 pub mod ground;
 pub mod heights;
+pub mod land;
 pub mod light;
 pub mod lightning;
 mod moment;

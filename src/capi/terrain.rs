@@ -28,6 +28,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result, Status},
+    land::TerrainDrawing,
     terrain::{MAX_TERRAIN_CELLS, Rows, SurfaceClass, TerrainCells, TerrainDesc, TerrainPoint, TileKey},
 };
 
@@ -67,6 +68,31 @@ impl wk_terrain {
         cell_m: 1.0,
         tile_cells: 256,
         reserved0: 0,
+    };
+}
+
+/// Settings with which Welkin draws the tiles of a terrain.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_terrain_drawing {
+    /// sizeof(wk_terrain_drawing) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_TERRAIN_DRAWING.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels. Range [0.25, 16],
+    /// default 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is
+    /// so rough that more would be needed is drawn with a larger error.
+    pub error_px: f64,
+}
+
+impl wk_terrain_drawing {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_TERRAIN_DRAWING,
+        next: null(),
+        error_px: 1.0,
     };
 }
 
@@ -136,23 +162,27 @@ impl wk_terrain_cells {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_terrain_point {
-    /// Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
+    /// Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
+    /// four cells is split from its south-western to its north-eastern cell. 0 where there is none.
     pub height_m: f64,
+    /// Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground.
+    pub normal: [f64; 3],
     /// Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground.
     pub revision: u64,
     /// Key of the nearest cell's tile.
     pub tile: [i32; 2],
     /// Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none.
     pub surface_class: wk_surface_class,
-    /// 1 on the ground of a tile, else 0.
+    /// 1 on the ground of a tile, else 0: on a triangle of which a cell is a hole or lies off all tiles.
     pub has_ground: u32,
 }
 
 impl wk_terrain_point {
     fn of(point: Option<TerrainPoint>) -> Self {
-        let none = Self { height_m: 0.0, revision: 0, tile: [0, 0], surface_class: 0, has_ground: 0 };
+        let none = Self { height_m: 0.0, normal: [0.0; 3], revision: 0, tile: [0, 0], surface_class: 0, has_ground: 0 };
         point.map_or(none, |p| Self {
             height_m: p.height_m,
+            normal: p.normal.to_array(),
             revision: p.revision,
             tile: [p.tile.east, p.tile.north],
             surface_class: p.surface_class as wk_surface_class,
@@ -294,6 +324,31 @@ pub unsafe extern "C" fn wk_context_remove_terrain_tile(
     })
 }
 
+/// Sets whether and how Welkin draws the tiles into frames whose depth it may write, in WK_STAGE_SURFACE. NULL, the
+/// default, leaves them to the host. Settings are not saved. Unchanged after an error. Thread: exclusive. Errors:
+/// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_terrain_drawing(
+    context: *mut wk_context,
+    terrain_drawing: *const wk_terrain_drawing,
+) -> wk_status {
+    guard("wk_context_set_terrain_drawing", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        if terrain_drawing.is_null() {
+            object.write().set_terrain_drawing(None)?;
+            return Ok(Status::Ok);
+        }
+        // SAFETY: the caller's promise about `terrain_drawing`.
+        let c = unsafe {
+            let c = layout::read(&"terrain_drawing", terrain_drawing)?;
+            layout::check_chain(&"terrain_drawing", c.next, &[])?;
+            c
+        };
+        object.write().set_terrain_drawing(Some(TerrainDrawing { error_px: c.error_px }))?;
+        Ok(Status::Ok)
+    })
+}
+
 /// Gets a number that grows whenever the tiles change; 0 without a terrain.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
@@ -314,7 +369,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
 /// `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
 /// sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn wk_context_get_terrain_points(
+pub unsafe extern "C" fn wk_context_get_terrain_at(
     context: *const wk_context,
     positions_m: *const [f64; 3],
     count: u32,
@@ -322,7 +377,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_points(
     points: *mut wk_terrain_point,
     point_size: u32,
 ) -> wk_status {
-    guard("wk_context_get_terrain_points", |call| {
+    guard("wk_context_get_terrain_at", |call| {
         let object = call.get::<ContextObject>("context", context)?;
         let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
         let room = input::Room::new("points", "point_size", points, count, point_size)?;

@@ -49,6 +49,7 @@ impl Context {
     /// default, is natural ground. Part of the saved state.
     pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
         self.held.ground.surface_class = class;
+        self.held.land.surface_class = class;
     }
 
     /// Returns the material of ground that has none from the host's grid or image.

@@ -6,6 +6,7 @@ use crate::{
     context::Context,
     error::Result,
     ground::{GroundCell, GroundTexture},
+    land::TerrainDrawing,
     terrain::{TerrainCells, TerrainDesc, TerrainPoint, TileKey},
 };
 
@@ -61,6 +62,23 @@ impl Context {
         self.held.ground.remove_tile(&mut self.world, waits, key)?;
         self.held.snowpack.tile_changed(&mut self.world, key, waits);
         Ok(())
+    }
+
+    /// Sets whether and how Welkin draws the tiles; `None`, the default, leaves them to the host. They are drawn into
+    /// frames with [`DepthAccess::ReadWrite`](crate::frame::DepthAccess::ReadWrite) and the stage
+    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE). Not saved by [`Context::save`].
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
+    pub fn set_terrain_drawing(&mut self, drawing: Option<TerrainDrawing>) -> Result<()> {
+        drawing.iter().try_for_each(TerrainDrawing::validate)?;
+        self.held.land.drawing = drawing;
+        Ok(())
+    }
+
+    /// Returns the settings with which Welkin draws the tiles.
+    pub fn terrain_drawing(&self) -> Option<TerrainDrawing> {
+        self.held.land.drawing
     }
 
     /// Returns the lattice of the terrain's tiles.

@@ -15,7 +15,7 @@ use super::{
     texture::TerrainTextures,
     tiled::{Changed, SavedTiles, TiledWater},
     water::{Forcing, GroundWater, STEP_S, depth_at_mm},
-    window::{DrawnTerrain, RecentChanges, TerrainWindow},
+    window::{DrawnTerrain, TerrainWindow},
 };
 use crate::{
     error::{Error, Result, Status},
@@ -75,8 +75,6 @@ pub(crate) struct HeldGround {
     pub(super) tiled: Option<Box<TiledWater>>,
     /// Changes of the tiles that the water has yet to take over, each with the terrain after the change.
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
-    /// Recent changes of the tiles, which the windows of tile textures take over.
-    pub(super) recent: RecentChanges,
     /// Window of tile textures for the host's own shaders, once it has asked for one.
     pub(super) host_window: Option<Box<TerrainWindow>>,
 }
@@ -116,7 +114,6 @@ impl HeldGround {
             textures: Mutex::default(),
             tiled: None,
             waiting: Vec::new(),
-            recent: RecentChanges::default(),
             host_window: None,
         }
     }

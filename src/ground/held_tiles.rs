@@ -13,7 +13,7 @@ use super::{
     terrain::CellWater,
     tiled::{Changed, SavedTiles, TiledStep, TiledWater},
     water::GroundWater,
-    window::{RecentChanges, Shown},
+    window::Shown,
 };
 use crate::{
     error::{Error, Result, Status},
@@ -43,7 +43,6 @@ impl HeldGround {
         }
         self.tiled = terrain.as_ref().map(|terrain| Box::new(TiledWater::new(terrain)));
         self.waiting.clear();
-        self.recent = RecentChanges::default();
         self.revision += 1;
         world.set.tiles = terrain.map(Arc::new);
         Ok(())
@@ -61,7 +60,6 @@ impl HeldGround {
         let terrain = Arc::make_mut(world.set.tiles.as_mut().ok_or_else(without_terrain)?);
         let Some(rect) = change(terrain)? else { return Ok(()) };
         let changed = Changed { revision: terrain.revision, rect, is_removal };
-        self.recent.add(changed);
         let Some(terrain) = &world.set.tiles else { return Ok(()) };
         if waits {
             self.waiting.push((changed, terrain.clone()));
@@ -157,7 +155,7 @@ impl HeldGround {
         let terrain = world.set.tiles.as_deref()?;
         let water = self.tiled.as_ref().filter(|tiled| tiled.is_of(terrain))?;
         let snow = world.snow.as_deref();
-        Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, recent: &self.recent, snow })
+        Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, snow })
     }
 
     /// Returns the water of each cell of a tile.

@@ -6,16 +6,10 @@
 //! filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
 //! which the ground changed.
 
-use std::collections::VecDeque;
-
 use glam::{DMat3, DVec3};
 use half::f16;
 
-use super::{
-    grid::GroundGrid,
-    tiled::{Changed, TiledWater},
-    water::GroundWater,
-};
+use super::{grid::GroundGrid, tiled::TiledWater, water::GroundWater};
 use crate::{
     gpu::Device,
     surroundings::LyingSnow,
@@ -30,8 +24,6 @@ const STEP: i32 = 64;
 const NOWHERE_M: f32 = 1e6;
 /// Standing water of a cell where none stands, mm.
 const BARE_MM: f64 = -50.0;
-/// Number of changes that are remembered. A window that has missed older ones is filled completely.
-const REMEMBERED: usize = 256;
 
 /// Grid of nodes that a frame draws: a whole grid, or a window of a tiled terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,27 +64,6 @@ fn window(terrain: &Terrain, eye: DVec3) -> Option<CellRect> {
     terrain.keys_within(rect).any(|key| terrain.slot(key).is_some()).then_some(rect)
 }
 
-/// Recent changes of the ground, which windows may not have taken over yet.
-#[derive(Default)]
-pub(super) struct RecentChanges(VecDeque<Changed>);
-
-impl RecentChanges {
-    /// Adds a change, and drops the oldest if there are more than [`REMEMBERED`].
-    pub fn add(&mut self, change: Changed) {
-        if self.0.len() == REMEMBERED {
-            self.0.pop_front();
-        }
-        self.0.push_back(change);
-    }
-
-    /// Returns the rectangles that changed after revision `revision`; `None` if some of these changes are no longer
-    /// remembered. `now` is the terrain's present revision.
-    fn since(&self, revision: u64, now: u64) -> Option<impl Iterator<Item = CellRect> + '_> {
-        let known = revision == now || self.0.front().is_some_and(|c| c.revision <= revision + 1);
-        known.then(|| self.0.iter().filter(move |c| c.revision > revision).map(|c| c.rect))
-    }
-}
-
 /// Data from which a window is filled.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
@@ -102,7 +73,6 @@ pub(super) struct Shown<'a> {
     pub even: GroundWater,
     /// Share of the ground under ice.
     pub ice: f32,
-    pub recent: &'a RecentChanges,
     /// Snow on the tiles, where it is simulated.
     pub snow: Option<&'a LyingSnow>,
 }
@@ -178,7 +148,7 @@ impl TerrainWindow {
         };
         let before = self.filled.filter(|f| f.rect == rect && f.id == now.id);
         let changed: Option<Vec<CellRect>> =
-            before.and_then(|f| Some(shown.recent.since(f.revision, now.revision)?.collect()));
+            before.and_then(|f| Some(terrain.recent.since(f.revision, now.revision)?.collect()));
         let is_wet_anew = before.is_none_or(|f| (f.water, f.even, f.ice) != (now.water, now.even, now.ice));
         match changed {
             Some(changed) => {

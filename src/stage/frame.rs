@@ -25,7 +25,8 @@ pub enum ColorSpace {
 
 /// Access that Welkin has to a host's depth.
 ///
-/// Nothing that this version draws is opaque, so both give the same picture. Sea and terrain will be opaque.
+/// Both give the same picture unless Welkin draws something opaque, such as the terrain of
+/// [`Context::set_terrain_drawing`](crate::context::Context::set_terrain_drawing).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
     /// Read only. Welkin changes no bit of the depth and draws nothing opaque

@@ -20,7 +20,6 @@ pub(crate) struct OpaqueTarget {
     pub logarithmic: bool,
 }
 
-#[cfg_attr(not(test), expect(dead_code, reason = "for opaque effects, which only the tests have yet"))]
 impl OpaqueTarget {
     /// Returns the target of a frame that is drawn into `color` and `depth`.
     pub fn of(frame: &Frame<'_>, color: &wgpu::Texture, depth: &wgpu::Texture) -> Self {
@@ -48,7 +47,6 @@ impl OpaqueTarget {
 
 /// Target, layout and clip space for opaque draws. The pass itself has the host's images as its attachments and the
 /// group of `shaders/common/opaque.wgsl` as group 0.
-#[cfg_attr(not(test), expect(dead_code, reason = "as above"))]
 pub(crate) struct OpaqueDraw<'a> {
     pub target: OpaqueTarget,
     /// Layout of group 0.

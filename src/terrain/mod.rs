@@ -14,6 +14,7 @@
 //! Copies of a terrain share its tiles. A tile that changes while another copy still uses it is copied once. This room
 //! names no effect: water, wind and queries read it alike. It has no settings, and no error but rounding.
 
+mod changes;
 mod class;
 mod desc;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod tests;
 mod tile;
 mod tiles;
 
+pub(crate) use changes::RecentChanges;
 pub use class::SurfaceClass;
 pub(crate) use class::{CLASSES, HOLE};
 pub(crate) use desc::CellRect;

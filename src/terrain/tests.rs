@@ -114,15 +114,19 @@ fn cells_of(key: TileKey) -> TerrainCells<'static> {
 }
 
 #[test]
-fn a_hole_is_no_ground_and_its_neighbours_share_the_rest() {
+fn a_hole_takes_away_the_triangles_that_meet_it() {
     let mut terrain = four();
     let hole = [None];
     let cells = TerrainCells { first: [3, 3], size: [1, 1], classes: Rows::of(&hole), ..TerrainCells::default() };
     terrain.update(&cells).unwrap();
     assert_eq!(terrain.cell_at([3, 3]), None);
     assert_eq!(terrain.height_at(DVec2::new(3.2, 2.9)), None);
-    let beside = terrain.height_at(DVec2::new(3.0, 2.4)).unwrap();
-    assert_eq!(beside, f64::from(plane(3, 2)), "of the two along the way one is left");
+    assert_eq!(terrain.height_at(DVec2::new(3.0, 2.4)), None);
+    assert!(terrain.height_at(DVec2::new(2.6, 2.2)).is_none() && terrain.height_at(DVec2::new(3.5, 3.4)).is_none());
+    // The two triangles of the squares beside it that have no corner there, and the cells around it.
+    let beside = terrain.height_at(DVec2::new(3.6, 2.4)).unwrap();
+    assert!((beside - (0.25 * 3.6 + 0.5 * 2.4)).abs() < 1e-12, "{beside}");
+    assert_eq!(terrain.height_at(DVec2::new(3.0, 2.0)), Some(f64::from(plane(3, 2))));
     let left = terrain.cell_at([2, 3]).unwrap();
     assert_eq!(terrain.around(left).iter().filter(|n| n.is_none()).count(), 1);
     let ground = [Some(SurfaceClass::Soil)];

@@ -10,7 +10,7 @@ use std::{
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{CellRect, MAX_TERRAIN_CELLS, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey};
+use super::{CellRect, MAX_TERRAIN_CELLS, RecentChanges, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey};
 use crate::{
     chance::mixed,
     error::{Error, Result},
@@ -26,8 +26,10 @@ pub(crate) const AROUND: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [
 /// The terrain at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainPoint {
-    /// Height of the ground above the terrain's origin, m, linear between cells.
+    /// Height of the ground above the terrain's origin, m: that of the triangle of three neighbouring cells.
     pub height_m: f64,
+    /// Unit normal of this triangle in the host's axes, upwards.
+    pub normal: DVec3,
     /// Material of the nearest cell.
     pub surface_class: SurfaceClass,
     /// Tile of the nearest cell.
@@ -35,6 +37,15 @@ pub struct TerrainPoint {
     /// Revision of the terrain at that tile's last change
     /// ([`Context::terrain_revision`](crate::context::Context::terrain_revision)).
     pub revision: u64,
+}
+
+/// A triangle of the ground at a place in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Facet {
+    /// Height above the terrain's origin, m.
+    pub height_m: f64,
+    /// Rise over run to the east and the north.
+    pub slope: DVec2,
 }
 
 /// The host's terrain. Copies share its tiles.
@@ -53,11 +64,13 @@ pub(crate) struct Terrain {
     tiles: Vec<Arc<Tile>>,
     slots: BTreeMap<TileKey, u32>,
     /// Rectangle that contains all tiles.
-    bounds: Option<CellRect>,
+    pub bounds: Option<CellRect>,
     /// Revision, which grows with every change.
     pub revision: u64,
     /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
+    /// Last changes of its cells.
+    pub recent: RecentChanges,
 }
 
 fn hash_of(tile: &Tile) -> u64 {
@@ -85,6 +98,7 @@ impl Terrain {
             bounds: None,
             revision: 1,
             hash: 0,
+            recent: RecentChanges::default(),
         })
     }
 
@@ -106,6 +120,11 @@ impl Terrain {
     /// Slot of a tile.
     pub fn slot(&self, key: TileKey) -> Option<u32> {
         self.slots.get(&key).copied()
+    }
+
+    /// Key of the tile position that holds a lattice position, with or without a tile there.
+    pub fn key_of(&self, [x, y]: [i32; 2]) -> TileKey {
+        TileKey::new(x >> self.bits, y >> self.bits)
     }
 
     /// Rectangle of a tile's cells on the lattice.
@@ -178,6 +197,7 @@ impl Terrain {
         self.slots.insert(cells.key, free as u32);
         let rect = self.rect(cells.key);
         self.bounds = Some(self.bounds.map_or(rect, |b| b.with(rect)));
+        self.recent.add(self.revision, rect);
         Ok(Some(rect))
     }
 
@@ -239,7 +259,9 @@ impl Terrain {
         let corner = self.rect(cells.key).low;
         let low = [0, 1].map(|i| corner[i] + cells.first[i] as i32);
         let size = cells.size_in(self.desc.tile_cells);
-        Some(CellRect { low, high: [0, 1].map(|i| low[i] + size[i] as i32) })
+        let rect = CellRect { low, high: [0, 1].map(|i| low[i] + size[i] as i32) };
+        self.recent.add(self.revision, rect);
+        Some(rect)
     }
 
     /// Removes a tile. Returns the cells that it had.
@@ -253,7 +275,9 @@ impl Terrain {
         self.slots.remove(&key);
         self.bounds = self.slots.keys().map(|key| self.rect(*key)).reduce(CellRect::with);
         self.revision += 1;
-        Ok(self.rect(key))
+        let rect = self.rect(key);
+        self.recent.add(self.revision, rect);
+        Ok(rect)
     }
 
     /// Cell at a lattice position, if it has ground.
@@ -334,9 +358,34 @@ impl Terrain {
         Some(found.into_iter().filter_map(move |(cell, share)| Some((cell?, share / all))))
     }
 
+    /// The facet of the ground at a position in cells east and north of the origin. Each square of four neighbouring
+    /// cells is split along the diagonal from its south-western to its north-eastern cell. `None` where a corner of the
+    /// triangle has no ground; corners without weight do not count.
+    pub fn facet_at(&self, cells: DVec2) -> Option<Facet> {
+        if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
+            return None;
+        }
+        let low = cells.floor();
+        let (part, [x, y]) = (cells - low, [low.x as i32, low.y as i32]);
+        // The third corner lies east or north of the first one.
+        let is_south = part.x >= part.y;
+        let (large, small) = if is_south { (part.x, part.y) } else { (part.y, part.x) };
+        let places = [[x, y], if is_south { [x + 1, y] } else { [x, y + 1] }, [x + 1, y + 1]];
+        let weights = [1.0 - large, large - small, small];
+        let corners = places.map(|place| self.cell_at(place));
+        let is_whole = corners.iter().zip(weights).all(|(corner, weight)| corner.is_some() || weight == 0.0);
+        let first = f64::from(self.height(corners[0].filter(|_| is_whole)?));
+        let [_, third, last] = corners.map(|corner| corner.map_or(first, |cell| f64::from(self.height(cell))));
+        let (along, across) = ((third - first) / self.desc.cell_m, (last - third) / self.desc.cell_m);
+        Some(Facet {
+            height_m: first * weights[0] + third * weights[1] + last * weights[2],
+            slope: if is_south { DVec2::new(along, across) } else { DVec2::new(across, along) },
+        })
+    }
+
     /// Height of the ground, m, at a position in cells east and north of the origin; `None` where there is no ground.
     pub fn height_at(&self, cells: DVec2) -> Option<f64> {
-        Some(self.about(cells)?.map(|(cell, share)| share * f64::from(self.height(cell))).sum())
+        Some(self.facet_at(cells)?.height_m)
     }
 
     /// Returns the height at a position in metres, for what flows over the ground. Outside the rectangle of all tiles
@@ -350,12 +399,18 @@ impl Terrain {
     /// The terrain at a position in the host's world.
     pub fn point_at(&self, position: DVec3) -> Option<TerrainPoint> {
         let (cells, _) = self.cells_at(position);
-        let about = self.about(cells)?;
-        let height_m = about.clone().map(|(cell, share)| share * f64::from(self.height(cell))).sum();
-        let nearest = about.max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+        let facet = self.facet_at(cells)?;
+        let nearest = self.about(cells)?.max_by(|a, b| a.1.total_cmp(&b.1))?.0;
         let (slot, cell) = self.split(nearest);
         let tile = self.tile(slot as u32);
-        Some(TerrainPoint { height_m, surface_class: tile.class(cell), tile: tile.key, revision: tile.revision })
+        let normal = DVec3::new(-facet.slope.x, -facet.slope.y, 1.0).normalize();
+        Some(TerrainPoint {
+            height_m: facet.height_m,
+            normal: self.to_enu.transpose() * normal,
+            surface_class: tile.class(cell),
+            tile: tile.key,
+            revision: tile.revision,
+        })
     }
 
     /// Hash of the tiles in and next to a rectangle, which is given in metres east and north of the origin.

@@ -4,6 +4,8 @@ mod changing_air;
 mod counted;
 mod detour;
 mod even;
+mod land;
+mod land_pictures;
 mod longest;
 mod moment;
 mod opaque;

@@ -1,7 +1,7 @@
 //! The opaque step on the software driver: a plane among a host's objects, in every depth mapping, with water and fog
 //! on it.
 
-mod host;
+pub mod host;
 
 use std::sync::Arc;
 

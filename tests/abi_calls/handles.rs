@@ -129,8 +129,11 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_get_terrain_revision", "context", false, |h| unsafe {
             wk_context_get_terrain_revision(h.cast(), null_mut())
         }),
-        case("wk_context_get_terrain_points", "context", false, |h| unsafe {
-            wk_context_get_terrain_points(h.cast(), null(), 0, 0, null_mut(), 0)
+        case("wk_context_get_terrain_at", "context", false, |h| unsafe {
+            wk_context_get_terrain_at(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_set_terrain_drawing", "context", false, |h| unsafe {
+            wk_context_set_terrain_drawing(h.cast(), null())
         }),
         case("wk_context_get_terrain_water", "context", false, |h| unsafe {
             wk_context_get_terrain_water(h.cast(), 0, 0, null_mut(), 0, 0, null_mut())

@@ -136,6 +136,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_cloud_map", "cloud_map", true, move |p| unsafe { wk_context_set_cloud_map(context, p.cast()) }),
         case("wk_ground_grid", "ground_grid", true, move |p| unsafe { wk_context_set_ground_grid(context, p.cast()) }),
         case("wk_terrain", "terrain", true, move |p| unsafe { wk_context_set_terrain(context, p.cast()) }),
+        case("wk_terrain_drawing", "terrain_drawing", true, move |p| unsafe {
+            wk_context_set_terrain_drawing(context, p.cast())
+        }),
         case("wk_terrain_cells", "terrain_cells", false, move |p| unsafe {
             wk_context_update_terrain(context, p.cast())
         }),

@@ -114,14 +114,21 @@ fn places_are_answered_by_tile_class_and_height() {
         ..tile([-1, 0], &heights)
     };
     let places = [[-61.0, 3.0, 50.0], [-56.0, 10.0, 0.0], [3.0, 3.0, 0.0]];
-    let none = wk_terrain_point { height_m: 9.0, revision: 9, tile: [9, 9], surface_class: 9, has_ground: 9 };
+    let none = wk_terrain_point {
+        height_m: 9.0,
+        normal: [9.0; 3],
+        revision: 9,
+        tile: [9, 9],
+        surface_class: 9,
+        has_ground: 9,
+    };
     let mut points = [none; 3];
     // SAFETY, for all: live pointers with the sizes given.
     unsafe {
         assert_eq!(wk_context_set_terrain(context, &terrain), WK_OK, "{}", message());
         assert_eq!(wk_context_set_terrain_tile(context, &cells), WK_OK, "{}", message());
         let get = |points: &mut [wk_terrain_point], places: *const [f64; 3], size: u32| {
-            wk_context_get_terrain_points(context, places, 3, 24, points.as_mut_ptr(), size)
+            wk_context_get_terrain_at(context, places, 3, 24, points.as_mut_ptr(), size)
         };
         refused(get(&mut points, places.as_ptr(), 8), "point_size must be");
         refused(get(&mut points, null(), POINT), "positions_m must not be NULL");
@@ -133,6 +140,7 @@ fn places_are_answered_by_tile_class_and_height() {
     let [on, hole, off] = points;
     assert!((on.height_m - 0.75).abs() < 1e-9 && on.has_ground == 1, "{}", on.height_m);
     assert_eq!((on.tile, on.revision, on.surface_class), ([-1, 0], 2, WK_SURFACE_CLASS_SOIL));
+    assert!(on.normal[2] > 0.0 && (on.normal.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12);
     assert_eq!((hole.has_ground, off.has_ground, off.height_m), (0, 0, 0.0));
     assert_eq!(unsafe { wk_context_destroy(context) }, WK_OK);
 }
@@ -194,11 +202,17 @@ fn what_is_no_height_is_a_hole_where_the_host_says_so() {
     (heights[0], heights[1], heights[40]) = (-9999.0, f32::NAN, -9999.0);
     let mut classes = [0u8; SIDE * SIDE];
     let place = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [8.0, 1.0, 0.0], [5.0, 5.0, 0.0]];
-    let mut points =
-        [wk_terrain_point { height_m: 9.0, revision: 9, tile: [9; 2], surface_class: 9, has_ground: 9 }; 4];
+    let mut points = [wk_terrain_point {
+        height_m: 9.0,
+        normal: [9.0; 3],
+        revision: 9,
+        tile: [9; 2],
+        surface_class: 9,
+        has_ground: 9,
+    }; 4];
     // SAFETY, for all: live pointers with the sizes given.
     let mut has_ground = || unsafe {
-        let answer = wk_context_get_terrain_points(context, place.as_ptr(), 4, 24, points.as_mut_ptr(), POINT);
+        let answer = wk_context_get_terrain_at(context, place.as_ptr(), 4, 24, points.as_mut_ptr(), POINT);
         assert_eq!(answer, WK_OK, "{}", message());
         points.map(|p| p.has_ground)
     };

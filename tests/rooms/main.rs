@@ -132,7 +132,8 @@ fn folders_of_shaders_use_what_their_rows_name_and_form_no_circle() {
     hold(&shader_arrows(), &table("shaders"));
 }
 
-const EFFECTS: [&str; 10] = ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "glass", "bow"];
+const EFFECTS: [&str; 11] =
+    ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "land", "glass", "bow"];
 
 #[test]
 fn the_effects_are_those_of_the_list() {

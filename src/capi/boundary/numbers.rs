@@ -138,6 +138,8 @@ pub const WK_STRUCT_TYPE_GROUND_TEXTURE: wk_struct_type = 47;
 pub const WK_STRUCT_TYPE_TERRAIN: wk_struct_type = 52;
 /// wk_terrain_cells
 pub const WK_STRUCT_TYPE_TERRAIN_CELLS: wk_struct_type = 53;
+/// wk_terrain_drawing
+pub const WK_STRUCT_TYPE_TERRAIN_DRAWING: wk_struct_type = 98;
 /// wk_frame_light
 pub const WK_STRUCT_TYPE_FRAME_LIGHT: wk_struct_type = 60;
 /// wk_part_wish

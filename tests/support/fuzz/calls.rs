@@ -633,6 +633,10 @@ pub const CALLS: &[(&str, Call)] = &[
         }
         unsafe { wk_context_set_terrain(handle(d, &w.contexts), terrain.ptr().cast()) }.into()
     }),
+    ("wk_context_set_terrain_drawing", |d, w| {
+        let mut drawing = Struct::random(d, "wk_terrain_drawing", 10);
+        unsafe { wk_context_set_terrain_drawing(handle(d, &w.contexts), drawing.ptr().cast()) }.into()
+    }),
     ("wk_context_set_terrain_tile", |d, w| {
         let mut cells = terrain_cells(d);
         if !d.one_in(5) {
@@ -654,12 +658,12 @@ pub const CALLS: &[(&str, Call)] = &[
         let mut revision = 0;
         unsafe { wk_context_get_terrain_revision(handle(d, &w.contexts), &mut revision) }.into()
     }),
-    ("wk_context_get_terrain_points", |d, w| {
+    ("wk_context_get_terrain_at", |d, w| {
         let places: [_; MOST as usize] = std::array::from_fn(|_| position(d));
         let mut points = room(unsafe { std::mem::zeroed::<wk_terrain_point>() });
         let (context, count) = (handle(d, &w.contexts), d.below(MOST as usize + 1) as u32);
         let size = size_of_element::<wk_terrain_point>(d);
-        unsafe { wk_context_get_terrain_points(context, places.as_ptr(), count, 24, points.as_mut_ptr(), size) }.into()
+        unsafe { wk_context_get_terrain_at(context, places.as_ptr(), count, 24, points.as_mut_ptr(), size) }.into()
     }),
     ("wk_context_get_terrain_water", |d, w| {
         let mut cells = vec![unsafe { std::mem::zeroed::<wk_ground_cell>() }; 1024];

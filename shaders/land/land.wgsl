@@ -1,0 +1,105 @@
+// Draws the terrain of the host's tiles into its colour and depth: materials by class, slope and height, in the light of
+// sun, moon and sky. Water, snow, cloud shadows, air and fog follow in the composition, which reads the depth.
+//!include "common/opaque.wgsl"
+//!include "land/vertex.wgsl"
+//!include "land/noise.wgsl"
+
+const PI: f32 = 3.14159265;
+// Cosines of the slopes between which soil and grass give way to rock: 46 and 36 degrees.
+const STEEP: f32 = 0.69;
+const GENTLE: f32 = 0.81;
+// Altitudes between which natural ground loses its grass, m.
+const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
+// Index of the class of soil, of rock, and of grass.
+const SOIL: u32 = 1u;
+const ROCK: u32 = 2u;
+const GRASS: u32 = 4u;
+
+// Returns the shares of the classes at a place in a page, filtered.
+fn class_shares(uv: vec2f) -> array<f32, 7> {
+    let first = textureSampleLevel(page_classes, page_sampler, uv, 0.0);
+    let last = textureSampleLevel(page_ground, page_sampler, uv, 0.0);
+    let sum = max(first.x + first.y + first.z + first.w + last.x + last.y + last.z, 1e-3);
+    return array<f32, 7>(
+        first.x / sum, first.y / sum, first.z / sum, first.w / sum, last.x / sum, last.y / sum, last.z / sum,
+    );
+}
+
+// Whether a triangle of texels has ground at all of its corners. The squares are split from south-west to north-east.
+fn has_ground(slot: vec2i, texel: vec2f) -> bool {
+    let low = vec2i(floor(texel));
+    let part = texel - floor(texel);
+    let third = select(vec2i(0, 1), vec2i(1, 0), part.x >= part.y);
+    let first = textureLoad(page_ground, slot + low, 0).a;
+    let second = textureLoad(page_ground, slot + low + third, 0).a;
+    let last = textureLoad(page_ground, slot + low + vec2i(1), 0).a;
+    return min(min(first, second), last) > 0.5;
+}
+
+// Returns the albedo of the ground. `cosine` is that of its slope.
+fn ground_albedo(shares: array<f32, 7>, cosine: f32, altitude: f32, noise: vec2f) -> vec3f {
+    var mixed = shares;
+    // Rock shows where soil does not hold. Broad noise makes the border irregular.
+    let rock = 1.0 - smoothstep(STEEP, GENTLE, cosine + 0.03 * noise.y);
+    let bare = smoothstep(GRASS_ENDS.x, GRASS_ENDS.y, altitude + 150.0 * noise.y);
+    let natural = mixed[0];
+    mixed[0] = 0.0;
+    mixed[GRASS] += natural * (1.0 - bare);
+    mixed[SOIL] += natural * bare;
+    let loose = mixed[GRASS] + mixed[SOIL];
+    mixed[GRASS] *= 1.0 - rock;
+    mixed[SOIL] *= 1.0 - rock;
+    mixed[ROCK] += loose * rock;
+    var albedo = vec3f(0.0);
+    for (var i = 0u; i < MATERIALS; i++) {
+        let material = land.materials[i];
+        albedo += mixed[i] * (material.albedo.rgb + noise.x * material.fine.rgb + noise.y * material.broad.rgb);
+    }
+    return clamp(albedo, vec3f(0.005), vec3f(0.9));
+}
+
+// Returns the luminance of the ground at a fragment.
+fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
+    let size = vec2f(textureDimensions(page_slopes));
+    let uv = (vec2f(in.slot) + in.texel + 0.5) / size;
+    let slopes = textureSampleLevel(page_slopes, page_sampler, uv, 0.0);
+    let slope = mix(slopes.xy, slopes.zw, in.morph);
+    let tilted = normalize(vec3f(-slope, 1.0));
+    let normal = land.to_local[0].xyz * tilted.x + land.to_local[1].xyz * tilted.y + land.to_local[2].xyz * tilted.z;
+    let here = land.to_local[0].xyz * in.place.x + land.to_local[1].xyz * in.place.y + land.to_local[2].xyz * in.place.z;
+    let up = normalize(vec3f(here.xy * land.curvature, max(1.0 + here.z * land.curvature, 0.1)));
+    let cosine = dot(normal, up);
+    let altitude = land.altitude + in.place.z + land.eye.z;
+    let noise = ground_noise(in.place, footprint);
+    let albedo = ground_albedo(class_shares(uv), cosine, altitude, noise);
+    let direct = land.sun_lux.rgb * max(dot(normal, land.sun.xyz), 0.0) + land.moon_lux.rgb * max(dot(normal, land.moon.xyz), 0.0);
+    let open = 0.5 + 0.5 * cosine;
+    return albedo * (direct + land.sky_lux.rgb * open + land.bounce_lux.rgb * (1.0 - open)) / PI;
+}
+
+// Returns the host's colour of a fragment. Discards it where the host's mask keeps its own, and where there is no ground.
+fn shown(in: LandVarying) -> vec4f {
+    // Side of the square that a pixel covers on the ground.
+    let area = cross(dpdx(in.place), dpdy(in.place));
+    let footprint = sqrt(sqrt(max(dot(area, area), 0.0)));
+    if is_kept(in.position.xy) || (in.has_holes == 1u && !has_ground(in.slot, in.texel)) {
+        discard;
+    }
+    return vec4f(host_number(ground_luminance(in, footprint)), 1.0);
+}
+
+@fragment
+fn plain(in: LandVarying) -> @location(0) vec4f {
+    return shown(in);
+}
+
+struct WithDepth {
+    @location(0) color: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
+
+// For logarithmic depth, which the fragment writes.
+@fragment
+fn logarithmic(in: LandVarying) -> WithDepth {
+    return WithDepth(shown(in), written_depth(frame.depth, 1.0 / max(in.position.w, 1e-20)));
+}

@@ -1,0 +1,66 @@
+// Uniform block of the drawn terrain. Axes of the lattice are east, north and up at the terrain's origin; cells count
+// from the one below the eye.
+
+const MATERIALS: u32 = 7u;
+const OCTAVES: u32 = 8u;
+
+// Colours of a material, linear Rec. 709 albedo.
+struct Material {
+    albedo: vec4f,
+    // Change of the colour by the fine and by the broad noise of amplitude 1.
+    fine: vec4f,
+    broad: vec4f,
+}
+
+// Place of one octave of the noise relative to the eye.
+struct Octave {
+    // Cell that holds the eye, and the seed.
+    cell: vec4i,
+    // Place of the eye in this cell, and cells per metre.
+    place: vec4f,
+    // Cosine and sine of the octave's angle; footprints between which it fades out, m.
+    turn: vec4f,
+}
+
+struct LandUniform {
+    // From the lattice's axes about the eye, m, to clip space.
+    clip: mat4x4f,
+    // Columns: from the lattice's axes to east, north, up at the camera.
+    to_local: array<vec4f, 3>,
+    // Place of the eye in its cell; its height above the terrain's origin as a sum of two floats, m.
+    eye: vec4f,
+    cell_m: f32,
+    // Height of the eye above the reference of distances, cells.
+    above: f32,
+    // Weight of horizontal distances: 0 for parallel rays.
+    spread: f32,
+    // Level of the largest nodes, whose vertices do not move.
+    top: u32,
+    // Distance at which the vertices of level 0 begin to move, cells; 1 over the distance on which they move.
+    morph: vec2f,
+    // Curvature of the planet, 1/m.
+    curvature: f32,
+    // Altitude of the terrain's origin, m.
+    altitude: f32,
+    // Directions to sun and moon in east, north, up at the camera; lux on a surface that faces them.
+    sun: vec4f,
+    sun_lux: vec4f,
+    moon: vec4f,
+    moon_lux: vec4f,
+    // Light of the sky on level ground, and of the ground on a surface that faces down, lux.
+    sky_lux: vec4f,
+    bounce_lux: vec4f,
+    // Materials by class number.
+    materials: array<Material, 7>,
+    octaves: array<Octave, 8>,
+}
+
+@group(1) @binding(0) var<uniform> land: LandUniform;
+// Heights of the vertices of each page.
+@group(1) @binding(1) var page_heights: texture_2d<f32>;
+// Slopes to the east and the north, on the page's level and on the next coarser one.
+@group(1) @binding(2) var page_slopes: texture_2d<f32>;
+// Shares of classes 0 to 3; of classes 4 to 6, with the presence of ground.
+@group(1) @binding(3) var page_classes: texture_2d<f32>;
+@group(1) @binding(4) var page_ground: texture_2d<f32>;
+@group(1) @binding(5) var page_sampler: sampler;

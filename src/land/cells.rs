@@ -1,0 +1,68 @@
+//! Cells of a terrain as the drawing reads them: across tiles, with a height at every lattice position.
+
+use crate::terrain::{CellRect, HOLE, Terrain, Tile};
+
+/// Farthest distance from which a position without ground takes its height, as a power of two of cells.
+pub(super) const FARTHEST_RING: u32 = 10;
+
+/// Directions of the eight positions around a position.
+const RING: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// Reader of cells, which remembers the tile that it read last.
+pub(super) struct CellReader<'a> {
+    pub terrain: &'a Terrain,
+    /// Rectangle of the last tile, and the tile, if there is one.
+    last: (CellRect, Option<&'a Tile>),
+}
+
+fn tile_with(terrain: &Terrain, place: [i32; 2]) -> (CellRect, Option<&Tile>) {
+    let key = terrain.key_of(place);
+    (terrain.rect(key), terrain.slot(key).map(|slot| terrain.tile(slot)))
+}
+
+impl<'a> CellReader<'a> {
+    pub fn new(terrain: &'a Terrain) -> Self {
+        Self { terrain, last: tile_with(terrain, [0, 0]) }
+    }
+
+    /// Tile of a position, and the cell's index in it.
+    fn tile_of(&mut self, [x, y]: [i32; 2]) -> Option<(&'a Tile, usize)> {
+        let rect = &self.last.0;
+        if x < rect.low[0] || y < rect.low[1] || x >= rect.high[0] || y >= rect.high[1] {
+            self.last = tile_with(self.terrain, [x, y]);
+        }
+        Some((self.last.1?, self.terrain.in_tile([x, y])))
+    }
+
+    /// Height of a cell with ground, m.
+    pub fn height(&mut self, place: [i32; 2]) -> Option<f32> {
+        let (tile, cell) = self.tile_of(place)?;
+        tile.has_ground(cell).then(|| tile.heights_m[cell])
+    }
+
+    /// Class number of a cell with ground.
+    pub fn class(&mut self, place: [i32; 2]) -> Option<u8> {
+        let (tile, cell) = self.tile_of(place)?;
+        Some(tile.class_number(cell)).filter(|number| *number != HOLE)
+    }
+
+    /// Height at a lattice position. Where there is no ground it is the mean of the nearest ground around it, at
+    /// distances that depend on the position alone: all levels of detail therefore have the same height there.
+    /// `None` far from all ground.
+    pub fn height_or_near(&mut self, [x, y]: [i32; 2]) -> Option<f32> {
+        if let Some(height) = self.height([x, y]) {
+            return Some(height);
+        }
+        let coarsest = (x | y).trailing_zeros().min(FARTHEST_RING);
+        (0..=coarsest).find_map(|ring| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for [dx, dy] in RING {
+                let at = [x.saturating_add(dx << ring), y.saturating_add(dy << ring)];
+                if let Some(height) = self.height(at) {
+                    (sum, count) = (sum + height, count + 1.0);
+                }
+            }
+            (count > 0.0).then(|| sum / count)
+        })
+    }
+}

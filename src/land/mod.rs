@@ -1,0 +1,49 @@
+//! Terrain that Welkin draws: the tiles of a context in the host's colour and depth.
+//!
+//! **Ground**. Each square of four neighbouring cells is split along the diagonal from its south-western to its
+//! north-eastern cell into two triangles; a triangle is ground if its three cells have ground. Pictures and queries of
+//! heights have these triangles alike.
+//!
+//! **Levels of detail**. A quadtree of nodes with 16 x 16 squares, whose sides double from level to level, covers the
+//! lattice. Level n has every 2^n-th cell, with the cell's own height. It is used up to a distance of K 2^n cells; K
+//! follows from the error that the host accepts, e pixels: K = d / (e a), where a is the angle of a pixel and d the
+//! error of a level over the side of the squares of the level below it, as measured on the terrain. In the last part of
+//! its distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous Distance-Dependent Level of
+//! Detail), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no skirts and no
+//! jumps.
+//!
+//! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes. Pages
+//! that were used last are kept. A change of the terrain writes the texels of all pages that depend on it, in the frame
+//! that follows; the cost grows with the changed rectangle.
+//!
+//! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise.
+//!
+//! **Light** is that of sun, moon and sky at the ground below the camera, for the ground's own slope; hills cast no
+//! shadows. What the composition adds to the host's own surfaces it adds to the terrain: water, lying snow, shadows of
+//! clouds, air and fog.
+//!
+//! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers of
+//! cells from the cell below the eye.
+//!
+//! **Files**. There is no `candidates.rs`: no plan leaves terrain out.
+
+mod cells;
+mod held;
+mod light;
+mod materials;
+mod page;
+mod pages;
+mod passes;
+#[cfg(test)]
+pub(crate) mod reference;
+mod relief;
+mod selection;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod uniforms;
+mod view;
+
+pub(crate) use held::HeldLand;
+pub use settings::TerrainDrawing;
+pub(crate) use view::LandView;

@@ -1,0 +1,238 @@
+//! Content of a page: the vertices of a node, and the slopes and materials of the ground in it, as texels.
+//!
+//! A page has the heights of the node's 17 x 17 vertices. Slopes and materials are four times finer from level 2 on, so
+//! that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values depend on the
+//! lattice position and the level alone, so pages that meet have the same values on their common edge. Each texel also
+//! has the slope of the next coarser level, to which the shading moves together with the vertices.
+
+use half::f16;
+
+use super::{
+    cells::CellReader,
+    relief::{NODE, NodeKey},
+};
+use crate::terrain::{CLASSES, CellRect};
+
+/// Vertices along a side of a page.
+pub(super) const VERTICES: i32 = NODE + 1;
+/// Texels along a side of a page: four for each square, and two more for interpolation at the far edges.
+pub(super) const TEXELS: i32 = 4 * NODE + 2;
+/// Texels around the page that slopes need: three on each side.
+const MARGIN: i32 = 3;
+/// Positions along a side of the heights that are read for the texels of a page.
+const READ: i32 = TEXELS + 2 * MARGIN;
+/// Largest number of cells along a side of a texel whose classes are read.
+const CLASS_SAMPLES: i32 = 4;
+
+/// Distance between texels of a level, cells.
+pub(super) fn texel_cells(level: u8) -> i32 {
+    1 << level.saturating_sub(2)
+}
+
+/// Texels along a side of a node of a level, without the two that follow.
+pub(super) fn texels_in_node(level: u8) -> i32 {
+    (NODE << level) / texel_cells(level)
+}
+
+/// Texels of slopes: to the east and the north, on this level and on the next coarser one.
+type Slopes = [u16; 4];
+/// Shares of the classes, in the order of their numbers, and in the last byte 255 where there is ground.
+type Classes = [u8; 8];
+
+/// Scratch space in which a page, or a part of it, is computed.
+pub(super) struct PageWriter {
+    /// Heights around the texels, m; NaN where there is no ground.
+    heights: Vec<f32>,
+    /// Slopes of the next coarser level at the same positions.
+    coarse: Vec<[f32; 2]>,
+    pub slopes: Vec<Slopes>,
+    pub classes: Vec<Classes>,
+    pub vertices: Vec<f32>,
+}
+
+impl Default for PageWriter {
+    fn default() -> Self {
+        let side = READ as usize * READ as usize;
+        Self {
+            heights: vec![0.0; side],
+            coarse: vec![[0.0; 2]; side],
+            slopes: Vec::new(),
+            classes: Vec::new(),
+            vertices: Vec::new(),
+        }
+    }
+}
+
+/// Rectangle of texels or vertices of a page: from `low` up to, but not including, `high`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PageRect {
+    pub low: [i32; 2],
+    pub high: [i32; 2],
+}
+
+impl PageRect {
+    /// All texels that a page of a level uses.
+    pub fn texels(level: u8) -> Self {
+        Self { low: [0; 2], high: [texels_in_node(level) + 2; 2] }
+    }
+
+    /// All vertices of a page.
+    pub fn vertices() -> Self {
+        Self { low: [0; 2], high: [VERTICES; 2] }
+    }
+
+    /// Texels of a page that depend on changed cells; `None` if none does.
+    pub fn changed_texels(page: NodeKey, cells: CellRect) -> Option<Self> {
+        // Slopes of the coarser level reach two texels, and are interpolated over one more.
+        Self::within(
+            page,
+            texel_cells(page.level),
+            cells.grown(MARGIN * texel_cells(page.level)),
+            Self::texels(page.level),
+        )
+    }
+
+    /// Vertices of a page that depend on changed cells; `None` if none does.
+    pub fn changed_vertices(page: NodeKey, cells: CellRect) -> Option<Self> {
+        Self::within(page, 1 << page.level, cells, Self::vertices())
+    }
+
+    fn within(page: NodeKey, step: i32, cells: CellRect, all: Self) -> Option<Self> {
+        let origin = page.low();
+        let low = [0, 1].map(|i| (cells.low[i] - origin[i] + step - 1).div_euclid(step).max(all.low[i]));
+        let high = [0, 1].map(|i| ((cells.high[i] - 1 - origin[i]).div_euclid(step) + 1).min(all.high[i]));
+        (low[0] < high[0] && low[1] < high[1]).then_some(Self { low, high })
+    }
+
+    pub fn size(&self) -> [u32; 2] {
+        [0, 1].map(|i| (self.high[i] - self.low[i]) as u32)
+    }
+
+    fn places(self) -> impl Iterator<Item = [i32; 2]> {
+        (self.low[1]..self.high[1]).flat_map(move |j| (self.low[0]..self.high[0]).map(move |i| [i, j]))
+    }
+}
+
+/// Slope between up to three neighbouring heights at a distance; one-sided where one has no ground, 0 where two have
+/// none.
+fn slope(before: f32, own: f32, after: f32, distance: f32) -> f32 {
+    match (before.is_nan(), after.is_nan()) {
+        (false, false) => (after - before) / (2.0 * distance),
+        (true, false) => (after - own) / distance,
+        (false, true) => (own - before) / distance,
+        (true, true) => 0.0,
+    }
+}
+
+impl PageWriter {
+    /// Computes the heights of vertices of a page. Returns whether any of them has no ground.
+    pub fn write_vertices(&mut self, cells: &mut CellReader<'_>, page: NodeKey, rect: PageRect) -> bool {
+        let [x, y] = page.low();
+        let mut is_torn = false;
+        self.vertices.clear();
+        for [i, j] in rect.places() {
+            let place = [x + (i << page.level), y + (j << page.level)];
+            is_torn |= cells.height(place).is_none();
+            self.vertices.push(cells.height_or_near(place).unwrap_or(0.0));
+        }
+        is_torn
+    }
+
+    /// Computes slopes and classes of texels of a page. `default` is the class of cells that have none.
+    pub fn write_texels(&mut self, cells: &mut CellReader<'_>, page: NodeKey, rect: PageRect, default: u8) {
+        self.read_heights(cells, page, rect);
+        let step_m = (f64::from(texel_cells(page.level)) * cells.terrain.desc.cell_m) as f32;
+        let has_coarse = page.level >= 2;
+        if has_coarse {
+            self.find_coarse(rect, 2.0 * step_m);
+        }
+        self.slopes.clear();
+        self.classes.clear();
+        for [i, j] in rect.places() {
+            let own = self.slope_at([i, j], 1, step_m);
+            let coarse = if has_coarse { self.coarse_at([i, j]) } else { own };
+            let half = |v: f32| f16::from_f32(v.clamp(-6e4, 6e4)).to_bits();
+            self.slopes.push([half(own[0]), half(own[1]), half(coarse[0]), half(coarse[1])]);
+            let place = position(page, [i, j]);
+            let classes = classes(cells, place, texel_cells(page.level), default);
+            self.classes.push(classes);
+        }
+    }
+
+    /// Index of a texel in the scratch arrays.
+    fn index([i, j]: [i32; 2]) -> usize {
+        (j + MARGIN) as usize * READ as usize + (i + MARGIN) as usize
+    }
+
+    fn read_heights(&mut self, cells: &mut CellReader<'_>, page: NodeKey, rect: PageRect) {
+        let around = PageRect { low: rect.low.map(|v| v - MARGIN), high: rect.high.map(|v| v + MARGIN) };
+        for at in around.places() {
+            self.heights[Self::index(at)] = cells.height(position(page, at)).unwrap_or(f32::NAN);
+        }
+    }
+
+    /// Slope at a texel from the texels `distance` away.
+    fn slope_at(&self, [i, j]: [i32; 2], distance: i32, distance_m: f32) -> [f32; 2] {
+        let height = |at: [i32; 2]| self.heights[Self::index(at)];
+        let own = height([i, j]);
+        if own.is_nan() {
+            return [0.0; 2];
+        }
+        [
+            slope(height([i - distance, j]), own, height([i + distance, j]), distance_m),
+            slope(height([i, j - distance]), own, height([i, j + distance]), distance_m),
+        ]
+    }
+
+    /// Computes the slopes of the next coarser level, whose texels are every other one.
+    fn find_coarse(&mut self, rect: PageRect, distance_m: f32) {
+        let (low, high) = (rect.low.map(|v| v - 1), rect.high.map(|v| v + 1));
+        for at in (PageRect { low, high }).places().filter(|at| at[0] & 1 == 0 && at[1] & 1 == 0) {
+            self.coarse[Self::index(at)] = self.slope_at(at, 2, distance_m);
+        }
+    }
+
+    /// Slope of the next coarser level at a texel, interpolated between its own texels.
+    fn coarse_at(&self, [i, j]: [i32; 2]) -> [f32; 2] {
+        let (x, y) = ([i - (i & 1), i + (i & 1)], [j - (j & 1), j + (j & 1)]);
+        let at = |i: i32, j: i32| self.coarse[Self::index([i, j])];
+        let corners = [at(x[0], y[0]), at(x[1], y[0]), at(x[0], y[1]), at(x[1], y[1])];
+        [0, 1].map(|axis| 0.25 * corners.iter().map(|c| c[axis]).sum::<f32>())
+    }
+}
+
+/// Lattice position of a texel.
+fn position(page: NodeKey, [i, j]: [i32; 2]) -> [i32; 2] {
+    let ([x, y], step) = (page.low(), texel_cells(page.level));
+    [x + i * step, y + j * step]
+}
+
+/// Shares of the classes in the square of a texel around a lattice position.
+fn classes(cells: &mut CellReader<'_>, [x, y]: [i32; 2], side: i32, default: u8) -> Classes {
+    let mut texel = [0; 8];
+    let Some(own) = cells.class([x, y]) else { return texel };
+    texel[7] = 255;
+    let class = |number: u8| usize::from(if number == 0 { default } else { number });
+    let count = side.min(CLASS_SAMPLES);
+    if count == 1 {
+        texel[class(own)] = 255;
+        return texel;
+    }
+    let off = |k: i32| (2 * k + 1) * side / (2 * count) - side / 2;
+    let (mut shares, mut all) = ([0u32; CLASSES], 0);
+    for j in 0..count {
+        for i in 0..count {
+            if let Some(number) = cells.class([x + off(i), y + off(j)]) {
+                shares[class(number)] += 1;
+                all += 1;
+            }
+        }
+    }
+    if all == 0 {
+        (shares[class(own)], all) = (1, 1);
+    }
+    for (to, share) in texel.iter_mut().zip(shares) {
+        *to = (255 * share / all) as u8;
+    }
+    texel
+}

@@ -1,0 +1,182 @@
+//! Pages on the GPU: textures with a slot for each page, of which those used last are kept.
+
+use std::collections::HashMap;
+
+use super::{
+    cells::{CellReader, FARTHEST_RING},
+    page::{PageRect, PageWriter, TEXELS, VERTICES},
+    relief::NodeKey,
+};
+use crate::{
+    gpu::{Device, flat_texture},
+    terrain::{CellRect, Terrain},
+};
+
+/// Slots in a row of the textures.
+pub(super) const SLOTS_IN_ROW: u32 = 32;
+/// Slots that a view begins with, and the most that it may have.
+const FIRST_SLOTS: u32 = 256;
+const MOST_SLOTS: u32 = 2048;
+
+/// Textures of the pages.
+pub(super) struct PageTextures {
+    /// Heights of the vertices.
+    pub vertices: wgpu::Texture,
+    pub slopes: wgpu::Texture,
+    /// Shares of the first four classes, and of the other three with the presence of ground.
+    pub classes: [wgpu::Texture; 2],
+}
+
+impl PageTextures {
+    fn new(device: &wgpu::Device, slots: u32) -> Self {
+        use wgpu::{TextureFormat as F, TextureUsages as U};
+        let texture = |side: i32, format| {
+            let size = (SLOTS_IN_ROW * side as u32, slots / SLOTS_IN_ROW * side as u32);
+            flat_texture(device, "land pages", size, format, U::TEXTURE_BINDING | U::COPY_DST)
+        };
+        Self {
+            vertices: texture(VERTICES, F::R32Float),
+            slopes: texture(TEXELS, F::Rgba16Float),
+            classes: [texture(TEXELS, F::Rgba8Unorm), texture(TEXELS, F::Rgba8Unorm)],
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Slot {
+    page: Option<NodeKey>,
+    /// Number of the last picture that used it.
+    used: u64,
+    /// Whether a texel has no ground, and whether a vertex has none.
+    has_holes: bool,
+    is_torn: bool,
+}
+
+const EMPTY: Slot = Slot { page: None, used: 0, has_holes: false, is_torn: false };
+
+/// Pages of a view.
+#[derive(Default)]
+pub(super) struct Pages {
+    slots: Vec<Slot>,
+    by_key: HashMap<NodeKey, u32>,
+    pub textures: Option<PageTextures>,
+    /// Number of the present picture.
+    picture: u64,
+    writer: PageWriter,
+    /// Scratch space: class texels of one texture.
+    half: Vec<[u8; 4]>,
+    /// Class of cells without one, with which the pages were filled.
+    default_class: u8,
+    /// Texels written since the view was created.
+    #[cfg(test)]
+    pub texels_written: u64,
+}
+
+impl Pages {
+    /// Begins a picture in which cells without a class have the class `default`.
+    pub fn begin(&mut self, default: u8) {
+        self.picture += 1;
+        if self.default_class != default {
+            self.default_class = default;
+            self.forget();
+        }
+    }
+
+    /// Forgets all pages.
+    pub fn forget(&mut self) {
+        self.by_key.clear();
+        self.slots.iter_mut().for_each(|slot| slot.page = None);
+    }
+
+    /// Writes the parts of the pages that depend on changed cells.
+    pub fn update(&mut self, device: &Device, terrain: &Terrain, rect: CellRect) {
+        for slot in 0..self.slots.len() {
+            let Some(page) = self.slots[slot].page else { continue };
+            if let Some(part) = PageRect::changed_texels(page, rect) {
+                self.write_texels(device, terrain, (slot as u32, page), part);
+            }
+            // Vertices without ground have the height of ground far around them.
+            let is_near = self.slots[slot].is_torn && page.rect().meets(rect.grown(1 << FARTHEST_RING)).is_some();
+            let vertices = if is_near { Some(PageRect::vertices()) } else { PageRect::changed_vertices(page, rect) };
+            if let Some(part) = vertices {
+                self.write_vertices(device, terrain, (slot as u32, page), part);
+            }
+        }
+    }
+
+    /// Returns the slot of a page, which is filled if it was not there. `None` if more pages are used in this picture
+    /// than there is room for.
+    pub fn slot_of(&mut self, device: &Device, terrain: &Terrain, page: NodeKey) -> Option<u32> {
+        if let Some(slot) = self.by_key.get(&page) {
+            self.slots[*slot as usize].used = self.picture;
+            return Some(*slot);
+        }
+        let oldest = (0..self.slots.len()).min_by_key(|i| (self.slots[*i].page.is_some(), self.slots[*i].used));
+        let slot = oldest.filter(|i| self.slots[*i].page.is_none() || self.slots[*i].used < self.picture)?;
+        if let Some(before) = self.slots[slot].page {
+            self.by_key.remove(&before);
+        }
+        self.slots[slot] = Slot { page: Some(page), used: self.picture, ..EMPTY };
+        self.by_key.insert(page, slot as u32);
+        self.write_texels(device, terrain, (slot as u32, page), PageRect::texels(page.level));
+        self.write_vertices(device, terrain, (slot as u32, page), PageRect::vertices());
+        Some(slot as u32)
+    }
+
+    /// Makes room for more pages, and forgets those that are there. Returns whether there is more room now.
+    pub fn grow(&mut self, device: &Device) -> bool {
+        let count = (2 * self.slots.len() as u32).clamp(FIRST_SLOTS, MOST_SLOTS);
+        if count as usize == self.slots.len() {
+            return false;
+        }
+        self.textures = Some(PageTextures::new(&device.device, count));
+        self.slots = vec![EMPTY; count as usize];
+        self.by_key = HashMap::with_capacity(2 * count as usize);
+        true
+    }
+
+    /// Whether any texel of a slot has no ground.
+    pub fn has_holes(&self, slot: u32) -> bool {
+        self.slots[slot as usize].has_holes
+    }
+
+    /// GPU memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        let [vertices, texels] = [VERTICES, TEXELS].map(|side| u64::from(side.unsigned_abs().pow(2)));
+        self.slots.len() as u64 * (4 * vertices + 16 * texels)
+    }
+
+    fn write_vertices(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
+        let Some(textures) = &self.textures else { return };
+        let is_torn = self.writer.write_vertices(&mut CellReader::new(terrain), page, part);
+        self.slots[slot as usize].is_torn |= is_torn;
+        write(device, &textures.vertices, (slot, VERTICES), part, bytemuck::cast_slice(&self.writer.vertices));
+    }
+
+    fn write_texels(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
+        let Some(textures) = &self.textures else { return };
+        self.writer.write_texels(&mut CellReader::new(terrain), page, part, self.default_class);
+        self.slots[slot as usize].has_holes |= self.writer.classes.iter().any(|texel| texel[7] == 0);
+        #[cfg(test)]
+        {
+            self.texels_written += self.writer.slopes.len() as u64;
+        }
+        write(device, &textures.slopes, (slot, TEXELS), part, bytemuck::cast_slice(&self.writer.slopes));
+        for (i, texture) in textures.classes.iter().enumerate() {
+            self.half.clear();
+            self.half.extend(self.writer.classes.iter().map(|c| [c[4 * i], c[4 * i + 1], c[4 * i + 2], c[4 * i + 3]]));
+            write(device, texture, (slot, TEXELS), part, bytemuck::cast_slice(&self.half));
+        }
+    }
+}
+
+/// Writes a part of a slot, whose side is given in texels.
+fn write(device: &Device, texture: &wgpu::Texture, (slot, side): (u32, i32), part: PageRect, bytes: &[u8]) {
+    let [width, height] = part.size();
+    let corner = [slot % SLOTS_IN_ROW, slot / SLOTS_IN_ROW].map(|v| v * side as u32);
+    let origin = wgpu::Origin3d { x: corner[0] + part.low[0] as u32, y: corner[1] + part.low[1] as u32, z: 0 };
+    let to = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+    let bytes_per_row = Some((bytes.len() / height as usize) as u32);
+    let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+    device.write_texture(to, bytes, rows, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
+}

@@ -1,0 +1,97 @@
+//! Reference of the drawn terrain: rays against every triangle of the ground in f64, and the vertices of
+//! `shaders/land/vertex.wgsl` in the same single precision.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    page::VERTICES,
+    selection::PATCH,
+    uniforms::{LandUniform, PatchInstance},
+};
+use crate::terrain::Terrain;
+
+/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `from` and the unit vector `direction` are in
+/// metres along the lattice's axes from its origin.
+pub(crate) fn ray_to_ground(terrain: &Terrain, from: DVec3, direction: DVec3, farthest_m: f64) -> Option<f64> {
+    let cell_m = terrain.desc.cell_m;
+    let plan = DVec2::new(direction.x, direction.y) / cell_m;
+    let start = DVec2::new(from.x, from.y) / cell_m;
+    // Ends of the stretches of the ray over one square.
+    let mut begin = 0.0;
+    let mut square = start.floor();
+    loop {
+        let next = |i: usize| {
+            let edge = if plan[i] > 0.0 { square[i] + 1.0 } else { square[i] };
+            if plan[i] == 0.0 { f64::INFINITY } else { (edge - start[i]) / plan[i] }
+        };
+        let (x, y) = (next(0), next(1));
+        let end = x.min(y).min(farthest_m);
+        let found = [true, false].into_iter().filter_map(|south| {
+            let range = range_to_triangle(terrain, square, south, from, direction)?;
+            (range >= begin - 1e-9 && range <= end + 1e-9 && range > 0.0).then_some(range)
+        });
+        if let Some(range) = found.reduce(f64::min) {
+            return Some(range);
+        }
+        if end >= farthest_m {
+            return None;
+        }
+        begin = end;
+        let axis = usize::from(y < x);
+        square[axis] += plan[axis].signum();
+    }
+}
+
+/// Distance along a ray to the plane of a triangle of a square, if the ray meets the triangle itself.
+fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, from: DVec3, direction: DVec3) -> Option<f64> {
+    let [x, y] = [square.x as i32, square.y as i32];
+    let height = |place| terrain.cell_at(place).map(|cell| f64::from(terrain.height(cell)));
+    let low = height([x, y])?;
+    let far = height([x + 1, y + 1])?;
+    let third = height(if south { [x + 1, y] } else { [x, y + 1] })?;
+    let cell_m = terrain.desc.cell_m;
+    let (along, across) = ((third - low) / cell_m, (far - third) / cell_m);
+    let slope = if south { DVec2::new(along, across) } else { DVec2::new(across, along) };
+    let over = from.z - low - slope.dot(DVec2::new(from.x, from.y) - square * cell_m);
+    let fall = slope.dot(DVec2::new(direction.x, direction.y)) - direction.z;
+    let range = over / fall;
+    let at = (DVec2::new(from.x, from.y) + range * DVec2::new(direction.x, direction.y)) / cell_m - square;
+    let inside = if south { at.x >= at.y - 1e-9 } else { at.y >= at.x - 1e-9 };
+    (range.is_finite() && inside).then_some(range)
+}
+
+/// Vertex of a patch: its place from the eye along the lattice's axes, m. `height` returns the height of a vertex of the
+/// page.
+pub(super) fn vertex(
+    land: &LandUniform,
+    patch: &PatchInstance,
+    index: i32,
+    height: impl Fn([i32; 2]) -> f32,
+) -> [f32; 3] {
+    let level = patch.kind & 255;
+    let quarter = [(patch.kind >> 8 & 1) as i32, (patch.kind >> 9 & 1) as i32];
+    let at = [index % (PATCH + 1), index / (PATCH + 1)];
+    let odd = at.map(|v| v & 1);
+    let cell = [0, 1].map(|i| patch.low[i] + (at[i] << level));
+    let coarse_cell = [0, 1].map(|i| patch.low[i] + ((at[i] - odd[i]) << level));
+    let in_page = [0, 1].map(|i| quarter[i] * PATCH + at[i]);
+    debug_assert!(in_page.iter().all(|v| *v < VERTICES));
+    let own = place(land, cell, height(in_page));
+    let coarse = place(land, coarse_cell, height([0, 1].map(|i| in_page[i] - odd[i])));
+    let morph = morph(land, cell, level);
+    [0, 1, 2].map(|i| if morph >= 1.0 { coarse[i] } else { own[i] + (coarse[i] - own[i]) * morph })
+}
+
+fn place(land: &LandUniform, cell: [i32; 2], height: f32) -> [f32; 3] {
+    let plan = [0, 1].map(|i| (cell[i] as f32 - land.eye[i]) * land.cell_m);
+    [plan[0], plan[1], (height - land.eye[2]) - land.eye[3]]
+}
+
+fn morph(land: &LandUniform, cell: [i32; 2], level: u32) -> f32 {
+    if level >= land.top {
+        return 0.0;
+    }
+    let flat = [0, 1].map(|i| (cell[i] as f32 - land.eye[i]) * land.spread);
+    let distance = (flat[0] * flat[0] + flat[1] * flat[1] + land.above * land.above).sqrt();
+    ((distance * (-(level as f32)).exp2() - land.morph[0]) * land.morph[1]).clamp(0.0, 1.0)
+}

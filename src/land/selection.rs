@@ -1,0 +1,188 @@
+//! Selection of the patches that a picture shows: a quadtree whose levels follow the distance from the eye.
+//!
+//! A level is used up to a distance proportional to its squares' side: `reach` sides. Distances are horizontal, with
+//! the height of the eye above one reference height, so that they depend on the place alone and not on its height. The
+//! vertices of a level move onto those of the next coarser one before its distance ends (Strugar 2010). Where two levels
+//! meet, the finer one is wholly in the coarser one's form, and the coarser one has not begun to change: both have the
+//! same vertices, and there is no crack. [`SHORTEST_REACH`] leaves room for both.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use super::relief::{NODE, NodeKey, Relief};
+use crate::scene::Camera;
+
+/// Squares along a side of a patch, the unit that is drawn: a quarter of a node.
+pub(super) const PATCH: i32 = NODE / 2;
+/// Shortest and longest reach of a level, in sides of its squares.
+pub(super) const SHORTEST_REACH: f64 = 40.0;
+const LONGEST_REACH: f64 = 160.0;
+/// Diagonal of a node, in sides of its squares, rounded up. A node that begins within the reach of its level ends within
+/// this distance beyond it.
+const DIAGONAL: f64 = 23.0;
+/// Longest side of a square in the picture, pixels.
+const LONGEST_SIDE_PX: f64 = 10.0;
+/// Factor by which distances may exceed the true ones ([`Relief::reference_m`]).
+const FARTHER: f64 = 1.07;
+/// Share of a distance that single precision may be off.
+const ROUNDING: f64 = 1e-4;
+/// Largest number of patches of a picture. Beyond it levels become coarser.
+const MOST_PATCHES: usize = 4096;
+
+/// Part of the lattice that is drawn at one level, from the page of a node of that level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Patch {
+    pub page: NodeKey,
+    /// Quarter of the node: 0 or 1 to the east and to the north.
+    pub quarter: [i32; 2],
+}
+
+impl Patch {
+    /// Lattice position of the south-western corner.
+    pub fn low(self) -> [i32; 2] {
+        let low = self.page.low();
+        [0, 1].map(|i| low[i] + self.quarter[i] * (PATCH << self.page.level))
+    }
+}
+
+/// Distances by which levels are chosen and vertices moved, for one picture. Lengths are in cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Detail {
+    /// Place of the eye on the lattice.
+    pub eye: DVec2,
+    /// Height of the eye above the reference, at least 0.
+    pub above: f64,
+    /// Weight of the horizontal distance: 1, or 0 for parallel rays, whose pixels are equally large at any distance.
+    pub spread: f64,
+    /// Reach of a level, in sides of its squares.
+    pub reach: f64,
+}
+
+impl Detail {
+    /// Returns the distances for a camera. `eye` is in cells, `eye_m` its height above the terrain's origin, `height_px`
+    /// the height of the picture.
+    pub fn new(
+        relief: &mut Relief,
+        camera: &Camera,
+        (eye, eye_m): (DVec2, f64),
+        cell_m: f64,
+        (height_px, error_px): (f64, f64),
+    ) -> Self {
+        // Size of a pixel in the picture's middle: its angle, or its side in metres for parallel rays.
+        let pixel = 2.0 / (camera.projection.y_axis.y.abs().max(1e-12) * height_px.max(1.0));
+        let roughness = relief.roughness().max(1e-6);
+        if camera.is_orthographic() {
+            let side = (error_px * pixel / roughness).min(LONGEST_SIDE_PX * pixel);
+            let level = (side / cell_m).max(1.0).log2().floor();
+            return Self { eye, above: SHORTEST_REACH * (level - 0.5).exp2(), spread: 0.0, reach: SHORTEST_REACH };
+        }
+        let reach = FARTHER * (roughness / (error_px * pixel)).max(1.0 / (LONGEST_SIDE_PX * pixel));
+        let above = ((eye_m - relief.reference_m(eye, cell_m)) / cell_m).max(0.0);
+        Self { eye, above, spread: 1.0, reach: reach.clamp(SHORTEST_REACH, LONGEST_REACH) }
+    }
+
+    /// Distances of level 0 at which vertices begin to move, and at which they have arrived, cells. Those of level n are
+    /// 2^n times as large.
+    pub fn morph(&self) -> [f64; 2] {
+        let start = (0.5 * (self.reach + DIAGONAL)).max(0.7 * self.reach);
+        [start * (1.0 + ROUNDING), self.reach * (1.0 - ROUNDING)]
+    }
+
+    /// Distance of a node from the eye, cells.
+    pub fn distance(&self, node: NodeKey) -> f64 {
+        (self.spread * node.distance(self.eye)).hypot(self.above)
+    }
+
+    /// Distance up to which a level is used, cells.
+    pub fn reach_of(&self, level: u8) -> f64 {
+        self.reach * f64::from(1u32 << level)
+    }
+}
+
+/// Planes of the camera's frustum, in metres from the eye along the lattice's axes.
+#[derive(Clone, Copy)]
+pub(super) struct Frustum {
+    planes: [DVec4; 5],
+    /// Side of a cell, m, and the height of the eye, m.
+    cell_m: f64,
+    eye: DVec3,
+}
+
+impl Frustum {
+    /// Returns the frustum of a matrix from the lattice's axes about the eye, m, to clip space. `eye` is in cells, with
+    /// its height in metres.
+    pub fn new(clip: DMat4, eye: DVec3, cell_m: f64) -> Self {
+        let rows = clip.transpose();
+        let (x, y, w) = (rows.x_axis, rows.y_axis, rows.w_axis);
+        Self { planes: [w + x, w - x, w + y, w - y, w], cell_m, eye }
+    }
+
+    /// Whether a box of the lattice may be in the picture.
+    fn sees(&self, low: [i32; 2], side: i32, heights: [f32; 2]) -> bool {
+        let x = [low[0], low[0] + side].map(|v| (f64::from(v) - self.eye.x) * self.cell_m);
+        let y = [low[1], low[1] + side].map(|v| (f64::from(v) - self.eye.y) * self.cell_m);
+        let z = heights.map(|v| f64::from(v) - self.eye.z);
+        self.planes.iter().all(|plane| {
+            let most = |v: [f64; 2], n: f64| (v[0] * n).max(v[1] * n);
+            most(x, plane.x) + most(y, plane.y) + most(z, plane.z) + plane.w > 0.0
+        })
+    }
+}
+
+/// Selects the patches of a picture, roughly from near to far. If they are too many, `detail` is made coarser.
+pub(super) fn select(relief: &Relief, detail: &mut Detail, frustum: &Frustum, patches: &mut Vec<Patch>) {
+    loop {
+        patches.clear();
+        let selection = Selection { relief, detail, frustum };
+        let mut roots = [NodeKey { level: 0, x: 0, y: 0 }; 4];
+        let count = relief.roots().len().min(4);
+        roots[..count].copy_from_slice(&relief.roots()[..count]);
+        selection.sort(&mut roots[..count]);
+        roots[..count].iter().for_each(|root| selection.add(*root, patches));
+        if patches.len() <= MOST_PATCHES {
+            return;
+        }
+        detail.above = 2.0 * detail.above.max(detail.reach);
+    }
+}
+
+struct Selection<'a> {
+    relief: &'a Relief,
+    detail: &'a Detail,
+    frustum: &'a Frustum,
+}
+
+impl Selection<'_> {
+    fn sort(&self, nodes: &mut [NodeKey]) {
+        nodes.sort_by(|a, b| a.distance(self.detail.eye).total_cmp(&b.distance(self.detail.eye)));
+    }
+
+    fn sees(&self, node: NodeKey, bounds: [f32; 2]) -> bool {
+        self.frustum.sees(node.low(), node.side(), bounds)
+    }
+
+    /// Adds the patches of a node that lies within the reach of its level, or is a root.
+    fn add(&self, node: NodeKey, patches: &mut Vec<Patch>) {
+        if patches.len() > MOST_PATCHES {
+            return;
+        }
+        let Some(bounds) = self.relief.bounds(node) else { return };
+        if !self.sees(node, bounds) {
+            return;
+        }
+        if node.level == 0 {
+            patches.extend(QUARTERS.map(|quarter| Patch { page: node, quarter }));
+            return;
+        }
+        let mut children = node.children();
+        self.sort(&mut children);
+        for child in children {
+            if self.detail.distance(child) < self.detail.reach_of(child.level) {
+                self.add(child, patches);
+            } else if self.relief.bounds(child).is_some_and(|bounds| self.sees(child, bounds)) {
+                patches.push(Patch { page: node, quarter: [child.x - 2 * node.x, child.y - 2 * node.y] });
+            }
+        }
+    }
+}
+
+const QUARTERS: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];

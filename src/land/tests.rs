@@ -1,0 +1,160 @@
+//! Tests of the drawn terrain without a device: patches that meet have the same vertices, and pages the same texels.
+
+use std::collections::HashMap;
+
+use glam::{DMat3, DMat4, DVec2, DVec3};
+
+use super::{
+    cells::CellReader,
+    light::LandLight,
+    page::{PageRect, PageWriter, VERTICES},
+    passes::patch_indices,
+    reference::vertex,
+    relief::Relief,
+    selection::{Detail, Frustum, Patch, SHORTEST_REACH, select},
+    uniforms::{LandEye, LandPicture, LandUniform, PatchInstance},
+};
+use crate::{
+    chance::RandomStream,
+    scene::WorldFrame,
+    terrain::{Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
+};
+
+const SIDE: u32 = 128;
+
+/// Rough ground: hills of 64 cells with a step between neighbours that differs from cell to cell.
+fn height(x: i32, y: i32) -> f32 {
+    let (u, v) = (f64::from(x), f64::from(y));
+    let rough = f64::from((x.wrapping_mul(73_856_093) ^ y.wrapping_mul(19_349_663)) & 255) / 255.0;
+    (9.0 * libm::sin(u / 10.0) * libm::cos(v / 13.0) + 30.0 * libm::sin(u / 97.0 + v / 71.0) + rough) as f32
+}
+
+/// Terrain of `count` x `count` tiles; cells where `is_hole` is true have no ground.
+fn terrain(count: i32, is_hole: impl Fn(i32, i32) -> bool) -> Terrain {
+    let desc = TerrainDesc { origin: DVec3::ZERO, cell_m: 1.0, tile_cells: SIDE };
+    let mut terrain = Terrain::new(desc, &WorldFrame::default()).unwrap();
+    for north in 0..count {
+        for east in 0..count {
+            let place = |i: i32| (east * SIDE as i32 + i % SIDE as i32, north * SIDE as i32 + i / SIDE as i32);
+            let cells = (SIDE * SIDE) as i32;
+            let heights: Vec<f32> = (0..cells).map(|i| height(place(i).0, place(i).1)).collect();
+            let class = |i: i32| (!is_hole(place(i).0, place(i).1)).then_some(SurfaceClass::Vegetation);
+            let classes: Vec<_> = (0..cells).map(class).collect();
+            let key = TileKey::new(east, north);
+            let cells =
+                TerrainCells { key, heights_m: Rows::of(&heights), classes: Rows::of(&classes), ..Default::default() };
+            terrain.set_tile(&cells).unwrap();
+        }
+    }
+    terrain
+}
+
+/// A frustum that sees everything.
+fn everything() -> Frustum {
+    let w = DMat4::from_cols_array(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    Frustum::new(w, DVec3::ZERO, 1.0)
+}
+
+fn uniform_of(detail: &Detail, eye: LandEye, top: u8) -> LandUniform {
+    let light = LandLight::default();
+    LandPicture {
+        eye,
+        detail,
+        cell_m: 1.0,
+        top,
+        to_local: DMat3::IDENTITY,
+        clip: DMat4::IDENTITY,
+        curvature: 0.0,
+        altitude_m: 0.0,
+        light: &light,
+    }
+    .uniform()
+}
+
+/// Vertices of all patches of a picture, as the shader places them.
+struct Mesh {
+    patches: Vec<(Patch, Vec<[u32; 3]>)>,
+}
+
+impl Mesh {
+    fn new(terrain: &Terrain, relief: &Relief, detail: &mut Detail, eye: DVec3) -> Self {
+        let mut patches = Vec::new();
+        select(relief, detail, &everything(), &mut patches);
+        let eye = LandEye::new(eye);
+        let land = uniform_of(detail, eye, relief.top());
+        let (mut writer, mut pages) = (PageWriter::default(), HashMap::new());
+        let mut vertices = |patch: &Patch| -> Vec<[u32; 3]> {
+            let page: &Vec<f32> = pages.entry(patch.page).or_insert_with(|| {
+                writer.write_vertices(&mut CellReader::new(terrain), patch.page, PageRect::vertices());
+                writer.vertices.clone()
+            });
+            let quarter = (patch.quarter[0] | patch.quarter[1] << 1) as u32;
+            let low = [0, 1].map(|i| patch.low()[i] - eye.cell[i]);
+            let instance = PatchInstance { low, slot: 0, kind: u32::from(patch.page.level) | quarter << 8 };
+            let place = |i| vertex(&land, &instance, i, |[x, y]| page[(y * VERTICES + x) as usize]);
+            (0..81).map(|i| place(i).map(f32::to_bits)).collect()
+        };
+        Self { patches: patches.iter().map(|patch| (*patch, vertices(patch))).collect() }
+    }
+
+    /// Edges of triangles with an area that are not shared by two triangles, bit for bit.
+    fn open_edges(&self) -> Vec<[[f32; 3]; 2]> {
+        let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
+        let indices: Vec<u16> = patch_indices().collect();
+        for (_, vertices) in &self.patches {
+            for corners in indices.chunks(3) {
+                let corners = [0, 1, 2].map(|i| vertices[usize::from(corners[i])]);
+                if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+                    continue;
+                }
+                for i in 0..3 {
+                    let (a, b) = (corners[i], corners[(i + 1) % 3]);
+                    let (key, turn) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+                    *edges.entry(key).or_insert(0) += turn;
+                }
+            }
+        }
+        let open = edges.into_iter().filter(|(_, turns)| *turns != 0);
+        open.map(|(edge, _)| edge.map(|v| v.map(f32::from_bits))).collect()
+    }
+}
+
+/// Random place of an eye over the terrain, cells and metres.
+fn random_eye(chance: &mut RandomStream, side: f64) -> DVec3 {
+    let height = 400.0 * chance.unit() * chance.unit();
+    DVec3::new((1.4 * chance.unit() - 0.2) * side, (1.4 * chance.unit() - 0.2) * side, 40.0 + height)
+}
+
+fn random_detail(chance: &mut RandomStream, relief: &mut Relief, eye: DVec3) -> Detail {
+    let plan = DVec2::new(eye.x, eye.y);
+    let above = (eye.z - relief.reference_m(plan, 1.0)).max(0.0);
+    Detail { eye: plan, above, spread: 1.0, reach: SHORTEST_REACH + 30.0 * chance.unit() }
+}
+
+/// The mesh of each view has only the terrain's outer edge as its edge. With 5000 views it holds too (two minutes).
+#[test]
+fn patches_that_meet_share_their_vertices_to_the_bit() {
+    let terrain = terrain(4, |_, _| false);
+    let side = f64::from(4 * SIDE);
+    let mut relief = Relief::default();
+    relief.update(&terrain, |_| ());
+    let (mut chance, mut levels) = (RandomStream::new(7, 1), [0; 8]);
+    for view in 0..60 {
+        let eye = random_eye(&mut chance, side);
+        let mut detail = random_detail(&mut chance, &mut relief, eye);
+        let mesh = Mesh::new(&terrain, &relief, &mut detail, eye);
+        mesh.patches.iter().for_each(|(patch, _)| levels[usize::from(patch.page.level)] += 1);
+        let cell = LandEye::new(eye).cell;
+        let part = [0, 1].map(|i| (eye[i] - f64::from(cell[i])) as f32);
+        for edge in mesh.open_edges() {
+            let is_outer = (0..2).any(|axis| {
+                [0.0, side as f32].iter().any(|end| {
+                    let at = end - cell[axis] as f32 - part[axis];
+                    edge.iter().all(|v| (v[axis] - at).abs() < 1e-3)
+                })
+            });
+            assert!(is_outer, "view {view} from {eye}: {edge:?} is open");
+        }
+    }
+    assert!(levels[..5].iter().all(|count| *count > 50), "{levels:?}");
+}

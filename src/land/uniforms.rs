@@ -1,0 +1,145 @@
+//! Uniform block and instances of the drawn terrain, as `shaders/land/` reads them.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::{
+    light::LandLight,
+    materials::{CLASS_MATERIALS, MATERIALS, Material, OCTAVES, Octave, octaves},
+    selection::Detail,
+};
+
+/// Constants of a picture. `shaders/land/uniform.wgsl` has the units.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct LandUniform {
+    pub clip: [f32; 16],
+    pub to_local: [[f32; 4]; 3],
+    pub eye: [f32; 4],
+    pub cell_m: f32,
+    pub above: f32,
+    pub spread: f32,
+    pub top: u32,
+    pub morph: [f32; 2],
+    pub curvature: f32,
+    pub altitude: f32,
+    pub sun: [f32; 4],
+    pub sun_lux: [f32; 4],
+    pub moon: [f32; 4],
+    pub moon_lux: [f32; 4],
+    pub sky_lux: [f32; 4],
+    pub bounce_lux: [f32; 4],
+    pub materials: [Material; MATERIALS],
+    pub octaves: [Octave; OCTAVES],
+}
+
+/// One patch of a picture.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct PatchInstance {
+    /// South-western corner, in cells from the one under the eye.
+    pub low: [i32; 2],
+    /// Slot of the page.
+    pub slot: u32,
+    /// Level in bits 0 to 7, quarter of the node in bits 8 and 9, whether the page has holes in bit 10.
+    pub kind: u32,
+}
+
+/// Place of the eye over a terrain's lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LandEye {
+    /// Cells east and north of the origin, and metres above it.
+    pub place: DVec3,
+    /// Cell of the lattice below the eye.
+    pub cell: [i32; 2],
+}
+
+impl LandEye {
+    pub fn new(place: DVec3) -> Self {
+        Self { place, cell: [place.x.floor() as i32, place.y.floor() as i32] }
+    }
+
+    /// Place of the eye in the cell, and its height as a sum of two floats.
+    fn uniform(&self) -> [f32; 4] {
+        let part = [0, 1].map(|i| (self.place[i] - f64::from(self.cell[i])) as f32);
+        let height = self.place.z as f32;
+        [part[0], part[1], height, (self.place.z - f64::from(height)) as f32]
+    }
+}
+
+/// Inputs of [`LandUniform`].
+pub(super) struct LandPicture<'a> {
+    pub eye: LandEye,
+    pub detail: &'a Detail,
+    pub cell_m: f64,
+    /// Level of the largest nodes.
+    pub top: u8,
+    /// Rotation from the lattice's axes to east, north, up at the camera.
+    pub to_local: DMat3,
+    /// Matrix from camera-relative east, north, up to clip space.
+    pub clip: DMat4,
+    /// Curvature of the planet, 1/m; 0 in a flat world.
+    pub curvature: f64,
+    /// Altitude of the terrain's origin above the sea, m.
+    pub altitude_m: f64,
+    pub light: &'a LandLight,
+}
+
+fn four(v: DVec3) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, 0.0]
+}
+
+fn lux(v: [f64; 3]) -> [f32; 4] {
+    [v[0] as f32, v[1] as f32, v[2] as f32, 0.0]
+}
+
+impl LandPicture<'_> {
+    pub fn uniform(&self) -> LandUniform {
+        let [start, end] = self.detail.morph();
+        let metres = DVec3::new(self.place_m(0), self.place_m(1), self.eye.place.z);
+        LandUniform {
+            clip: (self.clip * DMat4::from_mat3(self.to_local)).as_mat4().to_cols_array(),
+            to_local: [0, 1, 2].map(|i| four(self.to_local.col(i))),
+            eye: self.eye.uniform(),
+            cell_m: self.cell_m as f32,
+            above: self.detail.above as f32,
+            spread: self.detail.spread as f32,
+            top: u32::from(self.top),
+            morph: [start as f32, (1.0 / (end - start)) as f32],
+            curvature: self.curvature as f32,
+            altitude: self.altitude_m as f32,
+            sun: four(self.light.sun),
+            sun_lux: lux(self.light.sun_lux),
+            moon: four(self.light.moon),
+            moon_lux: lux(self.light.moon_lux),
+            sky_lux: lux(self.light.sky_lux),
+            bounce_lux: lux(self.light.bounce_lux),
+            materials: CLASS_MATERIALS,
+            octaves: octaves(metres),
+        }
+    }
+
+    fn place_m(&self, axis: usize) -> f64 {
+        self.eye.place[axis] * self.cell_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::shader;
+
+    #[test]
+    fn offsets_agree_with_the_shader() {
+        shader::assert_layout!(
+            "land/land.wgsl",
+            "LandUniform",
+            LandUniform,
+            [
+                clip, to_local, eye, cell_m, above, spread, top, morph, curvature, altitude, sun, sun_lux, moon,
+                moon_lux, sky_lux, bounce_lux, materials, octaves
+            ]
+        );
+        shader::assert_layout!("land/land.wgsl", "Material", Material, [albedo, fine, broad]);
+        shader::assert_layout!("land/land.wgsl", "Octave", Octave, [cell, place, turn]);
+    }
+}
