@@ -70,7 +70,7 @@ fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
     let up = normalize(vec3f(here.xy * land.curvature, max(1.0 + here.z * land.curvature, 0.1)));
     let cosine = dot(normal, up);
     let altitude = land.altitude + in.place.z + land.eye.z;
-    let noise = ground_noise(in.place, footprint);
+    let noise = vec2f(fine_noise(in.place, footprint), broad_noise(in.place, footprint));
     let albedo = ground_albedo(class_shares(uv), cosine, altitude, noise);
     let direct = land.sun_lux.rgb * max(dot(normal, land.sun.xyz), 0.0) + land.moon_lux.rgb * max(dot(normal, land.moon.xyz), 0.0);
     let open = 0.5 + 0.5 * cosine;

@@ -2,51 +2,77 @@
 // (N-41: fBm, filtered by the footprint of a pixel).
 //!include "land/uniform.wgsl"
 
-// Mixes the bits of a cell to a number from -1 to 1 (lowbias32 of Wellons 2018).
-fn cell_number(cell: vec3i, seed: i32) -> f32 {
-    var h = u32(seed) ^ (u32(cell.x) * 0x8da6b343u) ^ (u32(cell.y) * 0xd8163841u) ^ (u32(cell.z) * 0xcb1ab31fu);
-    h = (h ^ (h >> 16u)) * 0x7feb352du;
+// Multipliers that spread the numbers of a cell's three axes over the bits.
+const AXES: vec3u = vec3u(0x8da6b343u, 0xd8163841u, 0xcb1ab31fu);
+
+// Mixes the bits of a cell's key to a number from -1 to 1 (after lowbias32, Wellons 2018).
+fn key_number(key: u32) -> f32 {
+    var h = (key ^ (key >> 16u)) * 0x7feb352du;
     h = (h ^ (h >> 15u)) * 0x846ca68bu;
-    h = h ^ (h >> 16u);
     return f32(h >> 8u) / 8388608.0 - 1.0;
 }
 
-// Value noise of one octave at a place from the eye, m.
-fn octave_noise(octave: Octave, place: vec3f) -> f32 {
+// Value noise of four cells of a level lattice. `low` and `high` are the parts of the cells' keys by axis; `rest` is that
+// of the other axis and the seed.
+fn level_noise(low: vec2u, high: vec2u, rest: u32, share: vec2f) -> f32 {
+    return mix(
+        mix(key_number(low.x ^ low.y ^ rest), key_number(high.x ^ low.y ^ rest), share.x),
+        mix(key_number(low.x ^ high.y ^ rest), key_number(high.x ^ high.y ^ rest), share.x),
+        share.y,
+    );
+}
+
+// Place from the eye, m, in cells of an octave's lattice.
+fn octave_place(octave: Octave, place: vec3f) -> vec3f {
     let turned = vec3f(
         octave.turn.x * place.x - octave.turn.y * place.y,
         octave.turn.y * place.x + octave.turn.x * place.y,
         place.z,
     );
-    let at = octave.place.xyz + turned * octave.place.w;
-    let low = floor(at);
-    let part = at - low;
-    let share = part * part * part * (part * (part * 6.0 - 15.0) + 10.0);
-    let cell = octave.cell.xyz + vec3i(low);
-    let seed = octave.cell.w;
-    let bottom = mix(
-        mix(cell_number(cell, seed), cell_number(cell + vec3i(1, 0, 0), seed), share.x),
-        mix(cell_number(cell + vec3i(0, 1, 0), seed), cell_number(cell + vec3i(1, 1, 0), seed), share.x),
-        share.y,
-    );
-    let top = mix(
-        mix(cell_number(cell + vec3i(0, 0, 1), seed), cell_number(cell + vec3i(1, 0, 1), seed), share.x),
-        mix(cell_number(cell + vec3i(0, 1, 1), seed), cell_number(cell + vec3i(1, 1, 1), seed), share.x),
-        share.y,
-    );
-    return mix(bottom, top, share.z);
+    return octave.place.xyz + turned * octave.place.w;
 }
 
-// Fine and broad noise at a place from the eye, for a pixel with this footprint, m.
-fn ground_noise(place: vec3f, footprint: f32) -> vec2f {
-    var sums = vec2f(0.0);
-    for (var i = 0u; i < OCTAVES; i++) {
+// Share of an octave that a pixel of this footprint, m, can show.
+fn octave_share(octave: Octave, footprint: f32) -> f32 {
+    return 1.0 - smoothstep(octave.turn.z, octave.turn.w, footprint);
+}
+
+// Noise of grains and tufts, in space: it does not stretch on steep ground.
+fn fine_noise(place: vec3f, footprint: f32) -> f32 {
+    var sum = 0.0;
+    for (var i = 0u; i < OCTAVES / 2u; i++) {
         let octave = land.octaves[i];
-        let kept = 1.0 - smoothstep(octave.turn.z, octave.turn.w, footprint);
+        let kept = octave_share(octave, footprint);
         if kept > 0.0 {
-            let value = kept * octave_noise(octave, place);
-            sums += select(vec2f(0.0, value), vec2f(value, 0.0), i < OCTAVES / 2u);
+            let at = octave_place(octave, place);
+            let low = floor(at);
+            let part = at - low;
+            let share = part * part * (3.0 - 2.0 * part);
+            let key = vec3u(octave.cell.xyz + vec3i(low)) * AXES;
+            let next = key + AXES;
+            let seed = u32(octave.cell.w);
+            let bottom = level_noise(key.xy, next.xy, key.z ^ seed, share.xy);
+            let top = level_noise(key.xy, next.xy, next.z ^ seed, share.xy);
+            sum += kept * mix(bottom, top, share.z);
         }
     }
-    return sums;
+    return sum;
+}
+
+// Noise of patches, over the plan.
+fn broad_noise(place: vec3f, footprint: f32) -> f32 {
+    var sum = 0.0;
+    for (var i = OCTAVES / 2u; i < OCTAVES; i++) {
+        let octave = land.octaves[i];
+        let kept = octave_share(octave, footprint);
+        if kept > 0.0 {
+            let at = octave_place(octave, place).xy;
+            let low = floor(at);
+            let part = at - low;
+            let share = part * part * (3.0 - 2.0 * part);
+            let key = vec2u(octave.cell.xy + vec2i(low)) * AXES.xy;
+            sum += kept * level_noise(key, key + AXES.xy, u32(octave.cell.w), share);
+        }
+    }
+    return sum;
 }

@@ -34,14 +34,12 @@ struct LandUniform {
     above: f32,
     // Weight of horizontal distances: 0 for parallel rays.
     spread: f32,
-    // Level of the largest nodes, whose vertices do not move.
-    top: u32,
-    // Distance at which the vertices of level 0 begin to move, cells; 1 over the distance on which they move.
-    morph: vec2f,
-    // Curvature of the planet, 1/m.
-    curvature: f32,
     // Altitude of the terrain's origin, m.
     altitude: f32,
+    // Curvature of the planet, 1/m.
+    curvature: f32,
+    // Of each level, the distance at which its vertices begin to move, cells, and 1 over the distance on which they move.
+    levels: array<vec4f, 27>,
     // Directions to sun and moon in east, north, up at the camera; lux on a surface that faces them.
     sun: vec4f,
     sun_lux: vec4f,

@@ -34,11 +34,10 @@ fn vertex_place(cell: vec2i, height: f32) -> vec3f {
 
 // Share of the next coarser level at a vertex: a function of its place alone.
 fn morph_at(cell: vec2i, level: u32) -> f32 {
-    let level_scale = exp2(-f32(level));
     let flat_place = (vec2f(cell) - land.eye.xy) * land.spread;
     let distance = sqrt(max(dot(flat_place, flat_place) + land.above * land.above, 0.0));
-    let share = clamp((distance * level_scale - land.morph.x) * land.morph.y, 0.0, 1.0);
-    return select(share, 0.0, level >= land.top);
+    let morph = land.levels[min(level, 26u)];
+    return clamp((distance - morph.x) * morph.y, 0.0, 1.0);
 }
 
 @vertex

@@ -88,10 +88,8 @@ fn place(land: &LandUniform, cell: [i32; 2], height: f32) -> [f32; 3] {
 }
 
 fn morph(land: &LandUniform, cell: [i32; 2], level: u32) -> f32 {
-    if level >= land.top {
-        return 0.0;
-    }
     let flat = [0, 1].map(|i| (cell[i] as f32 - land.eye[i]) * land.spread);
     let distance = (flat[0] * flat[0] + flat[1] * flat[1] + land.above * land.above).sqrt();
-    ((distance * (-(level as f32)).exp2() - land.morph[0]) * land.morph[1]).clamp(0.0, 1.0)
+    let [start, scale, ..] = land.levels[level as usize];
+    ((distance - start) * scale).clamp(0.0, 1.0)
 }

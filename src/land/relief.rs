@@ -1,4 +1,4 @@
-//! Bounds of a terrain's heights in a quadtree, and the roughness that decides how far each level of detail reaches.
+//! Bounds of a terrain's heights in a quadtree, and the errors that decide how far each level of detail reaches.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,9 @@ use crate::{
 /// Squares along a side of a node, at every level.
 pub(super) const NODE: i32 = 16;
 /// Level of the largest node: its side is 2^30 cells.
-const MOST_LEVELS: u8 = 26;
+pub(super) const MOST_LEVELS: u8 = 26;
+/// Number of levels.
+pub(super) const LEVELS: usize = MOST_LEVELS as usize + 1;
 /// Number of places at which the error of each level is measured.
 const SAMPLES: u32 = 1024;
 /// Share of the measured errors that the ranges hold: three standard deviations of a normal distribution.
@@ -74,9 +76,9 @@ pub(super) struct Relief {
     /// Level of the roots, and the roots.
     top: u8,
     roots: Vec<NodeKey>,
-    /// Vertical error of a level over the side of the squares of the level below it, both in cells.
-    roughness: f64,
-    /// Cells that changed since the roughness was measured.
+    /// Vertical error of each level, m.
+    errors_m: [f64; LEVELS],
+    /// Cells that changed since the errors were measured.
     unmeasured: i64,
     /// Scratch space: nodes that a search has yet to visit.
     open: Vec<NodeKey>,
@@ -98,9 +100,9 @@ impl Relief {
         self.top
     }
 
-    /// Error of a level of detail over the side of the squares of the level below it.
-    pub fn roughness(&self) -> f64 {
-        self.roughness
+    /// Vertical error of each level that most of the ground keeps, m.
+    pub fn errors_m(&self) -> &[f64; LEVELS] {
+        &self.errors_m
     }
 
     /// Takes over the changes of the terrain since the last call. Calls `changed` with each changed rectangle, or with
@@ -129,7 +131,7 @@ impl Relief {
         self.find_roots(terrain);
         let cells = terrain.all().len() as i64 * (terrain.side() * terrain.side()) as i64;
         if self.unmeasured > cells / 8 {
-            self.roughness = roughness(terrain, self.top);
+            self.errors_m = level_errors_m(terrain, self.top);
             self.unmeasured = 0;
         }
     }
@@ -218,32 +220,30 @@ fn leaf_bounds(cells: &mut CellReader<'_>, key: NodeKey) -> Option<[f32; 2]> {
     Some(heights.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)]))
 }
 
-/// Measures how far each level's triangles lie above or below the cells, at random cells: the error that
-/// `HELD_SHARE` of the places keep, over the side of the squares of the level below, for the worst level.
-fn roughness(terrain: &Terrain, top: u8) -> f64 {
+/// Measures how far the triangles of each level lie above or below the cells, at random cells: the error that
+/// `HELD_SHARE` of the places keep, m.
+fn level_errors_m(terrain: &Terrain, top: u8) -> [f64; LEVELS] {
     let tiles: Vec<_> = terrain.all().map(|(_, tile)| tile.key).collect();
     let (mut cells, mut chance) = (CellReader::new(terrain), RandomStream::new(0, 44));
-    let mut worst: f64 = 0.0;
+    let mut held = [0.0; LEVELS];
     let mut errors = Vec::with_capacity(SAMPLES as usize);
-    for level in 1..=top.min(16) {
+    for level in 1..=top {
         errors.clear();
         for _ in 0..SAMPLES {
             let tile = tiles[((chance.unit() * tiles.len() as f64) as usize).min(tiles.len() - 1)];
             let cell = (chance.unit() * (terrain.side() * terrain.side()) as f64) as usize;
-            errors.extend(level_error(&mut cells, terrain.place_in(tile, cell), level));
-        }
-        if errors.is_empty() {
-            continue;
+            errors.extend(level_error_m(&mut cells, terrain.place_in(tile, cell), level));
         }
         errors.sort_by(f64::total_cmp);
-        let held = errors[((errors.len() - 1) as f64 * HELD_SHARE).round() as usize];
-        worst = worst.max(held / (terrain.desc.cell_m * f64::from(1u32 << (level - 1))));
+        // Where no triangle of a level has ground at all corners, the level below is the best estimate.
+        let own = errors.len().checked_sub(1).map(|last| errors[(last as f64 * HELD_SHARE).round() as usize]);
+        held[usize::from(level)] = own.unwrap_or(0.0).max(held[usize::from(level) - 1]);
     }
-    worst
+    held
 }
 
 /// Vertical distance of a cell from the triangle of a level over it, m.
-fn level_error(cells: &mut CellReader<'_>, place: [i32; 2], level: u8) -> Option<f64> {
+fn level_error_m(cells: &mut CellReader<'_>, place: [i32; 2], level: u8) -> Option<f64> {
     let own = f64::from(cells.height(place)?);
     let step = 1 << level;
     let low = place.map(|v| v & !(step - 1));

@@ -1,14 +1,14 @@
 //! Selection of the patches that a picture shows: a quadtree whose levels follow the distance from the eye.
 //!
-//! A level is used up to a distance proportional to its squares' side: `reach` sides. Distances are horizontal, with
-//! the height of the eye above one reference height, so that they depend on the place alone and not on its height. The
-//! vertices of a level move onto those of the next coarser one before its distance ends (Strugar 2010). Where two levels
-//! meet, the finer one is wholly in the coarser one's form, and the coarser one has not begun to change: both have the
-//! same vertices, and there is no crack. [`SHORTEST_REACH`] leaves room for both.
+//! A level is used up to a distance, its reach, at which the error of the next coarser level is as small as the host
+//! asks. Distances are horizontal, with the height of the eye above one reference height, so that they depend on the
+//! place alone and not on its height. The vertices of a level move onto those of the next coarser one before its reach
+//! ends (Strugar 2010). Where two levels meet, the finer one is wholly in the coarser one's form, and the coarser one has
+//! not begun to change: both have the same vertices, and there is no crack.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use super::relief::{NODE, NodeKey, Relief};
+use super::relief::{LEVELS, NODE, NodeKey, Relief};
 use crate::scene::Camera;
 
 /// Squares along a side of a patch, the unit that is drawn: a quarter of a node.
@@ -23,6 +23,10 @@ const DIAGONAL: f64 = 23.0;
 const LONGEST_SIDE_PX: f64 = 10.0;
 /// Factor by which distances may exceed the true ones ([`Relief::reference_m`]).
 const FARTHER: f64 = 1.07;
+/// Least ratio of a level's reach to the distance at which its vertices begin to move.
+const LEAST_BAND: f64 = 1.25;
+/// Share of a level's reach at which its vertices begin to move, if the level below lets them.
+const LATEST_START: f64 = 0.7;
 /// Share of a distance that single precision may be off.
 const ROUNDING: f64 = 1e-4;
 /// Largest number of patches of a picture. Beyond it levels become coarser.
@@ -53,8 +57,8 @@ pub(super) struct Detail {
     pub above: f64,
     /// Weight of the horizontal distance: 1, or 0 for parallel rays, whose pixels are equally large at any distance.
     pub spread: f64,
-    /// Reach of a level, in sides of its squares.
-    pub reach: f64,
+    /// Distances up to which the levels are used.
+    pub reach: [f64; LEVELS],
 }
 
 impl Detail {
@@ -69,32 +73,48 @@ impl Detail {
     ) -> Self {
         // Size of a pixel in the picture's middle: its angle, or its side in metres for parallel rays.
         let pixel = 2.0 / (camera.projection.y_axis.y.abs().max(1e-12) * height_px.max(1.0));
-        let roughness = relief.roughness().max(1e-6);
+        let errors_m = relief.errors_m();
         if camera.is_orthographic() {
-            let side = (error_px * pixel / roughness).min(LONGEST_SIDE_PX * pixel);
-            let level = (side / cell_m).max(1.0).log2().floor();
-            return Self { eye, above: SHORTEST_REACH * (level - 0.5).exp2(), spread: 0.0, reach: SHORTEST_REACH };
+            let is_fine = |level: &usize| {
+                let side_m = cell_m * f64::from(1u32 << *level);
+                side_m <= LONGEST_SIDE_PX * pixel && errors_m[*level] <= error_px * pixel
+            };
+            let level = (1..LEVELS).take_while(is_fine).last().unwrap_or(0);
+            let reach = Self::reach_for(|_| SHORTEST_REACH);
+            // In the middle of the distances at which this level does not move.
+            let above = if level == 0 { 0.0 } else { 1.05 * reach[level - 1] };
+            return Self { eye, above, spread: 0.0, reach };
         }
-        let reach = FARTHER * (roughness / (error_px * pixel)).max(1.0 / (LONGEST_SIDE_PX * pixel));
+        let reach = Self::reach_for(|level| {
+            let error = errors_m.get(level + 1).copied().unwrap_or(0.0) / (cell_m * f64::from(1u32 << level));
+            FARTHER * (error / (error_px * pixel)).max(1.0 / (LONGEST_SIDE_PX * pixel))
+        });
         let above = ((eye_m - relief.reference_m(eye, cell_m)) / cell_m).max(0.0);
-        Self { eye, above, spread: 1.0, reach: reach.clamp(SHORTEST_REACH, LONGEST_REACH) }
+        Self { eye, above, spread: 1.0, reach }
     }
 
-    /// Distances of level 0 at which vertices begin to move, and at which they have arrived, cells. Those of level n are
-    /// 2^n times as large.
-    pub fn morph(&self) -> [f64; 2] {
-        let start = (0.5 * (self.reach + DIAGONAL)).max(0.7 * self.reach);
-        [start * (1.0 + ROUNDING), self.reach * (1.0 - ROUNDING)]
+    /// Returns the reaches for those that each level should have, in sides of its squares. A level reaches so far beyond
+    /// the one below it that its vertices have room to move.
+    pub fn reach_for(wanted: impl Fn(usize) -> f64) -> [f64; LEVELS] {
+        let (mut reach, mut begins) = ([0.0; LEVELS], 0.0);
+        for level in 0..LEVELS {
+            let side = f64::from(1u32 << level);
+            reach[level] = (wanted(level).clamp(SHORTEST_REACH, LONGEST_REACH) * side).max(LEAST_BAND * begins);
+            begins = reach[level] + DIAGONAL * side;
+        }
+        reach
+    }
+
+    /// Distance at which the vertices of a level begin to move, and at which they have arrived, cells.
+    pub fn morph(&self, level: usize) -> [f64; 2] {
+        let below = if level == 0 { 0.0 } else { self.reach[level - 1] + 0.5 * DIAGONAL * f64::from(1u32 << level) };
+        let start = below.max(LATEST_START * self.reach[level]);
+        [start * (1.0 + ROUNDING), self.reach[level] * (1.0 - ROUNDING)]
     }
 
     /// Distance of a node from the eye, cells.
     pub fn distance(&self, node: NodeKey) -> f64 {
         (self.spread * node.distance(self.eye)).hypot(self.above)
-    }
-
-    /// Distance up to which a level is used, cells.
-    pub fn reach_of(&self, level: u8) -> f64 {
-        self.reach * f64::from(1u32 << level)
     }
 }
 
@@ -141,7 +161,7 @@ pub(super) fn select(relief: &Relief, detail: &mut Detail, frustum: &Frustum, pa
         if patches.len() <= MOST_PATCHES {
             return;
         }
-        detail.above = 2.0 * detail.above.max(detail.reach);
+        detail.above = 2.0 * detail.above.max(detail.reach[0]);
     }
 }
 
@@ -176,7 +196,7 @@ impl Selection<'_> {
         let mut children = node.children();
         self.sort(&mut children);
         for child in children {
-            if self.detail.distance(child) < self.detail.reach_of(child.level) {
+            if self.detail.distance(child) < self.detail.reach[usize::from(child.level)] {
                 self.add(child, patches);
             } else if self.relief.bounds(child).is_some_and(|bounds| self.sees(child, bounds)) {
                 patches.push(Patch { page: node, quarter: [child.x - 2 * node.x, child.y - 2 * node.y] });

@@ -5,6 +5,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::{
     light::LandLight,
     materials::{CLASS_MATERIALS, MATERIALS, Material, OCTAVES, Octave, octaves},
+    relief::LEVELS,
     selection::Detail,
 };
 
@@ -18,10 +19,10 @@ pub(super) struct LandUniform {
     pub cell_m: f32,
     pub above: f32,
     pub spread: f32,
-    pub top: u32,
-    pub morph: [f32; 2],
-    pub curvature: f32,
     pub altitude: f32,
+    pub curvature: f32,
+    pub pad: [f32; 3],
+    pub levels: [[f32; 4]; LEVELS],
     pub sun: [f32; 4],
     pub sun_lux: [f32; 4],
     pub moon: [f32; 4],
@@ -94,7 +95,6 @@ fn lux(v: [f64; 3]) -> [f32; 4] {
 
 impl LandPicture<'_> {
     pub fn uniform(&self) -> LandUniform {
-        let [start, end] = self.detail.morph();
         let metres = DVec3::new(self.place_m(0), self.place_m(1), self.eye.place.z);
         LandUniform {
             clip: (self.clip * DMat4::from_mat3(self.to_local)).as_mat4().to_cols_array(),
@@ -103,10 +103,10 @@ impl LandPicture<'_> {
             cell_m: self.cell_m as f32,
             above: self.detail.above as f32,
             spread: self.detail.spread as f32,
-            top: u32::from(self.top),
-            morph: [start as f32, (1.0 / (end - start)) as f32],
-            curvature: self.curvature as f32,
             altitude: self.altitude_m as f32,
+            curvature: self.curvature as f32,
+            pad: [0.0; 3],
+            levels: std::array::from_fn(|level| self.level(level)),
             sun: four(self.light.sun),
             sun_lux: lux(self.light.sun_lux),
             moon: four(self.light.moon),
@@ -116,6 +116,14 @@ impl LandPicture<'_> {
             materials: CLASS_MATERIALS,
             octaves: octaves(metres),
         }
+    }
+
+    /// Distance at which the vertices of a level begin to move, and 1 over the distance on which they move, which is 0
+    /// for the largest nodes.
+    fn level(&self, level: usize) -> [f32; 4] {
+        let [start, end] = self.detail.morph(level);
+        let moves = level < usize::from(self.top);
+        [start as f32, if moves { (1.0 / (end - start)) as f32 } else { 0.0 }, 0.0, 0.0]
     }
 
     fn place_m(&self, axis: usize) -> f64 {
@@ -135,8 +143,8 @@ mod tests {
             "LandUniform",
             LandUniform,
             [
-                clip, to_local, eye, cell_m, above, spread, top, morph, curvature, altitude, sun, sun_lux, moon,
-                moon_lux, sky_lux, bounce_lux, materials, octaves
+                clip, to_local, eye, cell_m, above, spread, altitude, curvature, levels, sun, sun_lux, moon, moon_lux,
+                sky_lux, bounce_lux, materials, octaves
             ]
         );
         shader::assert_layout!("land/land.wgsl", "Material", Material, [albedo, fine, broad]);

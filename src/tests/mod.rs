@@ -5,7 +5,6 @@ mod counted;
 mod detour;
 mod even;
 mod land;
-mod land_pictures;
 mod longest;
 mod moment;
 mod opaque;
