@@ -3,6 +3,7 @@
 
 pub mod brute_rain;
 pub mod c_scene;
+pub mod cloud_shape;
 pub mod coarse_sky;
 pub mod cube_lookup;
 pub mod depth_texture;

@@ -40,16 +40,23 @@ pub fn slabs(device: &Device, text: &str) -> Result<String> {
 /// Number of viewpoints for each seed's sky.
 const PLACES: usize = 64;
 
+/// Returns the kind of cloud with this name.
+///
+/// # Errors
+/// [`Status::Parse`] for an unknown genus.
+pub fn kind_of(genus: &str) -> Result<CloudKind> {
+    let known = || CloudKind::ALL.iter().filter(|k| **k != CloudKind::Unknown);
+    known().find(|k| k.name() == genus).copied().ok_or_else(|| {
+        let names: Vec<&str> = known().map(|k| k.name()).collect();
+        Error::new(Status::Parse, format!("`{genus}` is no genus; there are {}", names.join(", ")))
+    })
+}
+
 /// Answers with `mean,spread` over seeds of the visible cover of a genus, when its cover is set to `cover`.
 ///
 /// # Errors
 /// [`Status::Parse`] for an unknown genus.
 pub fn cover(genus: &str, cover: f64, seeds: u64) -> Result<String> {
-    let known = || CloudKind::ALL.iter().filter(|k| **k != CloudKind::Unknown);
-    let kind = known().find(|k| k.name() == genus).ok_or_else(|| {
-        let names: Vec<&str> = known().map(|k| k.name()).collect();
-        Error::new(Status::Parse, format!("`{genus}` is no genus; there are {}", names.join(", ")))
-    })?;
-    let [mean, spread] = seen_over_seeds(*kind, cover, seeds, PLACES)?;
+    let [mean, spread] = seen_over_seeds(kind_of(genus)?, cover, seeds, PLACES)?;
     Ok(format!("mean,spread\n{mean:.6},{spread:.6}\n"))
 }

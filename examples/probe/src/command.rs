@@ -9,7 +9,7 @@ use welkin::sky::probe::{Probe, Question};
 use welkin::sky::{Planet, SkyModel, SkySettings};
 use welkin::{Error, Result, Status};
 
-use crate::{clouds, flow, fog, lightning, rain, sea, sky, snow, soil};
+use crate::{cloud_shape, clouds, flow, fog, lightning, rain, sea, sky, snow, soil};
 
 /// Usage text with every question and option.
 pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--model NAME] < rays.csv\n       \
@@ -20,6 +20,7 @@ pub const USAGE: &str = "usage: probe sky|aerial|irradiance --planet FILE [--mod
                      probe ice < rates.csv\n       \
                      probe slab < slabs.csv\n       \
                      probe cover --genus NAME --okta 0..8 --seeds N\n       \
+                     probe cloud-shape --genus NAME --okta 0..8 --seeds N [--pixel METRES]\n       \
                      probe soil-force < cuts.csv\n       \
                      probe soil-wall < walls.csv\n       \
                      probe soil-sinkage < plates.csv\n       \
@@ -111,6 +112,13 @@ fn cover(rest: impl Iterator<Item = String>) -> Result<String> {
     clouds::cover(options.given("--genus")?, okta / 8.0, seeds.max(1.0) as u64)
 }
 
+fn shape(rest: impl Iterator<Item = String>) -> Result<String> {
+    let options = Options::parse(&["--genus", "--okta", "--seeds", "--pixel"], rest)?;
+    let (okta, seeds) = (options.number("--okta", 8.0)?, options.number("--seeds", 1e3)?);
+    let pixel_m = options.get("--pixel").map_or(Ok(cloud_shape::PIXEL_M), |_| options.any_number("--pixel"))?;
+    cloud_shape::answer(options.given("--genus")?, okta / 8.0, seeds.max(1.0) as u64, pixel_m)
+}
+
 fn lightning(rest: impl Iterator<Item = String>) -> Result<String> {
     let options = Options::parse(&["--rate", "--hours"], rest)?;
     lightning::flashes(options.number("--rate", 60.0)?, options.number("--hours", 1000.0)?)
@@ -182,6 +190,7 @@ pub fn run(mut arguments: impl Iterator<Item = String>) -> Result<String> {
         "ice" => Options::parse(&[], arguments).and_then(|_| rain::ice(&read_input()?)),
         "slab" => Options::parse(&[], arguments).and_then(|_| clouds::slabs(&*device()?, &read_input()?)),
         "cover" => cover(arguments),
+        "cloud-shape" => shape(arguments),
         "soil-force" => Options::parse(&[], arguments).and_then(|_| soil::forces(&read_input()?)),
         "soil-wall" => Options::parse(&[], arguments).and_then(|_| soil::walls(&read_input()?)),
         "soil-sinkage" => Options::parse(&[], arguments).and_then(|_| sinkages(&read_input()?)),

@@ -1,5 +1,6 @@
 //! The commands of `probe`: questions to the drawn models, read from CSV tables and answered as CSV tables.
 
+pub mod cloud_shape;
 pub mod clouds;
 pub mod command;
 pub mod csv;

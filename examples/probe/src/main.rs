@@ -10,6 +10,7 @@
 //! probe ice
 //! probe slab
 //! probe cover --genus NAME --okta 0..8 --seeds N
+//! probe cloud-shape --genus NAME --okta 0..8 --seeds N [--pixel METRES]
 //! probe soil-force
 //! probe soil-wall
 //! probe soil-sinkage
