@@ -78,19 +78,19 @@ impl World {
         self.land(c).under_sky(planet_under(&self.set.planet, c))
     }
 
-    /// Returns the planet under the weather to which the present one is changing, as it will be after one of
-    /// [`AHEAD_S`]; `None` while the weather rests.
-    pub fn planet_ahead(&self) -> Option<Planet> {
+    /// Returns the planet under the weather to which that at `position` is changing, by the timeline and by regions that
+    /// move, as it will be after one of [`AHEAD_S`]; `None` while the weather rests.
+    pub fn planet_ahead(&self, position: DVec3) -> Option<Planet> {
         let now_s = self.time_s;
-        if !self.timeline.changes_between(now_s, now_s) {
+        if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {
             return None;
         }
-        let after = |ahead_s: &f64| self.planet_under(&self.timeline.at(now_s + ahead_s));
+        let after = |ahead_s: &f64| Some(self.planet_under(&self.weather_at(position, now_s + ahead_s).ok()?));
         let depth = |planet: &Planet| zenith_depth(planet, 0.0)[1];
-        let now = depth(&after(&0.0));
+        let now = depth(&after(&0.0)?);
         let [all @ .., last] = &AHEAD_S;
         let serves = |planet: &Planet| (depth(planet) - now).abs() <= AHEAD_DEPTH;
-        all.iter().map(after).find(serves).or_else(|| Some(after(last)))
+        all.iter().filter_map(after).find(serves).or_else(|| after(last))
     }
 
     /// Returns the land under a weather, with the simulated snow if there is any, else the reported one.
