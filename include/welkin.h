@@ -7359,8 +7359,8 @@ typedef struct wk_sea {
     /** Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them. */
     double ice_floe_m;
     /**
-     * Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by Meylan,
-     * Bennetts and Kohout (2014).
+     * Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by
+     * Meylan, Bennetts and Kohout (2014).
      */
     double ice_width_m;
     /**

@@ -232,8 +232,8 @@ pub struct wk_sea {
     pub ice_cover: f64,
     /// Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them.
     pub ice_floe_m: f64,
-    /// Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by Meylan,
-    /// Bennetts and Kohout (2014).
+    /// Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by
+    /// Meylan, Bennetts and Kohout (2014).
     pub ice_width_m: f64,
     /// Optional: WMO sea state, code table 3700. Range 0 to 9: the middle of its range of heights, fully developed.
     pub sea_state: u32,

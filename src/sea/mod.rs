@@ -32,8 +32,8 @@
 //!
 //! # Cost
 //! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
-//! that was asked before costs some microseconds. A weather that changes adds some milliseconds a time for its
-//! spectrum. The sums of two times are kept: 7 MB.
+//! that was asked before costs some microseconds, about 1/200 of a transform of 256^2. A weather that changes adds some
+//! milliseconds a time for its spectrum. The sums of two times are kept: 7 MB.
 //!
 //! # Error
 //! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
@@ -44,8 +44,8 @@
 //!
 //! # What is not here
 //! No drawing, no shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A
-//! lake has the waves of the sea around it, as high as its region says. There is no `view.rs`, `passes.rs` or `candidates.rs`, because nothing
-//! is drawn; no `reference.rs`, because all of it is the f64 reference.
+//! lake has the waves of the sea around it, as high as its region says. There is no `view.rs`, `passes.rs` or
+//! `candidates.rs`, because nothing is drawn; no `reference.rs`, because all of it is the reference.
 
 mod bins;
 mod clarity;

@@ -52,29 +52,18 @@ pub(super) fn validate(corners: &[[f64; 2]]) -> Result<()> {
             check_range(&format!("corners_m[{i}]"), *v, -FARTHEST_CORNER_M, FARTHEST_CORNER_M, "m")?;
         }
     }
-    let crossed = |i: usize, j: usize| {
-        let got = format!("sides {i} and {j} that meet");
-        Error::range("corners_m", "those of an outline that does not cross or touch itself", got)
-    };
     for (i, side) in sides(corners).enumerate() {
         if side[0] == side[1] {
             let got = format!("corners {i} and {} at the same place", (i + 1) % corners.len());
             return Err(Error::range("corners_m", "those of an outline whose corners differ", got));
         }
-        for (j, other) in sides(corners).enumerate().skip(i + 1) {
-            let folds = |shared: DVec2, a: DVec2, b: DVec2| {
-                (a - shared).perp_dot(b - shared) == 0.0 && (a - shared).dot(b - shared) > 0.0
-            };
-            // Neighbours share a corner; they must not run back on each other.
-            let is_crossed = if j == i + 1 {
-                folds(side[1], side[0], other[1])
-            } else if i == 0 && j + 1 == corners.len() {
-                folds(side[0], side[1], other[0])
-            } else {
-                meet(side, other)
-            };
-            if is_crossed {
-                return Err(crossed(i, j));
+        for (j, other) in sides(corners).enumerate().skip(i + 2) {
+            // The last side is a neighbour of the first. Neighbours share a corner. Where one runs back on the other,
+            // it also meets the next one.
+            let is_neighbour = i == 0 && j + 1 == corners.len();
+            if !is_neighbour && meet(side, other) {
+                let got = format!("sides {i} and {j} that meet");
+                return Err(Error::range("corners_m", "those of an outline that does not cross or touch itself", got));
             }
         }
     }

@@ -1,5 +1,5 @@
-//! Regions of water and regions without it: lakes, harbours, hulls and docks. They stand or move at a constant speed and
-//! rate of turn.
+//! Regions of water, and regions without it: lakes, harbours, hulls and docks. They stand, or move at a constant
+//! velocity and rate of turn.
 
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -170,7 +170,8 @@ pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, 
                 } else {
                     1.0
                 };
-                Some(WaterBody { wave_share: around.wave_share * (1.0 - deep * (1.0 - wave_share)), ..around })
+                let left = wave_share + (1.0 - deep) * (1.0 - wave_share);
+                Some(WaterBody { wave_share: around.wave_share * left, ..around })
             }
         };
     }
@@ -204,13 +205,13 @@ mod tests {
             at_s: 10.0,
             ..square(SeaRegionKind::Dry)
         };
-        let placed = placed(&[hull.clone(), SeaRegion { turn_deg_s: 9.0, center_m: [0.0, 1e4, 0.0], ..hull }]);
+        let placed = placed(&[hull.clone(), SeaRegion { turn_deg_s: 4.5, center_m: [0.0, 1e4, 0.0], ..hull }]);
         let at = |x: f64, y: f64, t: f64| water_at(&placed, true, DVec3::new(x, y, 0.0), t);
         // Heading east: long to the east, narrow to the north.
         assert_eq!((at(1095.0, 45.0, 10.0), at(1000.0, 60.0, 10.0), at(1105.0, 0.0, 10.0)), (None, OPEN, OPEN));
         assert_eq!((at(1145.0, 0.0, 20.0), at(1045.0, 0.0, 20.0), at(940.0, 0.0, 20.0)), (None, None, OPEN));
-        // Ten seconds later the other one heads south.
-        assert_eq!((at(50.0, 1e4 + 95.0, 20.0), at(145.0, 1e4, 20.0)), (None, OPEN));
+        // Ten seconds later the other one heads south-east.
+        assert_eq!((at(110.0, 1e4 - 60.0, 20.0), at(110.0, 1e4 + 60.0, 20.0)), (None, OPEN));
     }
 
     #[test]

@@ -371,7 +371,7 @@ fn ice_takes_the_short_waves_and_shelter_all_alike() {
     let wanted = 2.0 * (left / whole).sqrt();
     let s = sea.statistics(0.0);
     assert!((s.significant_height_m / wanted - 1.0).abs() < 0.01 && wanted < 1.4, "{s:?} {wanted}");
-    assert!(s.peak_period_s > 7.05 && s.mean_square_slope < 2e-3 && s.whitecap_share == 0.0, "{s:?}");
+    assert!(s.peak_period_s > 7.03 && s.mean_square_slope < 2e-3 && s.whitecap_share == 0.0, "{s:?}");
     let (mean, found) = heights(&sea.surface(70.0), DVec2::ZERO, 8000.0, 120);
     assert!((found / wanted - 1.0).abs() < 0.01 && mean.abs() < 5e-3, "{found} {wanted} {mean}");
 

@@ -253,12 +253,13 @@ impl WaveTile {
                 work.add(mode, ring, time_s);
             }
         }
-        for (i, square) in work.squares.iter_mut().enumerate() {
-            work.transform.square(square, MOST_PERIODS as usize);
-            for (texel, sample) in fields.iter_mut().zip(square.iter().flatten()) {
-                texel[2 * i] = sample.re;
-                if 2 * i + 1 < VALUES {
-                    texel[2 * i + 1] = sample.im;
+        work.squares.iter_mut().for_each(|square| work.transform.square(square, MOST_PERIODS as usize));
+        // All fields of a sample in turn, since they lie side by side.
+        for (y, row) in fields.chunks_exact_mut(SIDE).enumerate() {
+            for (x, texel) in row.iter_mut().enumerate() {
+                for (pair, square) in texel.chunks_mut(2).zip(&work.squares) {
+                    let sample = square[y][x];
+                    pair.iter_mut().zip([sample.re, sample.im]).for_each(|(value, part)| *value = part);
                 }
             }
         }
