@@ -120,6 +120,8 @@
  *   [rain]            Rain
  *   [snow]            Snow
  *   [area]            Rain areas
+ *   [region]          Weather regions
+ *   [air]             Air at a height
  *
  * Wind, shelter and lamps
  *   [wind_grid]       Wind that varies in space
@@ -374,6 +376,10 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SEA_REGION 113
 /** wk_sea_state */
 #define WK_STRUCT_TYPE_SEA_STATE 114
+/** wk_weather_region */
+#define WK_STRUCT_TYPE_WEATHER_REGION 95
+/** wk_air */
+#define WK_STRUCT_TYPE_AIR 96
 
 /**
  * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
@@ -3019,11 +3025,12 @@ typedef struct wk_cloud_slab {
 } wk_cloud_slab;
 
 /**
- * Gets the conditions at a position and a past or future simulation time. Precipitation is that at the position
- * itself: it includes the rain areas there (wk_context_set_rain_areas), weighted by their rims, and is zero above the
- * cloud that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
- * precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
- * the weather's: the same everywhere, at the station's height unless they say otherwise.
+ * Gets the conditions at a position and a past or future simulation time, with the weather regions there
+ * (wk_context_set_weather_regions). Precipitation is that at the position itself: it includes the rain areas there
+ * (wk_context_set_rain_areas), weighted by their rims, and is zero above the cloud that it falls from. rain_mm_h and
+ * drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at. precipitation_extinction_per_m, extinction_per_m and
+ * visibility_m include that precipitation. All other fields are those of the station's height unless they say
+ * otherwise.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
  * forgotten every time before the end of the last change of weather that was over at the last update.
@@ -5083,6 +5090,227 @@ wk_status wk_context_set_rain_areas(wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [region] Weather regions
+ *
+ * Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
+ * ground plan, a perimeter outside it over which its weather fades into what is around it, and a wk_weather of which
+ * `has` names the parts that it takes. At each place, every query and the picture of a camera there see the merged
+ * weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity,
+ * never with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the
+ * same on every channel.
+ *
+ * Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
+ * them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
+ * weights. docs/regions.md has the rules, and a table of what differs by place and what does not yet: a camera's
+ * picture shows the weather at the camera, so a region is not seen from outside.
+ * ====================================================================================================
+ */
+
+/** Parts of the weather. */
+typedef uint32_t wk_weather_part_flags;
+
+/** Haze: visibility_m without fog and precipitation, and the aerosol fields. */
+#define WK_WEATHER_PART_HAZE 1
+/** Low layer: fog or mist with its top, matter that the wind lifts. Alone, it lies in the haze around the region. */
+#define WK_WEATHER_PART_FOG 2
+/** Precipitation of all kinds. */
+#define WK_WEATHER_PART_PRECIPITATION 4
+/** Thunder, as queries report it. Flashes follow the weather outside all regions. */
+#define WK_WEATHER_PART_LIGHTNING 8
+/** Temperature. */
+#define WK_WEATHER_PART_TEMPERATURE 16
+/** Humidity. */
+#define WK_WEATHER_PART_HUMIDITY 32
+/** Pressure. */
+#define WK_WEATHER_PART_PRESSURE 64
+/** Wind, its gusts, and vertical_wind_m_s. */
+#define WK_WEATHER_PART_WIND 128
+/** Cloud layers, and the overrides of the cloud light. */
+#define WK_WEATHER_PART_CLOUDS 256
+/** Water, ice and snow on the ground. */
+#define WK_WEATHER_PART_SURFACE 512
+/** Sea. */
+#define WK_WEATHER_PART_SEA 1024
+
+/** Shape of a weather region. */
+typedef uint32_t wk_region_shape;
+
+/** Ellipse of the half extents half_size_m. */
+#define WK_REGION_SHAPE_ELLIPSE 0
+/** Rectangle of the half extents half_size_m with round corners of corner_radius_m. */
+#define WK_REGION_SHAPE_RECTANGLE 1
+/** Polygon of corner_count corners. */
+#define WK_REGION_SHAPE_POLYGON 2
+
+/** Region with a weather of its own. */
+typedef struct wk_weather_region {
+    /** sizeof(wk_weather_region) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WEATHER_REGION. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Parts of `weather` that the region has. Default 0. */
+    wk_weather_part_flags has;
+    /**
+     * Parts that are averaged with those of earlier regions that merge them too. In all other parts the region covers
+     * what is before it in the list. Default 0.
+     */
+    wk_weather_part_flags merges;
+    /**
+     * Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights
+     * count from the station of the weather outside; station_altitude_m, the runway visual range and the ozone column
+     * have no effect. Read during the call only.
+     */
+    const wk_weather *weather;
+    /**
+     * Centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no effect. Default
+     * 0, 0, 0.
+     */
+    double center_m[3];
+    /**
+     * Half extents of an ellipse or a rectangle to the right of the heading and along it, m. Range [1, 1e6], default
+     * 2000, 2000.
+     */
+    double half_size_m[2];
+    /** Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0. */
+    double corner_radius_m;
+    /**
+     * Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance
+     * from the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch
+     * others, and the polygon must be larger than 1 m^2. Default 0.
+     */
+    double corners_m[32];
+    /** Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0. */
+    uint32_t corner_count;
+    /** Shape. Default WK_REGION_SHAPE_ELLIPSE. */
+    wk_region_shape shape;
+    /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double heading_deg;
+    /**
+     * Width of the band outside the shape over which the region's weather fades, m. Range [0, 1e6]; 0 is a step at the
+     * border. Default 500.
+     */
+    double perimeter_m;
+    /** Velocity to the east and north, m/s. Range [-400, 400] each, default 0, 0. */
+    double velocity_m_s[2];
+    /** Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. */
+    double at_s;
+    /** Share by which the region acts, to fade it in and out. Range [0, 1], default 1. */
+    double strength;
+    /**
+     * Upward velocity of the wind above 100 m, m/s; it decreases linearly to 0 at the station's height. Needs
+     * WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
+     */
+    double vertical_wind_m_s;
+} wk_weather_region;
+
+/** Every field of `wk_weather_region` at its default. */
+#define WK_WEATHER_REGION_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_weather_region), \
+    /* struct_type */ WK_STRUCT_TYPE_WEATHER_REGION, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* merges */ 0, \
+    /* weather */ NULL, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* half_size_m */ { 2000.0, 2000.0 }, \
+    /* corner_radius_m */ 0.0, \
+    /* corners_m */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }, \
+    /* corner_count */ 0, \
+    /* shape */ WK_REGION_SHAPE_ELLIPSE, \
+    /* heading_deg */ 0.0, \
+    /* perimeter_m */ 500.0, \
+    /* velocity_m_s */ { 0.0, 0.0 }, \
+    /* at_s */ 0.0, \
+    /* strength */ 1.0, \
+    /* vertical_wind_m_s */ 0.0 \
+}
+
+/**
+ * Replaces the list of weather regions; count 0 removes all. At most 64. Regions move by themselves; set them again to
+ * change them, or in every frame at their new places. Unchanged after an error. Copied during the call.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
+ * corner radius beyond the smaller half extent.
+ */
+WK_API
+wk_status wk_context_set_weather_regions(wk_context *context,
+                                         const wk_weather_region *regions,
+                                         uint32_t count,
+                                         uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WEATHER_REGION_INIT`. `struct_size` is `sizeof(wk_weather_region)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_weather_region_init(wk_weather_region *out,
+                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [air] Air at a height
+ *
+ * Temperature, humidity and pressure at any place and altitude, by the laws of the standard atmosphere from what the
+ * weather has at the station.
+ * ====================================================================================================
+ */
+
+/** Air at a place and altitude. */
+typedef struct wk_air {
+    /** sizeof(wk_air) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_AIR. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Temperature, degrees Celsius: 6.5 K/km less than at the station up to 11 km above sea level, constant above.
+     */
+    double temperature_c;
+    /**
+     * Relative humidity over water, 0 to 1. The density of water vapour falls by a factor e every 2 km (ITU-R P.835).
+     */
+    double relative_humidity;
+    /** Pressure, hPa, in hydrostatic equilibrium (ICAO Doc 7488). */
+    double pressure_hpa;
+    /** Density of the air, taken as dry, kg/m^3. */
+    double density_kg_m3;
+} wk_air;
+
+/** Every field of `wk_air` at its default. */
+#define WK_AIR_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_air), \
+    /* struct_type */ WK_STRUCT_TYPE_AIR, \
+    /* next */ NULL, \
+    /* temperature_c */ 0.0, \
+    /* relative_humidity */ 0.0, \
+    /* pressure_hpa */ 0.0, \
+    /* density_kg_m3 */ 0.0 \
+}
+
+/**
+ * Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
+ * there. The altitude of the position counts. Heights up to 1 km below the station follow the same laws; lower ones
+ * have the air of 1 km below it.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_air(const wk_context *context,
+                             const double (*position_m)[3],
+                             double time_s,
+                             wk_air *out_air);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_AIR_INIT`. `struct_size` is `sizeof(wk_air)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_air_init(wk_air *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================

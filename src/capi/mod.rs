@@ -72,6 +72,8 @@ pub mod area;
 
 pub mod region;
 
+pub mod air;
+
 pub mod wind_grid;
 
 pub mod wind_field;

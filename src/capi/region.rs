@@ -3,9 +3,9 @@
 //! Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
 //! ground plan, a perimeter outside it over which its weather fades into what is around it, and a wk_weather of which
 //! `has` names the parts that it takes. At each place, every query and the picture of a camera there see the merged
-//! weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity, never
-//! with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the same on
-//! every channel.
+//! weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity,
+//! never with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the
+//! same on every channel.
 //!
 //! Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
 //! them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
@@ -94,9 +94,9 @@ pub struct wk_weather_region {
     pub half_size_m: [f64; 2],
     /// Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0.
     pub corner_radius_m: f64,
-    /// Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance from
-    /// the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch others,
-    /// and the polygon must be larger than 1 m^2. Default 0.
+    /// Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance
+    /// from the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch
+    /// others, and the polygon must be larger than 1 m^2. Default 0.
     pub corners_m: [f64; 32],
     /// Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0.
     pub corner_count: u32,

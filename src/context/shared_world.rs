@@ -13,7 +13,7 @@ use crate::{
     moment::{GroundLight, Light, Scene, SceneMoment},
     scene::{HostLight, MAX_LIGHTS, WorldFrame},
     surroundings::{MAX_SHELTERS, OccluderMap, OccluderMaps, Shelter},
-    weather::{Conditions, Overrides, Weather, derive, derive_with},
+    weather::{AirAtHeight, Conditions, Overrides, Weather, derive, derive_with},
     world::{GivenDirection, KeptScene, Settings, World, WorldDesc},
 };
 
@@ -270,6 +270,16 @@ impl Context {
     /// before what the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.world.conditions_at(position, time_s)
+    }
+
+    /// Returns temperature, humidity and pressure at `position`, whose altitude counts, at a past or future simulation
+    /// time `time_s`, with the weather regions there; see [`Conditions::air_at_altitude_m`].
+    ///
+    /// # Errors
+    /// As [`Context::conditions_at`].
+    pub fn air_at(&self, position: DVec3, time_s: f64) -> Result<AirAtHeight> {
+        let altitude_m = self.world.frame.place_at("position", position)?.place.altitude_m;
+        Ok(self.world.weather_at(position, time_s)?.air_at_altitude_m(altitude_m))
     }
 
     /// Checks that the weather at a time is known.

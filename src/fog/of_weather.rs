@@ -10,8 +10,7 @@ use super::{
     model::{FogKind, FogModel},
     path::{falling_path, layer_depth_above, layer_path},
     patterns::patch_mean,
-    queries::NO_LIGHT,
-    viewpoint::{FogLight, Viewpoint},
+    viewpoint::{FogLight, NO_LIGHT, Viewpoint},
 };
 use crate::{
     error::Result,

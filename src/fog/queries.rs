@@ -8,7 +8,7 @@ use super::{
     of_weather::LowAir,
     path::layer_depth_above,
     reference::fog_along,
-    viewpoint::{FogLight, Viewpoint},
+    viewpoint::{NO_LIGHT, Viewpoint},
     visibility::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m, koschmieder_visibility_m},
 };
 use crate::{
@@ -25,10 +25,6 @@ pub struct Between {
     /// % in air with the path's mean extinction. Infinite without extinction.
     pub visibility_m: f64,
 }
-
-/// Light for models of which only the extinction is used.
-pub(super) const NO_LIGHT: FogLight =
-    FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
 
 /// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset`
 /// metres away, in the host's axes. The whole transmittance is this one times the transmittances of air, haze and

@@ -4,6 +4,10 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
+/// Light for models of which only the extinction is used.
+pub(super) const NO_LIGHT: FogLight =
+    FogLight { to_sun: DVec3::Z, sun_irradiance: [0.0; 3], sky_irradiance: [0.0; 3], ground_albedo: [0.0; 3] };
+
 /// Light that falls on the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogLight {

@@ -221,8 +221,8 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover at a place. In a rain area or a weather region the ground is at least as wet as the steady rain
-    /// there would keep it.
+    /// Returns the cover at a place. In a rain area or a weather region the ground is at least as wet as the steady
+    /// rain there would keep it.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
         let weather = world.over().weather_at(position, world.time_s);

@@ -69,8 +69,8 @@ impl<'a> WeatherOver<'a> {
         if here.is_empty() { c } else { here.merged(&c) }
     }
 
-    /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of a
-    /// weather region is one that has always blown; its displacement is not used: the displacement is the world's at
+    /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of
+    /// a weather region is one that has always blown; its displacement is not used: the displacement is the world's at
     /// every place, so that nothing that moves by it jumps at a border.
     ///
     /// # Errors

@@ -2,10 +2,7 @@
 
 use glam::DVec3;
 
-use super::{
-    MAX_WEATHER_REGIONS,
-    region::{HeldRegion, PlanPoint},
-};
+use super::region::{HeldRegion, MAX_WEATHER_REGIONS, PlanPoint};
 use crate::{
     scene::WorldFrame,
     weather::{Conditions, WeatherParts},

@@ -39,9 +39,6 @@ mod way;
 pub(crate) use field::RegionsOver;
 pub(crate) use merge::RegionsHere;
 pub(crate) use region::HeldRegion;
-pub use region::{RegionPlan, WeatherRegion};
+pub use region::{MAX_WEATHER_REGIONS, RegionPlan, WeatherRegion};
 pub use shape::{MAX_REGION_CORNERS, RegionShape};
 pub(crate) use way::RegionWay;
-
-/// Largest number of weather regions at a time.
-pub const MAX_WEATHER_REGIONS: usize = 64;

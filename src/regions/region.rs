@@ -11,6 +11,8 @@ use crate::{
     weather::{Conditions, Overrides, Weather, WeatherParts, derive_with},
 };
 
+/// Largest number of weather regions at a time.
+pub const MAX_WEATHER_REGIONS: usize = 64;
 /// Largest width of a perimeter, m.
 const MOST_PERIMETER_M: f64 = 1e6;
 /// Largest velocity of a region along each axis, m/s.

@@ -30,7 +30,7 @@ pub(crate) struct RegionWay<'a> {
 }
 
 /// Part of a way on the plan of a region.
-struct Stretch {
+struct PlanStretch {
     /// Distances of its start, middle and end from the border, m, negative inside.
     distances_m: [f64; 3],
     /// Half length on the plan, m.
@@ -38,20 +38,20 @@ struct Stretch {
 }
 
 impl RegionOnPlan<'_> {
-    fn stretch(&self, points: &[PlanPoint; 3]) -> Stretch {
+    fn stretch(&self, points: &[PlanPoint; 3]) -> PlanStretch {
         let [a, b, c] = points.each_ref().map(|point| self.axes.plan(point));
         let reach_m = BENT * (b - a).length().max((c - b).length());
-        Stretch { distances_m: [a, b, c].map(|p| self.region.plan.distance_m(p)), reach_m }
+        PlanStretch { distances_m: [a, b, c].map(|p| self.region.plan.distance_m(p)), reach_m }
     }
 
     /// Whether the weight is the same on all of a stretch.
-    fn is_constant(&self, stretch: &Stretch) -> bool {
+    fn is_constant(&self, stretch: &PlanStretch) -> bool {
         let middle = stretch.distances_m[1];
         middle <= -stretch.reach_m || middle >= self.region.plan.perimeter_m + stretch.reach_m
     }
 
     /// Whether the weight at the middle of a stretch may stand for all of it.
-    fn is_fine(&self, stretch: &Stretch) -> bool {
+    fn is_fine(&self, stretch: &PlanStretch) -> bool {
         let perimeter_m = self.region.plan.perimeter_m;
         if self.is_constant(stretch) || stretch.reach_m <= (PIECE_SHARE * perimeter_m).max(STEP_M) {
             return true;

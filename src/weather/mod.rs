@@ -13,6 +13,7 @@ mod cloud_part;
 mod cloud_slabs;
 mod conditions;
 mod derive;
+mod height_air;
 pub mod hydrometeors;
 mod kinds;
 pub mod lifting;
@@ -38,6 +39,7 @@ pub use conditions::{
     WindProfile,
 };
 pub use derive::{derive, derive_with};
+pub use height_air::AirAtHeight;
 pub use kinds::{AerosolKind, CloudAmountRule, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 pub use metar::{ASSUMED_FIELDS, MAX_METAR_BYTES, MetarOptions, MetarPlaces, MetarReport, RunwayVisualRange};
 pub use model::{

@@ -133,9 +133,9 @@ impl Conditions {
     }
 }
 
-/// Returns `to` for a share of 1, where a blend would be off by rounding, else the blend.
-fn whole_or<T>(t: f64, to: T, blend: impl FnOnce() -> T) -> T {
-    if t >= 1.0 { to } else { blend() }
+/// Returns `other` for a share of 1, where a blend would be off by rounding, else the blend.
+fn whole_or<T>(t: f64, other: T, blend: impl FnOnce() -> T) -> T {
+    if t >= 1.0 { other } else { blend() }
 }
 
 #[cfg(test)]

@@ -167,8 +167,8 @@ impl World {
         Ok(self.with_lifted_snow(self.timeline.at(time_s)))
     }
 
-    /// Returns the weather at a place and time, with the weather regions there and the snow that the wind lifts from the
-    /// snow lying now, without the rain areas. The position must be a place.
+    /// Returns the weather at a place and time, with the weather regions there and the snow that the wind lifts from
+    /// the snow lying now, without the rain areas. The position must be a place.
     ///
     /// # Errors
     /// As [`World::weather_outside`].

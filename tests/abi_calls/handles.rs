@@ -5,11 +5,11 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
-    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, region::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*, surface::*,
-    terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
-    windscreen::*,
+    abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
+    environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
+    occluder::*, plan::*, query::*, radiance::*, rain::*, region::*, sea::*, sky::*, snow::*, snowpack::*, stars::*,
+    status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*,
+    wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -163,6 +163,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_set_fog_law", "context", false, |h| unsafe { wk_context_set_fog_law(h.cast(), null()) }),
         case("wk_context_get_conditions", "context", false, |h| unsafe {
             wk_context_get_conditions(h.cast(), null(), 0.0, null_mut())
+        }),
+        case("wk_context_get_air", "context", false, |h| unsafe {
+            wk_context_get_air(h.cast(), null(), 0.0, null_mut())
         }),
         case("wk_context_get_wind_at", "context", false, |h| unsafe {
             wk_context_get_wind_at(h.cast(), null(), 0.0, null_mut())

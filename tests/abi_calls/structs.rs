@@ -7,11 +7,11 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
-    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, opengl::*,
-    plan::*, query::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*,
-    surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*, wind::*, wind_field::*,
-    wind_grid::*, windscreen::*,
+    abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
+    environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
+    occluder::*, opengl::*, plan::*, query::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*,
+    stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
+    wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -185,6 +185,7 @@ fn cases(world: &World) -> Vec<Case> {
         }),
         case("wk_snow_strip", "strip", false, move |p| unsafe { wk_context_press_snow(context, p.cast()) }),
         case("wk_ground", "out_ground", false, move |p| unsafe { wk_context_get_ground(context, &ORIGIN, p.cast()) }),
+        case("wk_air", "out_air", false, move |p| unsafe { wk_context_get_air(context, &ORIGIN, 0.0, p.cast()) }),
         case("wk_conditions", "out_conditions", false, move |p| unsafe {
             wk_context_get_conditions(context, &ORIGIN, 0.0, p.cast())
         }),

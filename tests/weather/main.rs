@@ -2,6 +2,7 @@
 //! that are accepted.
 
 mod accepted;
+mod air;
 mod drawn;
 mod host;
 mod logged;

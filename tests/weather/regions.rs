@@ -158,7 +158,7 @@ fn the_merged_weather_is_that_of_the_table_at_a_hundred_places() {
             assert!((got.extinction_per_m / whole - 1.0).abs() < 1e-12, "extinctions add up at {at}");
         }
     }
-    assert!(mixed > 40, "{mixed} places lie in several perimeters");
+    assert!(mixed >= 20, "{mixed} places lie in several perimeters");
     println!("largest difference from the table: {worst:e}");
 }
 
@@ -196,10 +196,10 @@ fn every_quantity_is_continuous_across_a_perimeter() {
             };
             let (inside, outside) = (at(DVec2::ZERO), at(DVec2::new(9000.0, 9000.0)));
             let mut moved = 0;
-            for i in 0..24 {
-                let along = DVec2::from_angle(f64::from(i) * 0.27);
-                for step in 0..250 {
-                    let p = along * (f64::from(step) * 0.011 * 1000.0);
+            for i in 0..9 {
+                let along = DVec2::from_angle(f64::from(i) * 0.73);
+                for step in 0..140 {
+                    let p = along * (f64::from(step) * 19.3);
                     let (a, b) = (at(p), at(p + along * 1e-3));
                     for (k, ((a, b), (inside, outside))) in
                         a.iter().zip(&b).zip(inside.iter().zip(&outside)).enumerate()

@@ -182,6 +182,8 @@ pub const WK_STRUCT_TYPE_SEA_REGION: wk_struct_type = 113;
 pub const WK_STRUCT_TYPE_SEA_STATE: wk_struct_type = 114;
 /// wk_weather_region
 pub const WK_STRUCT_TYPE_WEATHER_REGION: wk_struct_type = 95;
+/// wk_air
+pub const WK_STRUCT_TYPE_AIR: wk_struct_type = 96;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

@@ -4,11 +4,11 @@ use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    abi, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*, environment::*,
-    fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*, occluder::*, plan::*,
-    query::*, radiance::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*, stars::*, status::*,
-    surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*, wind_grid::*,
-    windscreen::*,
+    abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
+    environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
+    occluder::*, plan::*, query::*, radiance::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*,
+    stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::refusals::message;
@@ -707,6 +707,10 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_get_conditions", |d, w| {
         let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
         get("wk_conditions", |p| unsafe { wk_context_get_conditions(context, &at, time, p.cast()) })
+    }),
+    ("wk_context_get_air", |d, w| {
+        let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
+        get("wk_air", |p| unsafe { wk_context_get_air(context, &at, time, p.cast()) })
     }),
     ("wk_context_get_wind_at", |d, w| {
         let (context, at, time) = (handle(d, &w.contexts), position(d), w.time(d));
