@@ -112,7 +112,7 @@ fn discs_are_round_and_as_many_as_were_drawn() {
 fn drawn_out_clouds_lie_along_their_direction() {
     let mut chance = Chance(2);
     for axis_deg in [0.0, 37.0, 118.0] {
-        let mask = ellipses(&vec![[24.0, 12.0]; 500], axis_deg, &mut chance);
+        let mask = ellipses(&[[24.0, 12.0]; 500], axis_deg, &mut chance);
         let edges = shape_of(&[mask]).edges;
         let off = (edges.axis_deg - axis_deg + 90.0).rem_euclid(180.0) - 90.0;
         assert!(off.abs() < 3.0 && edges.strongest() > 1.4, "{axis_deg}: {edges:?}");

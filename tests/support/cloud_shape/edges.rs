@@ -27,12 +27,6 @@ impl EdgeDirections {
     pub fn strongest(&self) -> f64 {
         self.lengths.iter().copied().fold(0.0, f64::max)
     }
-
-    /// Returns the directions in the mean of several fields.
-    pub fn mean(all: &[Self]) -> Self {
-        let lengths = std::array::from_fn(|i| all.iter().map(|one| one.lengths[i]).sum::<f64>() / all.len() as f64);
-        Self { lengths, axis_deg: axis_deg(&lengths) }
-    }
 }
 
 /// Returns the axis of directions: half the angle of their second harmonic, degrees.
