@@ -162,8 +162,8 @@ fn brownian_surface(exponent: f64, chance: &mut Chance) -> Vec<f64> {
 }
 
 /// Islands above the mean level of a fractional Brownian surface have coasts of dimension (3 - H) / 2, areas by the
-/// exponent (2 - H) / 2, and so perimeters by 2 (2 - H) / (3 - H) (Kondev and Henley 1995). Smoother surfaces than these
-/// have too few islands in four pictures.
+/// exponent (2 - H) / 2, and so perimeters by 2 (2 - H) / (3 - H) (Kondev and Henley 1995). Long perimeters are rare in
+/// four pictures, hence the wide tolerance of theirs; smoother surfaces have too few islands.
 #[test]
 fn islands_of_brownian_surfaces_have_their_known_exponents() {
     let mut chance = Chance(3);
@@ -180,7 +180,7 @@ fn islands_of_brownian_surfaces_have_their_known_exponents() {
         let known = [(3.0 - hurst) / 2.0, 2.0 * (2.0 - hurst) / (3.0 - hurst), (2.0 - hurst) / 2.0];
         let found = [shape.dimension, shape.perimeter_exponent, shape.area_exponent].map(Option::unwrap);
         println!("H {hurst:.2}: found {found:.3?}, known {known:.3?}");
-        for (found, (known, tolerance)) in found.into_iter().zip(known.into_iter().zip([0.04, 0.1, 0.12])) {
+        for (found, (known, tolerance)) in found.into_iter().zip(known.into_iter().zip([0.04, 0.16, 0.06])) {
             assert!((found - known).abs() < tolerance, "H {hurst}: {found}, {known}");
         }
         assert!(shape.edges.strongest() < 1.08);
