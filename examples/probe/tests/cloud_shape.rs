@@ -246,7 +246,7 @@ fn objscale_finds_the_same_numbers() {
         let masks = cloud_shape::masks(kind, okta / 8.0, 4, PIXEL_M).unwrap();
         let shape = shape_of(&masks);
         let mut command = Command::new(&python);
-        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/objscale.py"));
+        command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ask_objscale.py"));
         for (seed, mask) in masks.iter().enumerate() {
             let path = dir.join(format!("{seed}.raw"));
             fs::write(&path, mask.pixels().iter().map(|p| u8::from(*p)).collect::<Vec<_>>()).unwrap();
