@@ -336,6 +336,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_TERRAIN 52
 /** wk_terrain_cells */
 #define WK_STRUCT_TYPE_TERRAIN_CELLS 53
+/** wk_terrain_drawing */
+#define WK_STRUCT_TYPE_TERRAIN_DRAWING 98
 /** wk_frame_light */
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
 /** wk_part_wish */
@@ -3654,8 +3656,8 @@ typedef uint32_t wk_color_space;
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /**
- * Access of Welkin to the target's depth. This version draws nothing opaque, so both values give the same picture. The
- * sea and terrain of later versions will be opaque.
+ * Access of Welkin to the target's depth. Without opaque objects of Welkin's own, such as the terrain of
+ * wk_context_set_terrain_drawing, both values give the same picture.
  */
 typedef uint32_t wk_depth_access;
 
@@ -7288,19 +7290,46 @@ typedef struct wk_terrain_cells {
     /* no_data_m */ 0.0f \
 }
 
+/** Settings with which Welkin draws the tiles of a terrain. */
+typedef struct wk_terrain_drawing {
+    /** sizeof(wk_terrain_drawing) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_TERRAIN_DRAWING. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels. Range [0.25, 16],
+     * default 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is
+     * so rough that more would be needed is drawn with a larger error.
+     */
+    double error_px;
+} wk_terrain_drawing;
+
+/** Every field of `wk_terrain_drawing` at its default. */
+#define WK_TERRAIN_DRAWING_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_terrain_drawing), \
+    /* struct_type */ WK_STRUCT_TYPE_TERRAIN_DRAWING, \
+    /* next */ NULL, \
+    /* error_px */ 1.0 \
+}
+
 /** Terrain at a queried place. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_terrain_point {
     /**
-     * Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
+     * Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
+     * four cells is split from its south-western to its north-eastern cell. 0 where there is none.
      */
     double height_m;
+    /** Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground. */
+    double normal[3];
     /** Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground. */
     uint64_t revision;
     /** Key of the nearest cell's tile. */
     int32_t tile[2];
     /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none. */
     wk_surface_class surface_class;
-    /** 1 on the ground of a tile, else 0. */
+    /** 1 on the ground of a tile, else 0: on a triangle of which a cell is a hole or lies off all tiles. */
     uint32_t has_ground;
 } wk_terrain_point;
 
@@ -7339,6 +7368,15 @@ wk_status wk_context_update_terrain(wk_context *context,
 WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t tile_east, int32_t tile_north);
 
 /**
+ * Sets whether and how Welkin draws the tiles into frames whose depth it may write, in WK_STAGE_SURFACE. NULL, the
+ * default, leaves them to the host. Settings are not saved. Unchanged after an error. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_terrain_drawing(wk_context *context,
+                                         const wk_terrain_drawing *terrain_drawing);
+
+/**
  * Gets a number that grows whenever the tiles change; 0 without a terrain.
  * Thread: concurrent.
  */
@@ -7350,12 +7388,12 @@ WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint
  * sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
  */
 WK_API
-wk_status wk_context_get_terrain_points(const wk_context *context,
-                                        const double (*positions_m)[3],
-                                        uint32_t count,
-                                        uint32_t position_size,
-                                        wk_terrain_point *points,
-                                        uint32_t point_size);
+wk_status wk_context_get_terrain_at(const wk_context *context,
+                                    const double (*positions_m)[3],
+                                    uint32_t count,
+                                    uint32_t position_size,
+                                    wk_terrain_point *points,
+                                    uint32_t point_size);
 
 /**
  * Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
@@ -7377,6 +7415,14 @@ wk_status wk_context_get_terrain_water(const wk_context *context,
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_terrain_init(wk_terrain *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_TERRAIN_DRAWING_INIT`. `struct_size` is `sizeof(wk_terrain_drawing)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_terrain_drawing_init(wk_terrain_drawing *out,
+                                  uint32_t struct_size);
 
 /**
  * Writes the default of every field: the same bytes as `WK_TERRAIN_CELLS_INIT`. `struct_size` is `sizeof(wk_terrain_cells)`

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::uniforms::LandEye;
+use super::eye::LandEye;
 use crate::{
     error::Result,
     moment::Scene,

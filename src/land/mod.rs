@@ -28,6 +28,7 @@
 //! **Files**. There is no `candidates.rs`: no plan leaves terrain out.
 
 mod cells;
+mod eye;
 mod held;
 mod light;
 mod materials;

@@ -115,11 +115,11 @@ impl PageRect {
 
 /// Slope between up to three neighbouring heights at a distance; one-sided where one has no ground, 0 where two have
 /// none.
-fn slope(before: f32, own: f32, after: f32, distance: f32) -> f32 {
-    match (before.is_nan(), after.is_nan()) {
-        (false, false) => (after - before) / (2.0 * distance),
-        (true, false) => (after - own) / distance,
-        (false, true) => (own - before) / distance,
+fn slope(low: f32, own: f32, high: f32, distance: f32) -> f32 {
+    match (low.is_nan(), high.is_nan()) {
+        (false, false) => (high - low) / (2.0 * distance),
+        (true, false) => (high - own) / distance,
+        (false, true) => (own - low) / distance,
         (true, true) => 0.0,
     }
 }

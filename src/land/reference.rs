@@ -10,12 +10,12 @@ use super::{
 };
 use crate::terrain::Terrain;
 
-/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `from` and the unit vector `direction` are in
+/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `origin` and the unit vector `direction` are in
 /// metres along the lattice's axes from its origin.
-pub(crate) fn ray_to_ground(terrain: &Terrain, from: DVec3, direction: DVec3, farthest_m: f64) -> Option<f64> {
+pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, farthest_m: f64) -> Option<f64> {
     let cell_m = terrain.desc.cell_m;
     let plan = DVec2::new(direction.x, direction.y) / cell_m;
-    let start = DVec2::new(from.x, from.y) / cell_m;
+    let start = DVec2::new(origin.x, origin.y) / cell_m;
     // Ends of the stretches of the ray over one square.
     let mut begin = 0.0;
     let mut square = start.floor();
@@ -27,7 +27,7 @@ pub(crate) fn ray_to_ground(terrain: &Terrain, from: DVec3, direction: DVec3, fa
         let (x, y) = (next(0), next(1));
         let end = x.min(y).min(farthest_m);
         let found = [true, false].into_iter().filter_map(|south| {
-            let range = range_to_triangle(terrain, square, south, from, direction)?;
+            let range = range_to_triangle(terrain, square, south, origin, direction)?;
             (range >= begin - 1e-9 && range <= end + 1e-9 && range > 0.0).then_some(range)
         });
         if let Some(range) = found.reduce(f64::min) {
@@ -43,7 +43,7 @@ pub(crate) fn ray_to_ground(terrain: &Terrain, from: DVec3, direction: DVec3, fa
 }
 
 /// Distance along a ray to the plane of a triangle of a square, if the ray meets the triangle itself.
-fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, from: DVec3, direction: DVec3) -> Option<f64> {
+fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, origin: DVec3, direction: DVec3) -> Option<f64> {
     let [x, y] = [square.x as i32, square.y as i32];
     let height = |place| terrain.cell_at(place).map(|cell| f64::from(terrain.height(cell)));
     let low = height([x, y])?;
@@ -52,10 +52,10 @@ fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, from: DVec3,
     let cell_m = terrain.desc.cell_m;
     let (along, across) = ((third - low) / cell_m, (far - third) / cell_m);
     let slope = if south { DVec2::new(along, across) } else { DVec2::new(across, along) };
-    let over = from.z - low - slope.dot(DVec2::new(from.x, from.y) - square * cell_m);
+    let over = origin.z - low - slope.dot(DVec2::new(origin.x, origin.y) - square * cell_m);
     let fall = slope.dot(DVec2::new(direction.x, direction.y)) - direction.z;
     let range = over / fall;
-    let at = (DVec2::new(from.x, from.y) + range * DVec2::new(direction.x, direction.y)) / cell_m - square;
+    let at = (DVec2::new(origin.x, origin.y) + range * DVec2::new(direction.x, direction.y)) / cell_m - square;
     let inside = if south { at.x >= at.y - 1e-9 } else { at.y >= at.x - 1e-9 };
     (range.is_finite() && inside).then_some(range)
 }

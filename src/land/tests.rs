@@ -6,13 +6,14 @@ use glam::{DMat3, DMat4, DVec2, DVec3};
 
 use super::{
     cells::CellReader,
+    eye::LandEye,
     light::LandLight,
     page::{PageRect, PageWriter, VERTICES},
     passes::patch_indices,
     reference::vertex,
     relief::Relief,
     selection::{Detail, Frustum, Patch, select},
-    uniforms::{LandEye, LandPicture, LandUniform, PatchInstance},
+    uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
     chance::RandomStream,

@@ -3,13 +3,14 @@
 use glam::{DMat4, DVec3};
 
 use super::{
+    eye::LandEye,
     held::HeldLand,
     light::LandLight,
     pages::Pages,
     passes::LandPass,
     relief::Relief,
     selection::{Detail, Frustum, Patch, select},
-    uniforms::{LandEye, LandPicture, LandUniform, PatchInstance},
+    uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
     error::Result,

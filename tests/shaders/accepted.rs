@@ -245,6 +245,7 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
     ("crosses", "clamp(place, map.part.xy, map.part.zw - 0.004) / size", "a map's own size, slopes kept off 0 before"),
     ("crown_of", "(shown.x * shown.y) / (size.x * size.y)", "sides, bands and pictures have an extent"),
     ("crown_profile", "at.x / (0.5 + 0.4 * min(y, 1.0))", "sides, bands and pictures have an extent"),
+    ("depth_ln_1p", "log(1.0 + x)", "clip w over a length, at least 0"),
     ("depth_of", "nearer / slant", "distances are above 0"),
     (
         "detoured",
@@ -374,6 +375,7 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
     ("mu_s_at_start", "(r * observer.mu_s + ray.before * nu) / ray.radius", "radii of a planet"),
     ("octahedron_direction", "normalize(vec3f(select(folded, p, z >= 0.0), z))", "the sum of its parts is 1"),
     ("octahedron_place", "d.xy / (abs(d.x) + abs(d.y) + abs(d.z))", "asked of unit vectors"),
+    ("octave_share", "smoothstep(octave.turn.z, octave.turn.w, footprint)", "shares of an octave's length"),
     ("open_band", "(range - band.x) / (band.y - band.x)", "sides, bands and pictures have an extent"),
     ("open_share", "(range - stretch.x) / (stretch.y - stretch.x)", "sides, bands and pictures have an extent"),
     ("ozone_from_perigee", "m * m / (sqrt(p * p + m * m) + p)", "radii of a planet and heights above it"),
@@ -528,4 +530,7 @@ pub const LOOPS: &[(&str, &str, &str)] = &[
     ("order_blocks", "for (var i = first; i < end; i++) {", "a 128th of the list, by its own length"),
     ("thing_at", "for (left = min(left, 31u); left > 0u; left--) {", "begins at 31 at most"),
     ("thing_at", "while end - block > 1u {", "halves what is left"),
+    ("written_depth", "(e - u.turn_offset) / u.turn_scale", "constants of a logarithmic mapping"),
+    ("written_depth", "depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far", "constants of a logarithmic mapping"),
+    ("written_depth", "max(w, 0.0) / u.inverse_c", "constants of a logarithmic mapping"),
 ];
