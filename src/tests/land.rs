@@ -9,7 +9,8 @@ use crate::{
     gpu::Device,
     land::{TerrainDrawing, reference::ray_to_ground},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, depth::RANGE_SKY_M},
-    terrain::{Rows, Terrain, TerrainCells, TerrainDesc, TileKey},
+    terrain::{Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
+    weather::{Surface, SurfaceState, Weather},
 };
 
 const ASPECT: f64 = 64.0 / 36.0;
@@ -275,7 +276,7 @@ fn the_horizon_of_a_planet_is_where_a_sphere_has_it() {
 #[test]
 fn the_mean_colour_of_the_ground_is_the_same_at_every_distance() {
     let mut host = host_with(50.0, |_, _| 0.0);
-    host.context.set_default_surface_class(crate::terrain::SurfaceClass::Soil);
+    host.context.set_default_surface_class(SurfaceClass::Soil);
     let mut chance = RandomStream::new(9, 9);
     let mut mean = |host: &mut Host, over: f64, views: u32| {
         let mut sum = DVec3::ZERO;
@@ -298,4 +299,45 @@ fn the_mean_colour_of_the_ground_is_the_same_at_every_distance() {
         println!("{over} m: {off}");
         assert!(off.max_element() < 1.0 / 255.0, "{over} m: {near} {far}");
     }
+}
+
+#[test]
+fn water_and_snow_lie_on_the_drawn_ground() {
+    let mean = |host: &Host| {
+        let colors = host.colors();
+        assert!(host.depths(0).iter().all(|depth| *depth > 0.0), "ground everywhere");
+        colors.iter().map(|c| f64::from(c[1])).sum::<f64>() / colors.len() as f64
+    };
+    let mut host = host();
+    host.context.set_default_surface_class(SurfaceClass::Paved);
+    let case = looking(ORIGIN + DVec3::new(200.0, 180.0, 40.0), DVec3::new(0.2, 1.0, -1.2));
+    host.draw(&case);
+    let dry = (mean(&host), host.colors());
+    let with = |host: &mut Host, surface: Surface| {
+        host.context.set_weather(&Weather { surface, ..Weather::default() }, 0.0, 0.0).unwrap();
+        host.draw(&case);
+        mean(host)
+    };
+    with(&mut host, Surface { state: Some(SurfaceState::Wet), ..Surface::default() });
+    let changed = host.colors().iter().zip(&dry.1).filter(|(a, b)| (a[1] / b[1] - 1.0).abs() > 0.05).count();
+    assert!(changed > 1000, "{changed} pixels are wet");
+    let snowy = with(&mut host, Surface { snow_depth_m: 0.2, ..Surface::default() });
+    assert!(snowy > 3.0 * dry.0, "{snowy} {}", dry.0);
+}
+
+#[test]
+fn without_tiles_or_with_drawing_off_nothing_is_drawn() {
+    let mut host = host();
+    let case = looking(ORIGIN + DVec3::new(200.0, 180.0, 40.0), DVec3::new(0.2, 1.0, -1.2));
+    host.context.set_terrain_drawing(None).unwrap();
+    host.draw(&case);
+    assert_eq!(host.view.report().passes, 0);
+    assert!(host.depths(0).iter().all(|depth| *depth == 0.0));
+    host.context.set_terrain_drawing(Some(TerrainDrawing::default())).unwrap();
+    host.context.set_terrain(None).unwrap();
+    host.draw(&case);
+    assert_eq!(host.view.report().passes, 0);
+    let refused = host.context.set_terrain_drawing(Some(TerrainDrawing { error_px: f64::NAN })).unwrap_err();
+    assert!(refused.to_string().contains("terrain_drawing.error_px must be in [0.25, 16] px, got NaN"), "{refused}");
+    assert_eq!(host.context.terrain_drawing(), Some(TerrainDrawing::default()));
 }
