@@ -1,5 +1,5 @@
-// Draws the terrain of the host's tiles into its colour and depth: materials by class, slope and height, in the light of
-// sun, moon and sky. Water, snow, cloud shadows, air and fog follow in the composition, which reads the depth.
+// Draws the terrain of the host's tiles into its colour and depth: materials by class, slope and height, in the light
+// of sun, moon and sky. Water, snow, cloud shadows, air and fog follow in the composition, which reads the depth.
 //!include "common/opaque.wgsl"
 //!include "land/vertex.wgsl"
 //!include "land/noise.wgsl"
@@ -77,7 +77,8 @@ fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
     return albedo * (direct + land.sky_lux.rgb * open + land.bounce_lux.rgb * (1.0 - open)) / PI;
 }
 
-// Returns the host's colour of a fragment. Discards it where the host's mask keeps its own, and where there is no ground.
+// Returns the host's colour of a fragment. Discards it where the host's mask keeps its own, and where there is no
+// ground.
 fn shown(in: LandVarying) -> vec4f {
     // Side of the square that a pixel covers on the ground.
     let area = cross(dpdx(in.place), dpdy(in.place));

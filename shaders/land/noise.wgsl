@@ -12,8 +12,8 @@ fn key_number(key: u32) -> f32 {
     return f32(h >> 8u) / 8388608.0 - 1.0;
 }
 
-// Value noise of four cells of a level lattice. `low` and `high` are the parts of the cells' keys by axis; `rest` is that
-// of the other axis and the seed.
+// Value noise of four cells of a level lattice. `low` and `high` are the parts of the cells' keys by axis; `rest` is
+// that of the other axis and the seed.
 fn level_noise(low: vec2u, high: vec2u, rest: u32, share: vec2f) -> f32 {
     return mix(
         mix(key_number(low.x ^ low.y ^ rest), key_number(high.x ^ low.y ^ rest), share.x),

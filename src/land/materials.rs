@@ -34,8 +34,8 @@ const fn material(albedo: [f32; 3], fine: [f32; 3], broad: [f32; 3]) -> Material
 }
 
 /// Materials by class number: natural ground's grass, soil, rock, asphalt, grass, the bed of water, concrete. Their
-/// luminances are within the ranges of Oke 1987, table 1.1, for visible light: grass 0.05 to 0.10, dry soil 0.10 to 0.20,
-/// asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
+/// luminances are within the ranges of Oke 1987, table 1.1, for visible light: grass 0.05 to 0.10, dry soil 0.10 to
+/// 0.20, asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
 pub(super) const CLASS_MATERIALS: [Material; MATERIALS] = [
     material([0.070, 0.080, 0.038], [0.013, 0.015, 0.007], [0.012, 0.009, 0.006]),
     material([0.190, 0.140, 0.095], [0.030, 0.023, 0.017], [0.024, 0.018, 0.012]),

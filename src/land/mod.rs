@@ -9,12 +9,12 @@
 //! follows from the error that the host accepts, e pixels: K = d / (e a), where a is the angle of a pixel and d the
 //! error of a level over the side of the squares of the level below it, as measured on the terrain. In the last part of
 //! its distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous Distance-Dependent Level of
-//! Detail), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no skirts and no
-//! jumps.
+//! LevelDistances), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no
+//! skirts and no jumps.
 //!
-//! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes. Pages
-//! that were used last are kept. A change of the terrain writes the texels of all pages that depend on it, in the frame
-//! that follows; the cost grows with the changed rectangle.
+//! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes.
+//! Pages that were used last are kept. A change of the terrain writes the texels of all pages that depend on it, in
+//! the frame that follows; the cost grows with the changed rectangle.
 //!
 //! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise.
 //!
@@ -22,8 +22,8 @@
 //! shadows. What the composition adds to the host's own surfaces it adds to the terrain: water, lying snow, shadows of
 //! clouds, air and fog.
 //!
-//! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers of
-//! cells from the cell below the eye.
+//! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers
+//! of cells from the cell below the eye.
 //!
 //! **Files**. There is no `candidates.rs`: no plan leaves terrain out.
 

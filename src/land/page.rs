@@ -1,9 +1,9 @@
 //! Content of a page: the vertices of a node, and the slopes and materials of the ground in it, as texels.
 //!
-//! A page has the heights of the node's 17 x 17 vertices. Slopes and materials are four times finer from level 2 on, so
-//! that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values depend on the
-//! lattice position and the level alone, so pages that meet have the same values on their common edge. Each texel also
-//! has the slope of the next coarser level, to which the shading moves together with the vertices.
+//! A page has the heights of the node's 17 x 17 vertices. SlopeTexel and materials are four times finer from level 2
+//! on, so that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values
+//! depend on the lattice position and the level alone, so pages that meet have the same values on their common edge.
+//! Each texel also has the slope of the next coarser level, to which the shading moves together with the vertices.
 
 use half::f16;
 
@@ -35,18 +35,18 @@ pub(super) fn texels_in_node(level: u8) -> i32 {
 }
 
 /// Texels of slopes: to the east and the north, on this level and on the next coarser one.
-type Slopes = [u16; 4];
+type SlopeTexel = [u16; 4];
 /// Shares of the classes, in the order of their numbers, and in the last byte 255 where there is ground.
-type Classes = [u8; 8];
+type ClassTexel = [u8; 8];
 
 /// Scratch space in which a page, or a part of it, is computed.
 pub(super) struct PageWriter {
     /// Heights around the texels, m; NaN where there is no ground.
     heights: Vec<f32>,
-    /// Slopes of the next coarser level at the same positions.
+    /// SlopeTexel of the next coarser level at the same positions.
     coarse: Vec<[f32; 2]>,
-    pub slopes: Vec<Slopes>,
-    pub classes: Vec<Classes>,
+    pub slopes: Vec<SlopeTexel>,
+    pub classes: Vec<ClassTexel>,
     pub vertices: Vec<f32>,
 }
 
@@ -83,7 +83,7 @@ impl PageRect {
 
     /// Texels of a page that depend on changed cells; `None` if none does.
     pub fn changed_texels(page: NodeKey, cells: CellRect) -> Option<Self> {
-        // Slopes of the coarser level reach two texels, and are interpolated over one more.
+        // SlopeTexel of the coarser level reach two texels, and are interpolated over one more.
         Self::within(
             page,
             texel_cells(page.level),
@@ -208,7 +208,7 @@ fn position(page: NodeKey, [i, j]: [i32; 2]) -> [i32; 2] {
 }
 
 /// Shares of the classes in the square of a texel around a lattice position.
-fn classes(cells: &mut CellReader<'_>, [x, y]: [i32; 2], side: i32, default: u8) -> Classes {
+fn classes(cells: &mut CellReader<'_>, [x, y]: [i32; 2], side: i32, default: u8) -> ClassTexel {
     let mut texel = [0; 8];
     let Some(own) = cells.class([x, y]) else { return texel };
     texel[7] = 255;

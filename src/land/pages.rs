@@ -43,7 +43,7 @@ impl PageTextures {
 }
 
 #[derive(Clone, Copy)]
-struct Slot {
+struct PageSlot {
     page: Option<NodeKey>,
     /// Number of the last picture that used it.
     used: u64,
@@ -52,12 +52,12 @@ struct Slot {
     is_torn: bool,
 }
 
-const EMPTY: Slot = Slot { page: None, used: 0, has_holes: false, is_torn: false };
+const EMPTY: PageSlot = PageSlot { page: None, used: 0, has_holes: false, is_torn: false };
 
 /// Pages of a view.
 #[derive(Default)]
 pub(super) struct Pages {
-    slots: Vec<Slot>,
+    slots: Vec<PageSlot>,
     by_key: HashMap<NodeKey, u32>,
     pub textures: Option<PageTextures>,
     /// Number of the present picture.
@@ -116,7 +116,7 @@ impl Pages {
         if let Some(before) = self.slots[slot].page {
             self.by_key.remove(&before);
         }
-        self.slots[slot] = Slot { page: Some(page), used: self.picture, ..EMPTY };
+        self.slots[slot] = PageSlot { page: Some(page), used: self.picture, ..EMPTY };
         self.by_key.insert(page, slot as u32);
         self.write_texels(device, terrain, (slot as u32, page), PageRect::texels(page.level));
         self.write_vertices(device, terrain, (slot as u32, page), PageRect::vertices());

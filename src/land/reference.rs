@@ -10,8 +10,8 @@ use super::{
 };
 use crate::terrain::Terrain;
 
-/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `origin` and the unit vector `direction` are in
-/// metres along the lattice's axes from its origin.
+/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `origin` and the unit vector `direction`
+/// are in metres along the lattice's axes from its origin.
 pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, farthest_m: f64) -> Option<f64> {
     let cell_m = terrain.desc.cell_m;
     let plan = DVec2::new(direction.x, direction.y) / cell_m;
@@ -60,8 +60,8 @@ fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, origin: DVec
     (range.is_finite() && inside).then_some(range)
 }
 
-/// Vertex of a patch: its place from the eye along the lattice's axes, m. `height` returns the height of a vertex of the
-/// page.
+/// Vertex of a patch: its place from the eye along the lattice's axes, m. `height` returns the height of a vertex of
+/// the page.
 pub(super) fn vertex(
     land: &LandUniform,
     patch: &PatchInstance,

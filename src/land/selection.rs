@@ -3,8 +3,8 @@
 //! A level is used up to a distance, its reach, at which the error of the next coarser level is as small as the host
 //! asks. Distances are horizontal, with the height of the eye above one reference height, so that they depend on the
 //! place alone and not on its height. The vertices of a level move onto those of the next coarser one before its reach
-//! ends (Strugar 2010). Where two levels meet, the finer one is wholly in the coarser one's form, and the coarser one has
-//! not begun to change: both have the same vertices, and there is no crack.
+//! ends (Strugar 2010). Where two levels meet, the finer one is wholly in the coarser one's form, and the coarser one
+//! has not begun to change: both have the same vertices, and there is no crack.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -16,8 +16,8 @@ pub(super) const PATCH: i32 = NODE / 2;
 /// Shortest and longest reach of a level, in sides of its squares.
 pub(super) const SHORTEST_REACH: f64 = 40.0;
 const LONGEST_REACH: f64 = 160.0;
-/// Diagonal of a node, in sides of its squares, rounded up. A node that begins within the reach of its level ends within
-/// this distance beyond it.
+/// Diagonal of a node, in sides of its squares, rounded up. A node that begins within the reach of its level ends
+/// within this distance beyond it.
 const DIAGONAL: f64 = 23.0;
 /// Longest side of a square in the picture, pixels.
 const LONGEST_SIDE_PX: f64 = 10.0;
@@ -34,13 +34,13 @@ const MOST_PATCHES: usize = 4096;
 
 /// Part of the lattice that is drawn at one level, from the page of a node of that level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Patch {
+pub(super) struct LandPatch {
     pub page: NodeKey,
     /// Quarter of the node: 0 or 1 to the east and to the north.
     pub quarter: [i32; 2],
 }
 
-impl Patch {
+impl LandPatch {
     /// Lattice position of the south-western corner.
     pub fn low(self) -> [i32; 2] {
         let low = self.page.low();
@@ -50,7 +50,7 @@ impl Patch {
 
 /// Distances by which levels are chosen and vertices moved, for one picture. Lengths are in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Detail {
+pub(super) struct LevelDistances {
     /// Place of the eye on the lattice.
     pub eye: DVec2,
     /// Height of the eye above the reference, at least 0.
@@ -61,9 +61,9 @@ pub(super) struct Detail {
     pub reach: [f64; LEVELS],
 }
 
-impl Detail {
-    /// Returns the distances for a camera. `eye` is in cells, `eye_m` its height above the terrain's origin, `height_px`
-    /// the height of the picture.
+impl LevelDistances {
+    /// Returns the distances for a camera. `eye` is in cells, `eye_m` its height above the terrain's origin,
+    /// `height_px` the height of the picture.
     pub fn new(
         relief: &mut Relief,
         camera: &Camera,
@@ -93,14 +93,14 @@ impl Detail {
         Self { eye, above, spread: 1.0, reach }
     }
 
-    /// Returns the reaches for those that each level should have, in sides of its squares. A level reaches so far beyond
-    /// the one below it that its vertices have room to move.
+    /// Returns the reaches for those that each level should have, in sides of its squares. A level reaches so far
+    /// beyond the one below it that its vertices have room to move.
     pub fn reach_for(wanted: impl Fn(usize) -> f64) -> [f64; LEVELS] {
-        let (mut reach, mut begins) = ([0.0; LEVELS], 0.0);
-        for level in 0..LEVELS {
+        let (mut reach, mut begins): ([f64; LEVELS], f64) = ([0.0; LEVELS], 0.0);
+        for (level, reach) in reach.iter_mut().enumerate() {
             let side = f64::from(1u32 << level);
-            reach[level] = (wanted(level).clamp(SHORTEST_REACH, LONGEST_REACH) * side).max(LEAST_BAND * begins);
-            begins = reach[level] + DIAGONAL * side;
+            *reach = (wanted(level).clamp(SHORTEST_REACH, LONGEST_REACH) * side).max(LEAST_BAND * begins);
+            begins = *reach + DIAGONAL * side;
         }
         reach
     }
@@ -120,14 +120,14 @@ impl Detail {
 
 /// Planes of the camera's frustum, in metres from the eye along the lattice's axes.
 #[derive(Clone, Copy)]
-pub(super) struct Frustum {
+pub(super) struct LandFrustum {
     planes: [DVec4; 5],
     /// Side of a cell, m, and the height of the eye, m.
     cell_m: f64,
     eye: DVec3,
 }
 
-impl Frustum {
+impl LandFrustum {
     /// Returns the frustum of a matrix from the lattice's axes about the eye, m, to clip space. `eye` is in cells, with
     /// its height in metres.
     pub fn new(clip: DMat4, eye: DVec3, cell_m: f64) -> Self {
@@ -149,7 +149,12 @@ impl Frustum {
 }
 
 /// Selects the patches of a picture, roughly from near to far. If they are too many, `detail` is made coarser.
-pub(super) fn select(relief: &Relief, detail: &mut Detail, frustum: &Frustum, patches: &mut Vec<Patch>) {
+pub(super) fn select(
+    relief: &Relief,
+    detail: &mut LevelDistances,
+    frustum: &LandFrustum,
+    patches: &mut Vec<LandPatch>,
+) {
     loop {
         patches.clear();
         let selection = Selection { relief, detail, frustum };
@@ -167,8 +172,8 @@ pub(super) fn select(relief: &Relief, detail: &mut Detail, frustum: &Frustum, pa
 
 struct Selection<'a> {
     relief: &'a Relief,
-    detail: &'a Detail,
-    frustum: &'a Frustum,
+    detail: &'a LevelDistances,
+    frustum: &'a LandFrustum,
 }
 
 impl Selection<'_> {
@@ -181,7 +186,7 @@ impl Selection<'_> {
     }
 
     /// Adds the patches of a node that lies within the reach of its level, or is a root.
-    fn add(&self, node: NodeKey, patches: &mut Vec<Patch>) {
+    fn add(&self, node: NodeKey, patches: &mut Vec<LandPatch>) {
         if patches.len() > MOST_PATCHES {
             return;
         }
@@ -190,7 +195,7 @@ impl Selection<'_> {
             return;
         }
         if node.level == 0 {
-            patches.extend(QUARTERS.map(|quarter| Patch { page: node, quarter }));
+            patches.extend(QUARTERS.map(|quarter| LandPatch { page: node, quarter }));
             return;
         }
         let mut children = node.children();
@@ -199,7 +204,7 @@ impl Selection<'_> {
             if self.detail.distance(child) < self.detail.reach[usize::from(child.level)] {
                 self.add(child, patches);
             } else if self.relief.bounds(child).is_some_and(|bounds| self.sees(child, bounds)) {
-                patches.push(Patch { page: node, quarter: [child.x - 2 * node.x, child.y - 2 * node.y] });
+                patches.push(LandPatch { page: node, quarter: [child.x - 2 * node.x, child.y - 2 * node.y] });
             }
         }
     }

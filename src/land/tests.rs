@@ -12,7 +12,7 @@ use super::{
     passes::patch_indices,
     reference::vertex,
     relief::Relief,
-    selection::{Detail, Frustum, Patch, select},
+    selection::{LandFrustum, LandPatch, LevelDistances, select},
     uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
@@ -51,12 +51,12 @@ fn terrain(count: i32, is_hole: impl Fn(i32, i32) -> bool) -> Terrain {
 }
 
 /// A frustum that sees everything.
-fn everything() -> Frustum {
+fn everything() -> LandFrustum {
     let w = DMat4::from_cols_array(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
-    Frustum::new(w, DVec3::ZERO, 1.0)
+    LandFrustum::new(w, DVec3::ZERO, 1.0)
 }
 
-fn uniform_of(detail: &Detail, eye: LandEye, top: u8) -> LandUniform {
+fn uniform_of(detail: &LevelDistances, eye: LandEye, top: u8) -> LandUniform {
     let light = LandLight::default();
     LandPicture {
         eye,
@@ -74,17 +74,17 @@ fn uniform_of(detail: &Detail, eye: LandEye, top: u8) -> LandUniform {
 
 /// Vertices on the rims of all patches of a picture, as the shader places them.
 struct Mesh {
-    patches: Vec<(Patch, Vec<[u32; 3]>)>,
+    patches: Vec<(LandPatch, Vec<[u32; 3]>)>,
 }
 
 impl Mesh {
-    fn new(terrain: &Terrain, relief: &Relief, detail: &mut Detail, eye: DVec3) -> Self {
+    fn new(terrain: &Terrain, relief: &Relief, detail: &mut LevelDistances, eye: DVec3) -> Self {
         let mut patches = Vec::new();
         select(relief, detail, &everything(), &mut patches);
         let eye = LandEye::new(eye);
         let land = uniform_of(detail, eye, relief.top());
         let (mut writer, mut pages) = (PageWriter::default(), HashMap::new());
-        let mut vertices = |patch: &Patch| -> Vec<[u32; 3]> {
+        let mut vertices = |patch: &LandPatch| -> Vec<[u32; 3]> {
             let page: &Vec<f32> = pages.entry(patch.page).or_insert_with(|| {
                 writer.write_vertices(&mut CellReader::new(terrain), patch.page, PageRect::vertices());
                 writer.vertices.clone()
@@ -150,13 +150,13 @@ fn random_eye(chance: &mut RandomStream, side: f64) -> DVec3 {
     DVec3::new((1.4 * chance.unit() - 0.2) * side, (1.4 * chance.unit() - 0.2) * side, 40.0 + height)
 }
 
-fn random_detail(chance: &mut RandomStream, relief: &mut Relief, eye: DVec3) -> Detail {
+fn random_detail(chance: &mut RandomStream, relief: &mut Relief, eye: DVec3) -> LevelDistances {
     let plan = DVec2::new(eye.x, eye.y);
     let above = (eye.z - relief.reference_m(plan, 1.0)).max(0.0);
     // Levels that reach unequally far.
     let wanted: [f64; 8] = std::array::from_fn(|_| 160.0 * chance.unit());
-    let reach = Detail::reach_for(|level| wanted[level.min(7)]);
-    Detail { eye: plan, above, spread: 1.0, reach }
+    let reach = LevelDistances::reach_for(|level| wanted[level.min(7)]);
+    LevelDistances { eye: plan, above, spread: 1.0, reach }
 }
 
 /// The mesh of each view has only the terrain's outer edge as its edge.

@@ -7,7 +7,7 @@ use super::{
     light::LandLight,
     materials::{CLASS_MATERIALS, MATERIALS, Material, OCTAVES, Octave, octaves},
     relief::LEVELS,
-    selection::Detail,
+    selection::LevelDistances,
 };
 
 /// Constants of a picture. `shaders/land/uniform.wgsl` has the units.
@@ -40,7 +40,7 @@ pub(super) struct LandUniform {
 pub(super) struct PatchInstance {
     /// South-western corner, in cells from the one under the eye.
     pub low: [i32; 2],
-    /// Slot of the page.
+    /// PageSlot of the page.
     pub slot: u32,
     /// Level in bits 0 to 7, quarter of the node in bits 8 and 9, whether the page has holes in bit 10.
     pub kind: u32,
@@ -49,7 +49,7 @@ pub(super) struct PatchInstance {
 /// Inputs of [`LandUniform`].
 pub(super) struct LandPicture<'a> {
     pub eye: LandEye,
-    pub detail: &'a Detail,
+    pub detail: &'a LevelDistances,
     pub cell_m: f64,
     /// Level of the largest nodes.
     pub top: u8,

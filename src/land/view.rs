@@ -9,7 +9,7 @@ use super::{
     pages::Pages,
     passes::LandPass,
     relief::Relief,
-    selection::{Detail, Frustum, Patch, select},
+    selection::{LandFrustum, LandPatch, LevelDistances, select},
     uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
@@ -28,7 +28,7 @@ pub(crate) struct LandView {
     blocks: Blocks,
     relief: Relief,
     pages: Pages,
-    patches: Vec<Patch>,
+    patches: Vec<LandPatch>,
     instances: Vec<PatchInstance>,
     /// Whether the host has asked for terrain, and there is some.
     is_there: bool,
@@ -40,7 +40,7 @@ pub(crate) struct LandView {
 /// Picture for which patches and pages are ready.
 struct PreparedPicture {
     eye: LandEye,
-    detail: Detail,
+    detail: LevelDistances,
     cell_m: f64,
     to_local: glam::DMat3,
     curvature: f64,
@@ -92,10 +92,10 @@ impl LandView {
         });
         let (cell_m, height_px) = (terrain.desc.cell_m, f64::from(color.height()));
         let sizes = (height_px, drawing.error_px);
-        let mut detail = Detail::new(relief, &frame.camera, (cells, height_m), cell_m, sizes);
+        let mut detail = LevelDistances::new(relief, &frame.camera, (cells, height_m), cell_m, sizes);
         let to_eye = DMat4::from_mat3(frame.camera.rotation() * terrain.to_enu.transpose());
         let eye = LandEye::new(DVec3::new(cells.x, cells.y, height_m));
-        let frustum = Frustum::new(frame.camera.projection * to_eye, eye.place, cell_m);
+        let frustum = LandFrustum::new(frame.camera.projection * to_eye, eye.place, cell_m);
         select(&self.relief, &mut detail, &frustum, &mut self.patches);
         self.fill_pages(context, terrain, eye);
         let curvature = match now.weather.world.kind {

@@ -111,8 +111,8 @@ fn below_px(terrain: &Terrain, eye: DVec3, place: DVec3, pixel: f64) -> Option<f
     Some((ground - place.z) * level.max(0.05) / (way.length() * pixel))
 }
 
-/// Differences between the drawn ground and the true one at each pixel, pixels: how far a drawn place lies off the ground,
-/// or how deep the ray passes through ground that was not drawn.
+/// Differences between the drawn ground and the true one at each pixel, pixels: how far a drawn place lies off the
+/// ground, or how deep the ray passes through ground that was not drawn.
 fn errors_px(host: &Host, case: &Mapped) -> Vec<f64> {
     let (rays, terrain, depths) = (case.rays(), host.terrain(), host.depths(0));
     let eye = case.camera.position - terrain.desc.origin;
