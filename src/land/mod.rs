@@ -9,7 +9,7 @@
 //! follows from the error that the host accepts, e pixels: K = d / (e a), where a is the angle of a pixel and d the
 //! error of a level over the side of the squares of the level below it, as measured on the terrain. In the last part of
 //! its distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous Distance-Dependent Level of
-//! LevelDistances), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no
+//! Detail), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no
 //! skirts and no jumps.
 //!
 //! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes.

@@ -1,6 +1,6 @@
 //! Content of a page: the vertices of a node, and the slopes and materials of the ground in it, as texels.
 //!
-//! A page has the heights of the node's 17 x 17 vertices. SlopeTexel and materials are four times finer from level 2
+//! A page has the heights of the node's 17 x 17 vertices. Slopes and materials are four times finer from level 2
 //! on, so that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values
 //! depend on the lattice position and the level alone, so pages that meet have the same values on their common edge.
 //! Each texel also has the slope of the next coarser level, to which the shading moves together with the vertices.
@@ -43,7 +43,7 @@ type ClassTexel = [u8; 8];
 pub(super) struct PageWriter {
     /// Heights around the texels, m; NaN where there is no ground.
     heights: Vec<f32>,
-    /// SlopeTexel of the next coarser level at the same positions.
+    /// Slopes of the next coarser level at the same positions.
     coarse: Vec<[f32; 2]>,
     pub slopes: Vec<SlopeTexel>,
     pub classes: Vec<ClassTexel>,
@@ -83,7 +83,7 @@ impl PageRect {
 
     /// Texels of a page that depend on changed cells; `None` if none does.
     pub fn changed_texels(page: NodeKey, cells: CellRect) -> Option<Self> {
-        // SlopeTexel of the coarser level reach two texels, and are interpolated over one more.
+        // Slopes of the coarser level reach two texels, and are interpolated over one more.
         Self::within(
             page,
             texel_cells(page.level),

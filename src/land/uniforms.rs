@@ -40,7 +40,7 @@ pub(super) struct LandUniform {
 pub(super) struct PatchInstance {
     /// South-western corner, in cells from the one under the eye.
     pub low: [i32; 2],
-    /// PageSlot of the page.
+    /// Slot of the page.
     pub slot: u32,
     /// Level in bits 0 to 7, quarter of the node in bits 8 and 9, whether the page has holes in bit 10.
     pub kind: u32,
