@@ -5,12 +5,12 @@
 //! heights have these triangles alike.
 //!
 //! **Levels of detail**. A quadtree of nodes with 16 x 16 squares, whose sides double from level to level, covers the
-//! lattice. Level n has every 2^n-th cell, with the cell's own height. It is used up to a distance of K 2^n cells; K
-//! follows from the error that the host accepts, e pixels: K = d / (e a), where a is the angle of a pixel and d the
-//! error of a level over the side of the squares of the level below it, as measured on the terrain. In the last part of
-//! its distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous Distance-Dependent Level of
-//! Detail), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no
-//! skirts and no jumps.
+//! lattice. Level n has every 2^n-th cell, with the cell's own height. It is used up to the distance d / (e a), where e
+//! is the error that the host accepts, pixels, a the angle of a pixel, and d the vertical error of level n + 1 that
+//! 99.7 % of the ground keeps, as measured at random cells of the terrain. The distance is at least 40 and at most 160
+//! sides of the squares. In its last part each odd vertex moves onto its even neighbour (Strugar 2010, Continuous
+//! Distance-Dependent Level of Detail), so the mesh of a level becomes that of the next one before they meet. There are
+//! no cracks, no skirts and no jumps.
 //!
 //! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes.
 //! Pages that were used last are kept. A change of the terrain writes the texels of all pages that depend on it, in
