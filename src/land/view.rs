@@ -68,12 +68,6 @@ impl LandView {
         self.pages.texels_written
     }
 
-    /// Patches of the last picture.
-    #[cfg(test)]
-    pub fn patch_count(&self) -> usize {
-        self.instances.len()
-    }
-
     /// Selects the patches of a picture and fills their pages.
     fn prepare_picture(&mut self, context: &FrameContext<'_>, terrain: &Terrain, held: &HeldLand) -> Result<()> {
         let (frame, now) = (context.frame, context.now);

@@ -10,7 +10,6 @@ use crate::{
     land::{TerrainDrawing, reference::ray_to_ground},
     scene::{Camera, ClipSpace, DepthKind, DepthMapping, depth::RANGE_SKY_M},
     terrain::{Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
-    weather::{Surface, SurfaceState, Weather},
 };
 
 const ASPECT: f64 = 64.0 / 36.0;
@@ -299,30 +298,6 @@ fn the_mean_colour_of_the_ground_is_the_same_at_every_distance() {
         println!("{over} m: {off}");
         assert!(off.max_element() < 1.0 / 255.0, "{over} m: {near} {far}");
     }
-}
-
-#[test]
-fn water_and_snow_lie_on_the_drawn_ground() {
-    let mean = |host: &Host| {
-        let colors = host.colors();
-        assert!(host.depths(0).iter().all(|depth| *depth > 0.0), "ground everywhere");
-        colors.iter().map(|c| f64::from(c[1])).sum::<f64>() / colors.len() as f64
-    };
-    let mut host = host();
-    host.context.set_default_surface_class(SurfaceClass::Paved);
-    let case = looking(ORIGIN + DVec3::new(200.0, 180.0, 40.0), DVec3::new(0.2, 1.0, -1.2));
-    host.draw(&case);
-    let dry = (mean(&host), host.colors());
-    let with = |host: &mut Host, surface: Surface| {
-        host.context.set_weather(&Weather { surface, ..Weather::default() }, 0.0, 0.0).unwrap();
-        host.draw(&case);
-        mean(host)
-    };
-    with(&mut host, Surface { state: Some(SurfaceState::Wet), ..Surface::default() });
-    let changed = host.colors().iter().zip(&dry.1).filter(|(a, b)| (a[1] / b[1] - 1.0).abs() > 0.05).count();
-    assert!(changed > 1000, "{changed} pixels are wet");
-    let snowy = with(&mut host, Surface { snow_depth_m: 0.2, ..Surface::default() });
-    assert!(snowy > 3.0 * dry.0, "{snowy} {}", dry.0);
 }
 
 #[test]
