@@ -40,6 +40,7 @@ use crate::{
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
+    soil::{HeldSoil, LoadedSoil},
     stage::{
         Composition, DrawContext, DrawnEffect, FrameContext, MergedFrame, NO_OUTPUTS, Outputs, Recording, ordered,
     },
@@ -99,6 +100,8 @@ pub(crate) struct Held {
     pub sky: Arc<Mutex<FollowedSky>>,
     /// Solved wind; it is advanced before the others, which may query the wind.
     pub flow: HeldFlow,
+    /// Soil; it is advanced before snow and water, which lie on its heights.
+    pub soil: HeldSoil,
     /// Lying snow; it is advanced before the ground, which takes its meltwater.
     pub snowpack: HeldSnow,
     pub fog: HeldFog,
@@ -113,6 +116,7 @@ pub(crate) struct Held {
 /// State that was read from a saved one and is not yet in use.
 pub(crate) struct LoadedHeld {
     flow: HeldFlow,
+    soil: LoadedSoil,
     snowpack: LoadedSnow,
     fog: HeldFog,
     ground: LoadedGround,
@@ -133,6 +137,7 @@ impl Held {
         Ok(Self {
             sky: Arc::new(Mutex::new(sky)),
             flow: HeldFlow::default(),
+            soil: HeldSoil::default(),
             snowpack: HeldSnow::new(desc.lying_snow),
             fog: HeldFog::default(),
             ground: HeldGround::new(desc.ground, desc.seed),
@@ -148,6 +153,7 @@ impl Held {
     pub fn each(&mut self) -> [&mut dyn HeldEffect; 9] {
         [
             &mut self.flow,
+            &mut self.soil,
             &mut self.snowpack,
             &mut self.fog,
             &mut self.ground,
@@ -160,9 +166,10 @@ impl Held {
     }
 
     /// As [`Self::each`], by shared reference.
-    pub fn all(&self) -> [&dyn HeldEffect; 9] {
+    pub fn all(&self) -> [&dyn HeldEffect; 10] {
         [
             &self.flow,
+            &self.soil,
             &self.snowpack,
             &self.fog,
             &self.ground,
@@ -181,15 +188,19 @@ impl Held {
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
         // Each effect takes its own entries out, even if those of another are wrong.
         let flow = HeldFlow::read(world, state);
+        let soil = self.soil.read(world, state);
         let snowpack = self.snowpack.read(state);
         let fog = HeldFog::read(state);
-        let ground = self.ground.read(world, state);
+        // The water of a state lies on tiles with the soil of that state.
+        let tiles = soil.as_ref().map_or(world.set.tiles.as_deref(), |soil| soil.tiles());
+        let ground = self.ground.read(world, tiles, state);
         let stars = HeldStars::read(state, self.stars.settings.stars.clone());
         let clouds = HeldClouds::read(state);
         let lightning = self.lightning.read(state);
         let sea = HeldSea::read(world, state);
         Ok(LoadedHeld {
             flow: flow?,
+            soil: soil?,
             snowpack: snowpack?,
             fog: fog?,
             ground: ground?,
@@ -204,6 +215,7 @@ impl Held {
     pub fn swap_in(&mut self, world: &mut World, other: &mut LoadedHeld) {
         std::mem::swap(&mut self.fog, &mut other.fog);
         world.set.undimmed = self.fog.law.is_some();
+        self.soil.swap_in(world, &mut other.soil);
         self.ground.swap_in(&mut other.ground);
         world.set.terrain = self.ground.heights();
         self.land.surface_class = self.ground.surface_class;
@@ -214,6 +226,8 @@ impl Held {
         std::mem::swap(&mut self.sea, &mut other.sea);
         world.night = self.stars.night();
         self.flow.swap_in(world, &mut other.flow);
+        // The soil reads this before the ground is advanced again.
+        self.ground.publish(world);
     }
 }
 

@@ -105,10 +105,13 @@ pub mod terrain;
 
 pub mod sea;
 
+pub mod soil;
+
 mod boundary;
 mod host;
 mod occluder_map;
 mod opengl_structs;
+mod soil_structs;
 mod vulkan_structs;
 mod weather_convert;
 

@@ -10,6 +10,7 @@ mod regions;
 mod sea;
 mod sky;
 mod snowpack;
+mod soil;
 mod stars;
 mod terrain;
 mod view;

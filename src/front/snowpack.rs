@@ -84,7 +84,7 @@ impl Context {
     }
 
     /// Checks that no steps of an update remain.
-    fn check_advanced(&self) -> Result<()> {
+    pub(super) fn check_advanced(&self) -> Result<()> {
         let wanted = "this comes after an update has done all of its steps";
         if self.is_behind() { Err(Error::new(Status::WrongOrder, wanted)) } else { Ok(()) }
     }

@@ -15,7 +15,8 @@ impl Context {
     /// removes the terrain. If the lattice is the present one, it keeps its tiles.
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
-    /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`].
+    /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`]. Soil
+    /// ([`Context::set_soil`]) lies on the lattice, and is gone when another one takes its place.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -27,7 +28,8 @@ impl Context {
     }
 
     /// Adds a tile, or replaces all cells of an existing one. A new tile starts as wet as level ground, with as much
-    /// simulated snow. An existing one keeps its water, and its snow wherever there is still ground.
+    /// simulated snow. An existing one keeps its water, and its snow wherever there is still ground. Heights are those of
+    /// the undug ground: soil adds what was dug and heaped there, also on a tile that had been removed.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for
@@ -36,6 +38,7 @@ impl Context {
         let waits = self.is_behind();
         self.held.ground.set_tile(&mut self.world, waits, cells)?;
         self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        self.let_soil_follow();
         Ok(())
     }
 
@@ -49,10 +52,12 @@ impl Context {
         let waits = self.is_behind();
         self.held.ground.update_tile(&mut self.world, waits, cells)?;
         self.held.snowpack.tile_changed(&mut self.world, cells.key, waits);
+        self.let_soil_follow();
         Ok(())
     }
 
-    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off.
+    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off. Soil stays in the books,
+    /// and comes back with the tile.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that does not
@@ -61,6 +66,7 @@ impl Context {
         let waits = self.is_behind();
         self.held.ground.remove_tile(&mut self.world, waits, key)?;
         self.held.snowpack.tile_changed(&mut self.world, key, waits);
+        self.let_soil_follow();
         Ok(())
     }
 
@@ -81,6 +87,13 @@ impl Context {
         self.held.land.drawing
     }
 
+    /// Adds the change of the soil to tiles that the host has changed.
+    fn let_soil_follow(&mut self) {
+        if self.soil().is_some() {
+            self.settle();
+        }
+    }
+
     /// Returns the lattice of the terrain's tiles.
     pub fn terrain(&self) -> Option<TerrainDesc> {
         self.world.set.tiles.as_ref().map(|terrain| terrain.desc)
@@ -91,7 +104,7 @@ impl Context {
         self.world.set.tiles.iter().flat_map(|terrain| terrain.all().map(|(_, tile)| tile.key))
     }
 
-    /// Returns a number that grows whenever the tiles change; 0 without a terrain.
+    /// Returns a number that grows whenever the host or the soil changes the tiles; 0 without a terrain.
     pub fn terrain_revision(&self) -> u64 {
         self.world.set.tiles.as_ref().map_or(0, |terrain| terrain.revision)
     }

@@ -56,7 +56,7 @@ pub(crate) struct HeldGround {
     /// Pattern of hollows in which water stands where heights are unknown.
     pub hollows: Hollows,
     /// Simulated water of level, open ground; `None` before the first update.
-    state: Option<GroundState>,
+    pub(super) state: Option<GroundState>,
     /// Host's grid and the water on it.
     pub(super) host: Option<Box<HostGround>>,
     /// Incremented whenever the water of the cells has changed.
@@ -69,6 +69,8 @@ pub(crate) struct HeldGround {
     pub surface_class: SurfaceClass,
     /// Time at which the terrain was set, s; steps before it leave the terrain out.
     terrain_from_s: f64,
+    /// Time, s, and revision of the water that was last published for the soil.
+    pub(super) published: Option<(f64, u64)>,
     /// Textures of the host's grid and of the water on it.
     pub(super) textures: Mutex<TerrainTextures>,
     /// Water on the host's tiles.
@@ -111,6 +113,7 @@ impl HeldGround {
             classes_revision: 0,
             surface_class: SurfaceClass::Unspecified,
             terrain_from_s: f64::NEG_INFINITY,
+            published: None,
             textures: Mutex::default(),
             tiled: None,
             waiting: Vec::new(),
@@ -297,14 +300,14 @@ impl HeldGround {
         })
     }
 
-    /// Takes the ground's part out of a saved state.
+    /// Takes the ground's part out of a saved state, on these tiles.
     ///
     /// # Errors
     /// [`Status::Parse`] for values that cannot be a ground of this context.
-    pub fn read(&self, world: &World, saved: &mut toml::Table) -> Result<LoadedGround> {
+    pub fn read(&self, world: &World, tiles: Option<&Terrain>, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
         // Removes all keys first: even if a value here is wrong, the table is left without the ground's keys.
-        let [state, terrain, class, tiles] =
+        let [state, terrain, class, tile_water] =
             [STATE_KEY, TERRAIN_KEY, CLASS_KEY, TILES_KEY].map(|key| saved.remove(key));
         let simulated = self.model == GroundModel::Simulated;
         let state: Option<GroundState> = state.map(|v| v.try_into().map_err(|e| fault(STATE_KEY, e))).transpose()?;
@@ -322,15 +325,15 @@ impl HeldGround {
         let class: u8 =
             class.map_or(Ok(SurfaceClass::Unspecified as u8), |v| v.try_into().map_err(|e| fault(CLASS_KEY, e)))?;
         let class = SurfaceClass::from_number("surface_class", class);
-        let tiles: Option<SavedTiles> = tiles.map(|v| v.try_into().map_err(|e| fault(TILES_KEY, e))).transpose()?;
-        let here = world.set.tiles.as_deref();
-        if host.is_some() && here.is_some() {
+        let tile_water: Option<SavedTiles> =
+            tile_water.map(|v| v.try_into().map_err(|e| fault(TILES_KEY, e))).transpose()?;
+        if host.is_some() && tiles.is_some() {
             let wanted = "holds a ground grid: remove the tiles of the terrain before, with wk_context_set_terrain";
             return Err(Error::invalid("state", wanted));
         }
-        let tiled = match tiles {
-            Some(saved) => Some(Box::new(saved.water(here)?)),
-            None => here.map(|terrain| Box::new(TiledWater::of_all(terrain))),
+        let tiled = match tile_water {
+            Some(saved) => Some(Box::new(saved.water(tiles)?)),
+            None => tiles.map(|terrain| Box::new(TiledWater::of_all(terrain))),
         };
         Ok(LoadedGround {
             tiled,
@@ -356,6 +359,7 @@ impl HeldGround {
         std::mem::swap(&mut self.terrain_from_s, &mut other.terrain_from_s);
         std::mem::swap(&mut self.tiled, &mut other.tiled);
         std::mem::swap(&mut self.waiting, &mut other.waiting);
+        self.recent = RecentChanges::default();
     }
 }
 
@@ -379,10 +383,19 @@ impl HeldEffect for HeldGround {
 
     fn settle(&mut self, world: &World) {
         self.follow_late(world);
+        self.follow_dug(world);
+    }
+
+    fn publish(&mut self, world: &mut World) {
+        let Some(mut dug) = world.dug.take() else { return };
+        dug.changes.clear();
+        self.publish_water(world, &mut dug);
+        world.dug = Some(dug);
     }
 
     fn advance(&mut self, world: &World, budget: UpdateBudget) -> Result<Status> {
         self.follow_late(world);
+        self.follow_dug(world);
         let Some(mut state) = self.state else { return Ok(Status::Ok) };
         for steps in 0.. {
             let end_s = state.next_s();
@@ -418,6 +431,10 @@ impl HeldEffect for HeldGround {
             self.state = Some(state);
         }
         Ok(Status::Ok)
+    }
+
+    fn reads_next_s(&self) -> Option<f64> {
+        self.state.map(|state| state.next_s())
     }
 
     fn stepped_to_s(&self) -> Option<f64> {

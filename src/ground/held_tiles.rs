@@ -12,13 +12,13 @@ use super::{
     state::GroundStep,
     terrain::CellWater,
     tiled::{Changed, SavedTiles, TiledStep, TiledWater},
-    water::GroundWater,
+    water::{GroundWater, PORES_MM},
     window::Shown,
 };
 use crate::{
     error::{Error, Result, Status},
-    terrain::{CellRect, Terrain, TerrainCells, TerrainDesc, TileKey},
-    world::{UpdateBudget, World},
+    terrain::{CellId, CellRect, Terrain, TerrainCells, TerrainDesc, TileKey},
+    world::{DUG_SIDE, DUG_WATER_S, DugGround, UpdateBudget, World},
 };
 
 /// Returns the error for tiles before a terrain.
@@ -112,6 +112,41 @@ impl HeldGround {
         }
         // Marks all water as changed: windows already have the new ground, but the old water.
         self.tiled.iter_mut().for_each(|tiled| tiled.count_version());
+    }
+
+    /// Updates the water after changes of the heights by soil.
+    pub(super) fn follow_dug(&mut self, world: &World) {
+        let (Some(terrain), Some(dug)) = (&world.set.tiles, &world.dug) else { return };
+        for rect in &dug.changes {
+            let changed = Changed { revision: terrain.revision, rect: *rect, is_removal: false };
+            self.recent.add(changed);
+            self.follow_change(&changed, terrain);
+        }
+    }
+
+    /// Publishes how wet the dug ground is, at the times at which the soil reads it.
+    pub(super) fn publish_water(&mut self, world: &World, dug: &mut DugGround) {
+        let Some(state) = self.state.filter(|state| state.time_s.rem_euclid(DUG_WATER_S) == 0.0) else { return };
+        let is_published = dug.water.as_ref().is_some_and(|water| water.time_s == state.time_s);
+        if is_published && self.published == Some((state.time_s, self.revision)) {
+            return;
+        }
+        self.published = Some((state.time_s, self.revision));
+        let even = state.water();
+        let water = dug.water.get_or_insert_default();
+        (water.time_s, water.level) = (state.time_s, even.soaked_mm / PORES_MM);
+        water.patches.clear();
+        let (Some(terrain), Some(tiled)) = (&world.set.tiles, &self.tiled) else { return };
+        let soaked = |cell: CellId| {
+            let c = tiled.cell(terrain, cell, &even);
+            if c.standing_mm > 0.0 { 1.0 } else { c.soaked }
+        };
+        for key in &dug.patches {
+            let place = |i: i32| [key[0] * DUG_SIDE + 2 + 4 * (i % 4), key[1] * DUG_SIDE + 2 + 4 * (i / 4)];
+            let cells = (0..16).filter_map(|i| terrain.cell_at(place(i)));
+            let (sum, count) = cells.fold((0.0, 0.0), |(sum, count), cell| (sum + soaked(cell), count + 1.0));
+            water.patches.insert(*key, if count > 0.0 { sum / count } else { water.level });
+        }
     }
 
     /// Advances the water on the tiles by a step, or on some of them within the budget. Returns whether all are done.

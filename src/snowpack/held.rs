@@ -367,6 +367,10 @@ impl HeldEffect for HeldSnow {
             if steps > 0 && budget.begun.elapsed() >= budget.most {
                 return Ok(Status::Pending);
             }
+            // Soil may have changed the heights of the tiles since the update began.
+            if let Some(tiles) = world.set.tiles.as_ref().filter(|_| world.dug.is_some()) {
+                self.settle_on_tiles(tiles);
+            }
             self.step(world, end_s)?;
         }
         Ok(Status::Ok)

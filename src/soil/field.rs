@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     material::{SoilMaterials, SoilParcel, share},
-    patch::{CELLS, NEAR, NO_PATCH, SIDE, SoilPatch, UndugGround, WIDE, wide},
+    patch::{BankWater, CELLS, NEAR, NO_PATCH, SIDE, SoilPatch, UndugGround, WIDE, wide},
 };
 use crate::slides::{SlopeInputs, edge_flows};
 
@@ -31,6 +31,10 @@ pub(super) struct SoilField {
     barred: Vec<u32>,
     /// Number of the sweep.
     sweeps: u64,
+    /// Water of ground that was not dug, which new patches begin with.
+    pub water: BankWater,
+    /// Depth below the undug surface to which the bank is frozen hard, in units.
+    pub frozen: i64,
     /// Whether any bank has lost its hold.
     pub has_broken: bool,
     /// Incremented with each step in which something changed.
@@ -49,6 +53,7 @@ struct SweepScratch {
 
 impl SoilField {
     pub fn new(materials: SoilMaterials) -> Self {
+        let water = BankWater { saturation: materials.saturation, soaked: 0.0 };
         let margin = SweepScratch {
             heights: vec![f64::NAN; WIDE * WIDE],
             grades: vec![f64::INFINITY; WIDE * WIDE],
@@ -62,6 +67,8 @@ impl SoilField {
             changed: Vec::new(),
             barred: Vec::new(),
             sweeps: 1,
+            water,
+            frozen: 0,
             has_broken: false,
             revision: 0,
             scratch: margin,
@@ -93,7 +100,7 @@ impl SoilField {
     }
 
     fn add(&mut self, key: [i32; 2], ground: &dyn UndugGround) -> Option<u32> {
-        Some(self.insert(SoilPatch::new(key, ground)?))
+        Some(self.insert(SoilPatch { water: self.water, ..SoilPatch::new(key, ground)? }))
     }
 
     /// Adds a patch, whose key is new.
@@ -128,6 +135,18 @@ impl SoilField {
         };
         let cell = (y.rem_euclid(side) * side + x.rem_euclid(side)) as usize;
         (slot != NO_PATCH && self.patches[slot as usize].has_ground(cell)).then_some(SoilCell { slot, cell })
+    }
+
+    /// Takes over changes of the undug ground. Returns whether there are any.
+    pub fn set_ground(&mut self, ground: &dyn UndugGround) -> bool {
+        let mut changes = false;
+        for slot in 0..self.patches.len() as u32 {
+            if self.patches[slot as usize].set_ground(ground, &self.materials) {
+                self.touch(slot);
+                changes = true;
+            }
+        }
+        changes
     }
 
     pub fn patch(&self, slot: u32) -> &SoilPatch {

@@ -8,6 +8,9 @@ pub const MAX_SOIL_KINDS: usize = 16;
 /// Largest number of layers of undisturbed ground.
 pub const MAX_HORIZONS: usize = 8;
 
+/// Saturation of moist bank, in which its cohesion is whole.
+pub(super) const MOIST: f64 = 0.3;
+
 /// Number of a kind of soil: an index into the kinds of a site. The built-in kinds come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct SoilKindId(pub u8);
@@ -118,8 +121,48 @@ pub struct SoilHorizon {
     pub kind: SoilKindId,
 }
 
+/// Kinds and layers of the ground of a site.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SoilSettings {
+    /// The host's own kinds of soil; their numbers follow those of the seven built-in kinds. At most 9.
+    pub own_kinds: Vec<SoilKind>,
+    /// Layers of undisturbed ground from the surface down; 1 to 8. Default 0.3 m of topsoil on loam.
+    pub horizons: Vec<SoilHorizon>,
+    /// Share of the pores of the bank that water fills without rain and sun, \[0, 1\]. Default 0.3, moist. Bank at 0
+    /// (dry sand) and at 1 (below the water table) has no cohesion ([`super::laws::cohesion_share`]).
+    pub saturation: f64,
+}
+
+impl Default for SoilSettings {
+    fn default() -> Self {
+        let layer = |top_m, kind| SoilHorizon { top_m, kind };
+        Self {
+            own_kinds: Vec::new(),
+            horizons: vec![layer(0.0, SoilKindId::TOPSOIL), layer(0.3, SoilKindId::LOAM)],
+            saturation: MOIST,
+        }
+    }
+}
+
+impl SoilSettings {
+    /// Checks the settings, and returns all kinds.
+    pub(super) fn checked_kinds(&self) -> Result<Vec<SoilKind>> {
+        let most_own = MAX_SOIL_KINDS - BUILT_IN.len();
+        if self.own_kinds.len() > most_own {
+            return Err(Error::range("own_kinds.len", &format!("at most {most_own}"), self.own_kinds.len()));
+        }
+        for (i, kind) in self.own_kinds.iter().enumerate() {
+            kind.validate().map_err(|e| e.renamed("soil_kind", &format!("own_kinds[{i}]")))?;
+        }
+        let kinds: Vec<SoilKind> = BUILT_IN.iter().chain(&self.own_kinds).copied().collect();
+        check_horizons(&self.horizons, kinds.len())?;
+        check_range("saturation", self.saturation, 0.0, 1.0, "")?;
+        Ok(kinds)
+    }
+}
+
 /// Checks the layers: the first begins at the surface, and each other one deeper than the one before.
-pub(super) fn check_horizons(horizons: &[SoilHorizon], kinds: usize) -> Result<()> {
+fn check_horizons(horizons: &[SoilHorizon], kinds: usize) -> Result<()> {
     if !(1..=MAX_HORIZONS).contains(&horizons.len()) {
         return Err(Error::range("horizons.len", &format!("in [1, {MAX_HORIZONS}]"), horizons.len()));
     }

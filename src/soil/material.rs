@@ -1,7 +1,7 @@
 //! Kinds and layers of a site in units of cells: how much mass a depth holds, and how steep it lies.
 
 use super::{
-    kind::{MAX_SOIL_KINDS, SoilHorizon, SoilKind},
+    kind::{MAX_SOIL_KINDS, MOIST, SoilHorizon, SoilKind},
     laws::WallTable,
 };
 
@@ -78,6 +78,8 @@ pub(super) struct SoilMaterials {
     pub cell_m: f64,
     pub kinds: Vec<SoilMaterial>,
     pub horizons: Vec<SoilHorizon>,
+    /// Saturation of the bank without rain and sun.
+    pub saturation: f64,
     /// Upper sides of the layers, in units of depth below the undug surface.
     tops: Vec<i64>,
 }
@@ -102,7 +104,7 @@ impl SoilMaterials {
     pub fn new(cell_m: f64, kinds: &[SoilKind], horizons: Vec<SoilHorizon>) -> Self {
         let tops = horizons.iter().map(|horizon| depth_units(horizon.top_m)).collect();
         let kinds = kinds.iter().map(|kind| SoilMaterial::new(*kind, cell_m)).collect();
-        Self { cell_m, kinds, horizons, tops }
+        Self { cell_m, kinds, horizons, saturation: MOIST, tops }
     }
 
     pub fn area_m2(&self) -> f64 {

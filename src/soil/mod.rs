@@ -26,10 +26,12 @@
 
 mod field;
 mod heap;
+mod held;
 mod kind;
 pub mod laws;
 mod material;
 mod patch;
+mod resistance;
 mod ribbon;
 mod saved;
 mod site;
@@ -37,10 +39,14 @@ mod site;
 mod tests;
 mod tool;
 mod walls;
+mod weather;
 mod work;
 
 pub use heap::{HEAP_AZIMUTHS_DEG, heap_radii_m};
-pub use kind::{MAX_HORIZONS, MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId};
+pub use held::SoilChange;
+pub(crate) use held::{HeldSoil, LoadedSoil};
+pub use kind::{MAX_HORIZONS, MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId, SoilSettings};
 pub use patch::UndugGround;
+pub use resistance::SoilBlade;
 pub use site::{SOIL_STEP_S, SoilBooks, SoilPoint, SoilSite, SoilSiteDesc, SoilToolReport};
 pub use tool::{MAX_SOIL_TOOLS, SoilToolId, SoilToolPose, SoilToolShape};

@@ -1,6 +1,9 @@
 //! Patch of ground that has been dug: a square of cells, what was taken from each, and the loose soil on it.
 
-use super::material::{SoilMaterials, SoilParcel, depth_units, share};
+use super::{
+    laws::cohesion_share,
+    material::{SoilMaterials, SoilParcel, depth_units, share},
+};
 
 /// Number of cells along a side of a patch.
 pub(super) const SIDE: usize = 16;
@@ -22,6 +25,15 @@ pub(super) struct Pressed {
     pub reached: i64,
 }
 
+/// Water of the bank.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BankWater {
+    /// Share of the pores that water fills.
+    pub saturation: f64,
+    /// Wet share of the surface, which changes the saturation.
+    pub soaked: f64,
+}
+
 /// Heights of the undug ground.
 pub trait UndugGround {
     /// Returns the height of a cell of the lattice, counted east and north, m within 1e5; `None` where there is no
@@ -30,7 +42,7 @@ pub trait UndugGround {
 }
 
 /// Square of cells, by rows from the south-west.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct SoilPatch {
     /// Position on the lattice of patches, east and north.
     pub key: [i32; 2],
@@ -59,6 +71,8 @@ pub(super) struct SoilPatch {
     pub near: [u32; 8],
     /// Revision of the site at the last change.
     pub revision: u64,
+    /// Water of the bank.
+    pub water: BankWater,
     /// Whether walls of this patch or beside it may have lost their hold since they were last checked.
     pub is_unchecked: bool,
     /// Number of the sweep in which the patch last changed, and of that for which it was last listed.
@@ -71,19 +85,31 @@ pub(super) const NEAR: [[i32; 2]; 8] = [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -
 impl SoilPatch {
     /// Creates an undug patch; `None` where there is no ground at all.
     pub fn new(key: [i32; 2], ground: &dyn UndugGround) -> Option<Self> {
-        let first = key.map(|k| k * SIDE as i32);
-        let height = |i: usize| {
-            let offset = [(i % WIDE) as i32 - 1, (i / WIDE) as i32 - 1];
-            let height_m = ground.height_m([first[0] + offset[0], first[1] + offset[1]]);
-            height_m.filter(|height| height.abs() <= 1e5).map_or(f64::NAN, |height| depth_units(height) as f64)
-        };
-        let heights: Vec<f64> = (0..WIDE * WIDE).map(height).collect();
-        let mut patch = Self { key, ground: heights, near: [NO_PATCH; 8], ..Self::default() };
-        (patch.cut, patch.loose, patch.broken) = (vec![0; CELLS], vec![0; CELLS], vec![false; CELLS]);
-        patch.surface = (0..CELLS).map(|cell| patch.ground[wide(cell)]).collect();
-        patch.grade = vec![f64::INFINITY; CELLS];
-        patch.flows = [vec![0.0; CELLS], vec![0.0; CELLS]];
+        let patch = Self::bare(key, ground);
         patch.surface.iter().any(|height| !height.is_nan()).then_some(patch)
+    }
+
+    /// Creates an undug patch, with or without ground.
+    pub fn bare(key: [i32; 2], ground: &dyn UndugGround) -> Self {
+        let ground = undug_units(key, ground);
+        Self {
+            key,
+            cut: vec![0; CELLS],
+            pressed: Vec::new(),
+            loose: vec![0; CELLS],
+            masses: Vec::new(),
+            broken: vec![false; CELLS],
+            surface: (0..CELLS).map(|cell| ground[wide(cell)]).collect(),
+            grade: vec![f64::INFINITY; CELLS],
+            flows: [vec![0.0; CELLS], vec![0.0; CELLS]],
+            barriers: Vec::new(),
+            near: [NO_PATCH; 8],
+            revision: 0,
+            water: BankWater { saturation: 0.0, soaked: 0.0 },
+            is_unchecked: false,
+            stamps: [0; 2],
+            ground,
+        }
     }
 
     pub fn has_ground(&self, cell: usize) -> bool {
@@ -101,6 +127,27 @@ impl SoilPatch {
         if let Some(old) = self.pressed.get_mut(cell) {
             *old = press;
         }
+    }
+
+    /// Takes over the undug heights. Returns whether any is another one.
+    pub fn set_ground(&mut self, ground: &dyn UndugGround, materials: &SoilMaterials) -> bool {
+        let heights = undug_units(self.key, ground);
+        if heights.iter().map(|v| v.to_bits()).eq(self.ground.iter().map(|v| v.to_bits())) {
+            return false;
+        }
+        self.ground = heights;
+        (0..CELLS).for_each(|cell| self.refresh(cell, materials));
+        true
+    }
+
+    /// Share of its cohesion that the bank has left, in steps of 1/64.
+    pub fn hold(&self) -> f64 {
+        (64.0 * cohesion_share(self.water.saturation)).floor() / 64.0
+    }
+
+    /// Change of the surface against the undug ground, in units.
+    pub fn change(&self, cell: usize) -> i64 {
+        self.loose[cell] - self.cut[cell] - self.press(cell).sunk
     }
 
     /// Height of the top of the bank, in units; NaN without ground.
@@ -199,6 +246,17 @@ impl SoilPatch {
     pub fn dug(&self, materials: &SoilMaterials) -> i128 {
         self.cut.iter().map(|cut| materials.dug(0, *cut).mass()).sum()
     }
+}
+
+/// Undug heights of a patch and its margin, in units; NaN without ground.
+fn undug_units(key: [i32; 2], ground: &dyn UndugGround) -> Vec<f64> {
+    let first = key.map(|k| k * SIDE as i32);
+    let height = |i: usize| {
+        let offset = [(i % WIDE) as i32 - 1, (i / WIDE) as i32 - 1];
+        let height_m = ground.height_m([first[0] + offset[0], first[1] + offset[1]]);
+        height_m.filter(|height| height.abs() <= 1e5).map_or(f64::NAN, |height| depth_units(height) as f64)
+    };
+    (0..WIDE * WIDE).map(height).collect()
 }
 
 /// Index in the arrays with a margin of a cell of a patch.

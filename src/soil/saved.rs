@@ -6,15 +6,16 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     field::SoilField,
-    kind::{MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId},
+    kind::{MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId, SoilSettings},
     laws::SinkageSet,
     material::SoilParcel,
-    patch::{CELLS, Pressed, SoilPatch, UndugGround},
+    patch::{BankWater, CELLS, Pressed, SoilPatch, UndugGround},
     site::{SoilSite, SoilSiteDesc},
     tool::{SoilToolPose, SoilToolShape},
     work::{PassedCell, SoilTool, ToolWork},
 };
 use crate::{
+    chance::mixed,
     error::{Error, Result, Status, toml_fault},
     world::{values, words},
 };
@@ -25,11 +26,19 @@ const MOST_PATCHES: usize = 1 << 20;
 const MOST_CUT: i64 = 1 << 28;
 const MOST_LOOSE: i64 = 1 << 40;
 const MOST_MASS: i64 = 1 << 58;
+/// Largest number of steps: those of the latest time.
+const MOST_STEPS: i64 = 1 << 46;
+/// Largest freezing index, K s: that of a century of the hardest winters.
+const MOST_FREEZING_K_S: f64 = 1e12;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedSite {
-    cell_m: f64,
+pub(super) struct SavedSite {
+    pub cell_m: f64,
+    /// Saturation without rain and sun; that of ground that was not dug, and its wet share.
+    saturation: [f64; 3],
+    /// Freezing index, K s.
+    freezing_k_s: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     own_kinds: Vec<SavedKind>,
     horizons: Vec<(f64, u8)>,
@@ -67,8 +76,10 @@ struct SavedTool {
     /// Time, edge, upper edge, facing and load of the present pose and of those that wait.
     poses: Vec<[f64; 17]>,
     passed: Vec<([i32; 2], [f64; 2])>,
-    /// Cut volume, area and sinkage of the last step; its kind, and whether its sinkage was limited.
-    work: ([f64; 3], u8, bool),
+    saturation: f64,
+    /// Cut volume, area and sinkage of the last step; its kind, whether its sinkage was limited, and whether frost
+    /// stopped it.
+    work: ([f64; 3], u8, [bool; 2]),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -78,6 +89,9 @@ struct SavedPatch {
     revision: u64,
     /// Whether it is awake, has changed since the last sweep, and has unchecked walls.
     flags: [bool; 3],
+    /// Saturation, and wet share of the surface.
+    water: [f64; 2],
+    /// In a state that is only hashed, the hash of this list and of all that follow.
     cut: String,
     loose: String,
     masses: Vec<(u8, String)>,
@@ -168,7 +182,8 @@ impl SavedTool {
             masses: text(tool.content.masses.into_iter()),
             poses: std::iter::once(&tool.pose).chain(&tool.poses).map(pose_numbers).collect(),
             passed: tool.passed.iter().map(|passed| (passed.place, [passed.share, passed.raised])).collect(),
-            work: ([work.cut_m3, work.area_m2, work.sinkage_m], work.kind as u8, work.is_clamped),
+            saturation: tool.saturation,
+            work: ([work.cut_m3, work.area_m2, work.sinkage_m], work.kind as u8, [work.is_clamped, work.is_frozen]),
         }
     }
 
@@ -184,9 +199,10 @@ impl SavedTool {
             .iter()
             .map(|(place, [share, raised])| PassedCell { place: *place, share: *share, raised: *raised })
             .collect();
-        let ([cut_m3, area_m2, sinkage_m], kind, is_clamped) = self.work;
+        let ([cut_m3, area_m2, sinkage_m], kind, [is_clamped, is_frozen]) = self.work;
         let is_sound = (0..=MOST_LOOSE).contains(&self.depth)
             && usize::from(kind) < kinds
+            && is_share(self.saturation)
             && masses[kinds..].iter().all(|mass| *mass == 0)
             && passed.is_sorted_by_key(|passed| [passed.place[1], passed.place[0]])
             && passed.iter().all(|passed| (0.0..=1.0).contains(&passed.share) && passed.raised.is_finite());
@@ -197,33 +213,64 @@ impl SavedTool {
             poses,
             is_ended: self.is_ended,
             content: SoilParcel { depth: self.depth, masses },
+            saturation: self.saturation,
             passed,
-            work: ToolWork { cut_m3, area_m2, kind: usize::from(kind), sinkage_m, is_clamped },
+            work: ToolWork { cut_m3, area_m2, kind: usize::from(kind), sinkage_m, is_clamped, is_frozen },
         })
     }
 }
 
+/// Whether a number is a share, from 0 to 1.
+fn is_share(number: f64) -> bool {
+    (0.0..=1.0).contains(&number)
+}
+
+/// Hash of all that lies on the cells of a patch.
+fn hash_of(patch: &SoilPatch) -> u64 {
+    let kinds =
+        patch.masses.iter().flat_map(|(kind, masses)| std::iter::once(i64::from(*kind)).chain(masses.iter().copied()));
+    let pressed = patch.pressed.iter().flat_map(|press| [press.packed, press.sunk, press.reached]);
+    let broken = patch.broken.iter().map(|broken| i64::from(*broken));
+    let numbers = patch.cut.iter().chain(&patch.loose).copied().chain(kinds).chain(pressed).chain(broken);
+    numbers.fold(0, |hash, number| mixed(hash ^ number as u64))
+}
+
 impl SavedPatch {
-    fn of(field: &SoilField, slot: u32) -> Self {
+    fn of(field: &SoilField, slot: u32, for_hash: bool) -> Self {
         let patch = field.patch(slot);
-        let pressed = |value: fn(&Pressed) -> i64| text(patch.pressed.iter().map(value));
-        Self {
+        let bare = Self {
             key: patch.key,
             revision: patch.revision,
             flags: [field.awake.contains(&slot), field.has_changed(slot), patch.is_unchecked],
+            water: [patch.water.saturation, patch.water.soaked],
+            cut: String::new(),
+            loose: String::new(),
+            masses: Vec::new(),
+            pressed: None,
+            broken: None,
+        };
+        if for_hash {
+            return Self { cut: format!("{:x}", hash_of(patch)), ..bare };
+        }
+        let pressed = |value: fn(&Pressed) -> i64| text(patch.pressed.iter().map(value));
+        Self {
             cut: text(patch.cut.iter().copied()),
             loose: text(patch.loose.iter().copied()),
             masses: patch.masses.iter().map(|(kind, masses)| (*kind, text(masses.iter().copied()))).collect(),
             pressed: (!patch.pressed.is_empty())
                 .then(|| [pressed(|p| p.packed), pressed(|p| p.sunk), pressed(|p| p.reached)]),
             broken: patch.broken.contains(&true).then(|| text(patch.broken.iter().map(|broken| i64::from(*broken)))),
+            ..bare
         }
     }
 
     fn patch(&self, kinds: usize, ground: &dyn UndugGround) -> Option<SoilPatch> {
         let key = self.key;
         key.iter().all(|k| k.abs() < 1 << 26).then_some(())?;
-        let mut patch = SoilPatch::new(key, ground)?;
+        let mut patch = SoilPatch::bare(key, ground);
+        let [saturation, soaked] = self.water;
+        self.water.into_iter().all(is_share).then_some(())?;
+        patch.water = BankWater { saturation, soaked };
         (patch.cut, patch.loose) = (numbers(&self.cut, CELLS, MOST_CUT)?, numbers(&self.loose, CELLS, MOST_LOOSE)?);
         for (kind, masses) in &self.masses {
             (usize::from(*kind) < kinds).then_some(())?;
@@ -251,21 +298,8 @@ impl SoilSite {
     /// # Errors
     /// [`Status::Internal`] if the text cannot be written.
     pub fn encode(&self) -> Result<String> {
-        let slots = self.field.slots.values();
-        let saved = SavedSite {
-            cell_m: self.desc.cell_m,
-            own_kinds: self.desc.own_kinds.iter().map(SavedKind::of).collect(),
-            horizons: self.desc.horizons.iter().map(|horizon| (horizon.top_m, horizon.kind.0)).collect(),
-            steps: self.steps,
-            idle: self.idle,
-            revision: self.field.revision,
-            next_id: self.next_id,
-            taken: self.taken.to_string(),
-            brought: self.brought.to_string(),
-            tools: self.tools.iter().map(SavedTool::of).collect(),
-            patches: slots.map(|slot| SavedPatch::of(&self.field, *slot)).collect(),
-        };
-        toml::to_string(&saved).map_err(|e| Error::new(Status::Internal, format!("writing soil: {e}")))
+        let text = toml::to_string(&SavedSite::of(self, false));
+        text.map_err(|e| Error::new(Status::Internal, format!("writing soil: {e}")))
     }
 
     /// Returns the site that [`SoilSite::encode`] wrote, on the same undug ground.
@@ -273,28 +307,65 @@ impl SoilSite {
     /// # Errors
     /// [`Status::Parse`] for a text that is no site; [`Status::InvalidArgument`] naming a setting outside its range.
     pub fn decode(text: &str, ground: &dyn UndugGround) -> Result<Self> {
-        let parse = |fault: String| Error::new(Status::Parse, format!("saved soil: {fault}"));
-        let saved: SavedSite = toml::from_str(text).map_err(|e| parse(toml_fault(text, &e)))?;
-        let horizons =
-            saved.horizons.iter().map(|(top_m, kind)| SoilHorizon { top_m: *top_m, kind: SoilKindId(*kind) });
-        let desc = SoilSiteDesc {
-            cell_m: saved.cell_m,
-            own_kinds: saved.own_kinds.iter().map(SavedKind::kind).collect(),
-            horizons: horizons.collect(),
-        };
-        let mut site = Self::new(desc)?;
-        saved.fill(&mut site, ground).ok_or_else(|| parse("values that no site can have".to_owned()))?;
-        if !site.books().is_balanced() {
-            return Err(parse("masses that do not balance".to_owned()));
-        }
-        Ok(site)
+        let saved: SavedSite = toml::from_str(text).map_err(|e| parse_fault(toml_fault(text, &e)))?;
+        saved.site(ground)
     }
 }
 
+fn parse_fault(fault: impl std::fmt::Display) -> Error {
+    Error::new(Status::Parse, format!("saved soil: {fault}"))
+}
+
 impl SavedSite {
+    /// Creates the saved form. With `for_hash`, each patch is given only by its hash.
+    pub fn of(site: &SoilSite, for_hash: bool) -> Self {
+        let settings = &site.desc.settings;
+        let slots = site.field.slots.values();
+        Self {
+            cell_m: site.desc.cell_m,
+            saturation: [settings.saturation, site.field.water.saturation, site.field.water.soaked],
+            freezing_k_s: site.freezing_k_s,
+            own_kinds: settings.own_kinds.iter().map(SavedKind::of).collect(),
+            horizons: settings.horizons.iter().map(|horizon| (horizon.top_m, horizon.kind.0)).collect(),
+            steps: site.steps,
+            idle: site.idle,
+            revision: site.field.revision,
+            next_id: site.next_id,
+            taken: site.taken.to_string(),
+            brought: site.brought.to_string(),
+            tools: site.tools.iter().map(SavedTool::of).collect(),
+            patches: slots.map(|slot| SavedPatch::of(&site.field, *slot, for_hash)).collect(),
+        }
+    }
+
+    /// Returns the site, on the same undug ground.
+    ///
+    /// # Errors
+    /// [`Status::Parse`] for values that no site can have; [`Status::InvalidArgument`] naming a setting outside its
+    /// range.
+    pub fn site(&self, ground: &dyn UndugGround) -> Result<SoilSite> {
+        let horizons = self.horizons.iter().map(|(top_m, kind)| SoilHorizon { top_m: *top_m, kind: SoilKindId(*kind) });
+        let settings = SoilSettings {
+            own_kinds: self.own_kinds.iter().map(SavedKind::kind).collect(),
+            horizons: horizons.collect(),
+            saturation: self.saturation[0],
+        };
+        let mut site = SoilSite::new(SoilSiteDesc { cell_m: self.cell_m, settings })?;
+        self.fill(&mut site, ground).ok_or_else(|| parse_fault("values that no site can have"))?;
+        if !site.books().is_balanced() {
+            return Err(parse_fault("masses that do not balance"));
+        }
+        Ok(site)
+    }
+
     fn fill(&self, site: &mut SoilSite, ground: &dyn UndugGround) -> Option<()> {
         let kinds = site.field.materials.kinds.len();
-        (self.steps >= 0 && self.patches.len() <= MOST_PATCHES).then_some(())?;
+        let is_sound =
+            self.saturation.into_iter().all(is_share) && (0.0..=MOST_FREEZING_K_S).contains(&self.freezing_k_s);
+        (is_sound && self.steps.abs() <= MOST_STEPS && self.patches.len() <= MOST_PATCHES).then_some(())?;
+        site.field.water = BankWater { saturation: self.saturation[1], soaked: self.saturation[2] };
+        site.freezing_k_s = self.freezing_k_s;
+        site.freeze();
         (site.steps, site.idle, site.next_id) = (self.steps, self.idle, self.next_id);
         (site.taken, site.brought) = (self.taken.parse().ok()?, self.brought.parse().ok()?);
         for tool in &self.tools {

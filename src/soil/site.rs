@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     field::{SoilCell, SoilField},
-    kind::{BUILT_IN, MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId, check_horizons, check_kind},
+    kind::{MAX_SOIL_KINDS, SoilKind, SoilKindId, SoilSettings, check_kind},
     material::{DEPTH_UNITS, MASS_UNITS, SoilMaterials, SoilParcel, depth_units},
     patch::UndugGround,
     tool::{MAX_SOIL_TOOLS, SoilToolId, SoilToolPose, SoilToolShape},
@@ -33,20 +33,13 @@ const MOST_POSES: usize = 65_536;
 pub struct SoilSiteDesc {
     /// Distance between neighbouring cells, m, \[0.01, 4\].
     pub cell_m: f64,
-    /// The host's own kinds of soil; their numbers follow those of the seven built-in kinds. At most 9.
-    pub own_kinds: Vec<SoilKind>,
-    /// Layers of undisturbed ground from the surface down; 1 to 8. Default 0.3 m of topsoil on loam.
-    pub horizons: Vec<SoilHorizon>,
+    /// Kinds and layers of the ground.
+    pub settings: SoilSettings,
 }
 
 impl Default for SoilSiteDesc {
     fn default() -> Self {
-        let layer = |top_m, kind| SoilHorizon { top_m, kind };
-        Self {
-            cell_m: 0.1,
-            own_kinds: Vec::new(),
-            horizons: vec![layer(0.0, SoilKindId::TOPSOIL), layer(0.3, SoilKindId::LOAM)],
-        }
+        Self { cell_m: 0.1, settings: SoilSettings::default() }
     }
 }
 
@@ -113,6 +106,10 @@ pub struct SoilToolReport {
     /// Whether the sinkage was limited to half the radius (or half the shorter side of a track's contact), or comes
     /// from a set that fits a small range only.
     pub is_sinkage_beyond_range: bool,
+    /// Whether the edge met frozen ground in the last step, which it cannot cut. It passes above the rest.
+    pub is_stopped_by_frost: bool,
+    /// Share of the pores of the soil held that water fills: the mean of the bank from which it came; 0 when empty.
+    pub saturation: f64,
 }
 
 /// Ground that is dug.
@@ -128,6 +125,8 @@ pub struct SoilSite {
     pub(super) idle: u32,
     pub(super) taken: i128,
     pub(super) brought: i128,
+    /// Sum of the degrees below 0 over time, K s.
+    pub(super) freezing_k_s: f64,
 }
 
 impl SoilSite {
@@ -137,23 +136,30 @@ impl SoilSite {
     /// [`Status::InvalidArgument`] naming the field of `desc`.
     pub fn new(desc: SoilSiteDesc) -> Result<Self> {
         check_range("cell_m", desc.cell_m, 0.01, 4.0, "m")?;
-        let most_own = MAX_SOIL_KINDS - BUILT_IN.len();
-        if desc.own_kinds.len() > most_own {
-            return Err(Error::range("own_kinds.len", &format!("at most {most_own}"), desc.own_kinds.len()));
-        }
-        for (i, kind) in desc.own_kinds.iter().enumerate() {
-            kind.validate().map_err(|e| e.renamed("soil_kind", &format!("own_kinds[{i}]")))?;
-        }
-        let kinds: Vec<SoilKind> = BUILT_IN.iter().chain(&desc.own_kinds).copied().collect();
-        check_horizons(&desc.horizons, kinds.len())?;
-        let materials = SoilMaterials::new(desc.cell_m, &kinds, desc.horizons.clone());
+        let kinds = desc.settings.checked_kinds()?;
+        let mut materials = SoilMaterials::new(desc.cell_m, &kinds, desc.settings.horizons.clone());
+        materials.saturation = desc.settings.saturation;
         let field = SoilField::new(materials);
-        Ok(Self { desc, field, tools: Vec::new(), next_id: 1, steps: 0, idle: 0, taken: 0, brought: 0 })
+        let (tools, next_id) = (Vec::new(), 1);
+        Ok(Self { desc, field, tools, next_id, steps: 0, idle: 0, taken: 0, brought: 0, freezing_k_s: 0.0 })
     }
 
     /// Returns the settings.
     pub fn desc(&self) -> &SoilSiteDesc {
         &self.desc
+    }
+
+    /// Moves the time of ground that nothing has worked yet.
+    pub(super) fn begin_at(&mut self, time_s: f64) {
+        self.steps = steps_until(time_s);
+    }
+
+    /// Takes over changes of the undug ground.
+    pub(super) fn follow_ground(&mut self, ground: &dyn UndugGround) {
+        if self.field.set_ground(ground) {
+            self.field.revision += 1;
+            self.idle = 0;
+        }
     }
 
     /// Returns a kind of soil.
@@ -166,7 +172,7 @@ impl SoilSite {
         self.steps as f64 * SOIL_STEP_S
     }
 
-    /// Returns the revision, which grows with each step in which the ground changes.
+    /// Returns the revision, which grows whenever the ground changes.
     pub fn revision(&self) -> u64 {
         self.field.revision
     }
@@ -194,6 +200,7 @@ impl SoilSite {
             poses: VecDeque::new(),
             is_ended: false,
             content: SoilParcel::default(),
+            saturation: 0.0,
             passed: Vec::new(),
             work: ToolWork::default(),
         });
@@ -207,12 +214,27 @@ impl SoilSite {
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] for a time that is not after the last pose.
     pub fn move_tool(&mut self, tool: SoilToolId, pose: &SoilToolPose) -> Result<()> {
+        self.move_standing_tool(tool, pose, f64::NEG_INFINITY)
+    }
+
+    /// As [`SoilSite::move_tool`], for a tool that stands at its last pose until a time, s.
+    pub(crate) fn move_standing_tool(
+        &mut self,
+        tool: SoilToolId,
+        pose: &SoilToolPose,
+        stands_until_s: f64,
+    ) -> Result<()> {
         let tool = self.live_tool(tool)?;
         pose.validate(&tool.shape)?;
         let pose = known_pose(&tool.shape, pose);
-        pose.validate_after(tool.poses.back().unwrap_or(&tool.pose))?;
+        let last = tool.poses.back().unwrap_or(&tool.pose);
+        let last = SoilToolPose { time_s: last.time_s.max(stands_until_s), ..*last };
+        pose.validate_after(&last)?;
         if tool.poses.len() >= MOST_POSES {
             return Err(Error::range("poses.len", &format!("at most {MOST_POSES} that wait"), tool.poses.len() + 1));
+        }
+        if tool.poses.is_empty() {
+            tool.pose = last;
         }
         tool.poses.push_back(pose);
         self.idle = 0;
@@ -255,6 +277,7 @@ impl SoilSite {
         }
         self.field.put(cell, &parcel);
         self.brought += parcel.mass();
+        self.field.revision += 1;
         self.idle = 0;
         Ok(true)
     }
@@ -267,20 +290,25 @@ impl SoilSite {
     /// a tool that stands still needs poses too. Returns the time that was reached, s.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for a time outside \[0, 1e12\] s.
+    /// [`Status::InvalidArgument`] for a time outside \[-1e12, 1e12\] s.
     pub fn advance(&mut self, until_s: f64, ground: &dyn UndugGround) -> Result<f64> {
-        check_range("until_s", until_s, 0.0, 1e12, "s")?;
+        check_range("until_s", until_s, -1e12, 1e12, "s")?;
         let last_s = |tool: &SoilTool| tool.poses.back().unwrap_or(&tool.pose).time_s;
         let posed_s = self.tools.iter().filter(|tool| !tool.is_ended).map(last_s).fold(until_s, f64::min);
-        let due = (posed_s / SOIL_STEP_S).floor() as i64;
+        let due = steps_until(posed_s);
         while self.steps < due {
-            if self.is_quiet() {
-                self.steps = due;
-            } else {
-                self.step(ground);
-            }
+            self.run(due, ground);
         }
         Ok(self.time_s())
+    }
+
+    /// Runs one step; of a quiet site all of them up to `due`. A tool without a later pose stands still.
+    pub(super) fn run(&mut self, due: i64, ground: &dyn UndugGround) {
+        if self.is_quiet() {
+            self.steps = due;
+        } else {
+            self.step(ground);
+        }
     }
 
     /// Whether nothing changes until the host does something.
@@ -346,7 +374,7 @@ impl SoilSite {
         let spilled = tool.spilled(&place);
         let spills = spilled != SoilParcel::default();
         if spills {
-            let kept = pour(spilled, &tool.pose, &mut self.tools, &mut place);
+            let kept = pour(spilled, &tool, &mut self.tools, &mut place);
             tool.content.add(&kept);
         }
         self.tools.insert(index, tool);
@@ -370,14 +398,18 @@ impl SoilSite {
     /// [`Status::InvalidArgument`] for a place that is not finite or farther than 1e7 m.
     pub fn point(&self, place: DVec3, ground: &dyn UndugGround) -> Result<Option<SoilPoint>> {
         check_place("place", place)?;
-        let nearest = self.nearest(place);
-        let Some(undug_m) = ground.height_m(nearest) else { return Ok(None) };
+        Ok(self.cell(self.nearest(place), ground))
+    }
+
+    /// Returns the ground of a cell of the lattice; `None` where there is none.
+    pub(super) fn cell(&self, nearest: [i32; 2], ground: &dyn UndugGround) -> Option<SoilPoint> {
+        let undug_m = ground.height_m(nearest)?;
         let materials = &self.field.materials;
         let Some(SoilCell { slot, cell }) = self.field.find(nearest) else {
             let kind = SoilKindId(materials.bank_kind(0) as u8);
             let undug =
                 SoilPoint { surface_m: undug_m, change_m: 0.0, loose_m: 0.0, loose_kg_m3: 0.0, kind, revision: 0 };
-            return Ok(Some(undug));
+            return Some(undug);
         };
         let patch = self.field.patch(slot);
         let (surface_m, loose_m) = (patch.surface[cell] / DEPTH_UNITS, patch.loose[cell] as f64 / DEPTH_UNITS);
@@ -387,7 +419,12 @@ impl SoilSite {
         let loose_kg_m3 = if loose_m > 0.0 { mass as f64 / MASS_UNITS / (loose_m * materials.area_m2()) } else { 0.0 };
         let change_m = surface_m - undug_m;
         let revision = patch.revision;
-        Ok(Some(SoilPoint { surface_m, change_m, loose_m, loose_kg_m3, kind: SoilKindId(kind as u8), revision }))
+        Some(SoilPoint { surface_m, change_m, loose_m, loose_kg_m3, kind: SoilKindId(kind as u8), revision })
+    }
+
+    /// Returns the pose up to which a tool has worked.
+    pub(super) fn tool_pose(&self, tool: SoilToolId) -> Option<&SoilToolPose> {
+        self.tools.iter().find(|live| live.id == tool.0).map(|live| &live.pose)
     }
 
     /// Returns what a tool holds and meets.
@@ -417,8 +454,15 @@ impl SoilSite {
             cut_kind: SoilKindId(work.kind as u8),
             sinkage_m: work.sinkage_m,
             is_sinkage_beyond_range: work.is_clamped,
+            is_stopped_by_frost: work.is_frozen,
+            saturation: if bulk_m3 > 0.0 { tool.saturation } else { 0.0 },
         })
     }
+}
+
+/// Returns the number of whole steps from time 0 until a time.
+pub(super) fn steps_until(time_s: f64) -> i64 {
+    (time_s / SOIL_STEP_S).floor() as i64
 }
 
 /// Pose without the values that a tool of this shape does not use.

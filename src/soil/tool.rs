@@ -128,7 +128,7 @@ impl SoilToolPose {
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field.
     pub fn validate(&self, shape: &SoilToolShape) -> Result<()> {
-        check_range("pose.time_s", self.time_s, 0.0, 1e12, "s")?;
+        check_range("pose.time_s", self.time_s, -1e12, 1e12, "s")?;
         check_range("pose.load_n", self.load_n, 0.0, 1e7, "N")?;
         let is_wheel = shape.presses();
         for (name, edge) in
@@ -140,7 +140,7 @@ impl SoilToolPose {
                 }
             }
             let length_m = (edge[1] - edge[0]).length();
-            check_range(&format!("{name}.length"), length_m, 0.05, 20.0, "m")?;
+            check_range(&format!("{name}[1]"), length_m, 0.05, 20.0, "m from the left end")?;
         }
         if is_wheel {
             return Ok(());
@@ -148,7 +148,7 @@ impl SoilToolPose {
         if !(self.facing.is_finite() && self.facing.length() > 1e-6 && self.facing.length() < 1e6) {
             return Err(Error::range("pose.facing", "finite, and of a length in [1e-6, 1e6]", self.facing));
         }
-        check_range("pose.upper.distance", self.sides_m()[1], 0.02, 20.0, "m from the edge")?;
+        check_range("pose.upper[0]", self.sides_m()[1], 0.02, 20.0, "m from the edge")?;
         let (across, up) = (self.edge[1] - self.edge[0], self.upper[0] - self.edge[0]);
         let turns_over = across.dot(self.upper[1] - self.upper[0]) <= 0.0;
         let outward = up.cross(across).normalize_or_zero().dot(self.facing.normalize_or_zero());
@@ -163,7 +163,8 @@ impl SoilToolPose {
     /// Checks the pose as the one after another.
     pub(super) fn validate_after(&self, last: &Self) -> Result<()> {
         if self.time_s <= last.time_s {
-            let rest = format!("must be more than {} s, that of the pose before, got {}", last.time_s, self.time_s);
+            let rest =
+                format!("must be more than {} s, up to which the tool has its way, got {}", last.time_s, self.time_s);
             return Err(Error::about(Status::WrongOrder, "pose.time_s", rest));
         }
         if self.time_s > last.time_s + LONGEST_TIME_S {

@@ -1,9 +1,10 @@
 //! Walls of bank: which ones are higher than their soil stands, and what falls with them.
 //!
 //! A wall between two cells fails where the bank's top lies higher above a cell than the law's highest face with its
-//! toe there ([`super::laws::WallLaw::height_over_m`]), and the face is steeper than the bank's friction angle and the
-//! angle of repose. What lies above the slope of repose through the toe then counts as broken: it slides like loose
-//! soil (`src/slides.rs`), swells as it moves, and comes to rest at its angle of repose.
+//! toe there ([`super::laws::WallLaw::height_over_m`]), with the cohesion that its water leaves, and the face is steeper
+//! than the bank's friction angle and the angle of repose. What lies above the slope of repose through the toe then
+//! counts as broken: it slides like loose soil (`src/slides.rs`), swells as it moves, and comes to rest at its angle of
+//! repose.
 
 use super::{
     field::{SoilCell, SoilField},
@@ -14,6 +15,9 @@ use super::{
 const CREST: f64 = 1.05;
 /// Most cells behind a toe that a fall can reach.
 const MOST_BROKEN: i32 = 512;
+
+/// Cohesion from which the bank counts as cemented, kPa: far above that of soils, and that of weak rock and coal.
+const CEMENTED_KPA: f64 = 100.0;
 
 /// Crest of a wall that fails, and the way to its toe.
 struct Fall {
@@ -57,6 +61,8 @@ fn failing(field: &SoilField, crest: SoilCell, way: [i32; 2], lowest: f64) -> Op
         return None;
     }
     let material = &field.materials.kinds[field.materials.bank_kind(patch.cut[crest.cell])];
+    // Water takes no strength from cemented ground.
+    let hold = if material.kind.cohesion_kpa >= CEMENTED_KPA { 1.0 } else { patch.hold() };
     let surface = |cell: SoilCell| field.patch(cell.slot).surface[cell.cell];
     let diagonal = if way[0] != 0 && way[1] != 0 { std::f64::consts::SQRT_2 } else { 1.0 };
     let next = field.beside(crest, way)?;
@@ -74,7 +80,7 @@ fn failing(field: &SoilField, crest: SoilCell, way: [i32; 2], lowest: f64) -> Op
     for steps in 1.. {
         // The face is upright where the toe is the next cell.
         let run = (steps as f64 - 1.0) * diagonal;
-        let stands = wall_height(&material.walls, run)?;
+        let stands = hold * wall_height(&material.walls, run)?;
         if top - lowest <= stands {
             return None;
         }

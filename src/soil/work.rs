@@ -50,6 +50,8 @@ pub(super) struct ToolWork {
     pub sinkage_m: f64,
     /// Whether a sinkage was limited, or its set is a fit of a small range.
     pub is_clamped: bool,
+    /// Whether frozen ground stopped the edge.
+    pub is_frozen: bool,
 }
 
 /// Tool at work: its pose, what it holds, and what it has passed.
@@ -64,6 +66,8 @@ pub(super) struct SoilTool {
     /// Whether the host has sent the last pose.
     pub is_ended: bool,
     pub content: SoilParcel,
+    /// Saturation of the soil held: the mean of what came in, by mass.
+    pub saturation: f64,
     /// Cells of the present pass, in the order of their places.
     pub passed: Vec<PassedCell>,
     pub work: ToolWork,
@@ -132,6 +136,15 @@ impl SoilTool {
         self.content.depth as f64 * Self::unit_m3(materials)
     }
 
+    /// Adds soil of this saturation to what the tool holds.
+    pub fn hold(&mut self, parcel: &SoilParcel, saturation: f64) {
+        let [held, more] = [&self.content, parcel].map(|part| part.mass() as f64);
+        if more > 0.0 {
+            self.saturation = (self.saturation * held + saturation * more) / (held + more);
+        }
+        self.content.add(parcel);
+    }
+
     /// Index of the passed cell with this place, which is added where it is missing.
     fn passed_at(&mut self, place: [i32; 2]) -> usize {
         let key = |place: [i32; 2]| [place[1], place[0]];
@@ -190,7 +203,8 @@ impl SoilTool {
             self.work.cut_m3 += depth as f64 * Self::unit_m3(&place.field.materials);
             self.work.area_m2 += part.share * place.field.materials.area_m2();
             parts.iter_mut().zip(parcel.masses).for_each(|(sum, mass)| *sum += mass as f64);
-            self.content.add(&parcel.take((capacity - self.content.depth).max(0)));
+            let taken = parcel.take((capacity - self.content.depth).max(0));
+            self.hold(&taken, place.field.patch(cell.slot).water.saturation);
             if parcel != SoilParcel::default() {
                 let along = (part.centre - end[0].truncate()).dot(across) / across.length_squared().max(1e-12);
                 let rest = place.scatter(parcel, end[0].truncate() + across * along.clamp(0.0, 1.0) + ahead);
@@ -219,7 +233,10 @@ impl SoilTool {
         let cell = if depth > 0 { place.field.find_or_add(part.place, place.ground) } else { None };
         let SoilCell { slot, cell } = cell?;
         let patch = place.field.patch(slot);
-        let most = patch.loose[cell] + (depth_units(DEEPEST_M) - patch.cut[cell] - patch.press(cell).packed).max(0);
+        let is_frozen = patch.cut[cell] < place.field.frozen;
+        self.work.is_frozen |= is_frozen && depth > patch.loose[cell];
+        let deepest = if is_frozen { 0 } else { depth_units(DEEPEST_M) };
+        let most = patch.loose[cell] + (deepest - patch.cut[cell] - patch.press(cell).packed).max(0);
         Some((SoilCell { slot, cell }, depth.min(most)))
     }
 
@@ -359,11 +376,11 @@ fn squeeze(loose: i64, pressed: i64, masses: impl Iterator<Item = (usize, i64)>,
 /// take.
 pub(super) fn pour(
     parcel: SoilParcel,
-    pose: &SoilToolPose,
+    source: &SoilTool,
     catchers: &mut [SoilTool],
     place: &mut WorkedGround<'_>,
 ) -> SoilParcel {
-    let edge = pose.pouring_edge();
+    let edge = source.pose.pouring_edge();
     let points = (2.0 * (edge[1] - edge[0]).length() / place.cell_m()).ceil().clamp(1.0, 4096.0) as i64;
     let (mut rest, mut kept) = (parcel, SoilParcel::default());
     for i in 0..points {
@@ -372,7 +389,7 @@ pub(super) fn pour(
         let point = edge[0] + (edge[1] - edge[0]) * ((i as f64 + 0.5) / points as f64);
         let catcher = catchers.iter_mut().find(|tool| tool.shape.hold().is_some() && tool.pose.is_under(point));
         match catcher {
-            Some(tool) => tool.content.add(&part),
+            Some(tool) => tool.hold(&part, source.saturation),
             None => {
                 let point = place.in_cells(point).truncate();
                 kept.add(&place.scatter(part, point));

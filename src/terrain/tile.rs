@@ -8,12 +8,17 @@ use crate::chance::mixed;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
     pub key: TileKey,
-    /// Heights above the terrain's origin, m, by rows from the south-west; holes have a height too.
+    /// Heights above the terrain's origin, m, by rows from the south-west; holes have a height too. They are the host's
+    /// with the change of the soil.
     pub heights_m: Vec<f32>,
+    /// Heights that the host gave. Empty where soil has changed none: they are `heights_m` then.
+    undug_m: Vec<f32>,
     /// Class numbers of the cells, or [`HOLE`]. Empty if the host has given no class for any cell.
     classes: Vec<u8>,
     /// Revision of the terrain at this tile's last change.
     pub revision: u64,
+    /// Revision of the soil up to which the heights include its change; 0 for a tile that is new.
+    pub soil_revision: u64,
     /// Sum of the hashes of its cells; equal for tiles with the same cells.
     pub hash: u64,
 }
@@ -22,14 +27,22 @@ impl Tile {
     /// Creates a level tile at height 0 with `tile_cells` cells along a side and no classes.
     pub fn level(key: TileKey, tile_cells: u32) -> Self {
         let count = tile_cells as usize * tile_cells as usize;
-        let mut tile = Self { key, heights_m: vec![0.0; count], classes: Vec::new(), revision: 0, hash: 0 };
+        let mut tile = Self { key, heights_m: vec![0.0; count], ..Self::none() };
         tile.hash = (0..count).fold(0, |sum, i| sum.wrapping_add(tile.cell_hash(i)));
         tile
     }
 
     /// Creates a tile without cells, which takes the place of a removed tile.
     pub fn none() -> Self {
-        Self { key: TileKey::default(), heights_m: Vec::new(), classes: Vec::new(), revision: 0, hash: 0 }
+        Self {
+            key: TileKey::default(),
+            heights_m: Vec::new(),
+            undug_m: Vec::new(),
+            classes: Vec::new(),
+            revision: 0,
+            soil_revision: 0,
+            hash: 0,
+        }
     }
 
     fn cell_hash(&self, cell: usize) -> u64 {
@@ -84,7 +97,7 @@ impl Tile {
                     if cells.is_no_data(*height) {
                         self.classes[cell] = HOLE;
                     } else if is_height(*height) {
-                        self.heights_m[cell] = *height;
+                        self.set_undug(cell, *height);
                     }
                 }
             }
@@ -93,5 +106,47 @@ impl Tile {
             }
         }
         self.hash != before
+    }
+
+    /// Height of a cell before anything was dug, m.
+    pub fn undug_m(&self, cell: usize) -> f32 {
+        self.undug_m.get(cell).copied().unwrap_or(self.heights_m[cell])
+    }
+
+    /// Sets the height of a cell before anything was dug. The change by the soil stays, up to rounding: the soil then
+    /// sets it exactly.
+    fn set_undug(&mut self, cell: usize, height_m: f32) {
+        let change_m = self.heights_m[cell] - self.undug_m(cell);
+        self.heights_m[cell] = if change_m == 0.0 { height_m } else { height_m + change_m };
+        if let Some(undug) = self.undug_m.get_mut(cell) {
+            *undug = height_m;
+        }
+    }
+
+    /// Sets the height of a cell with the change of the soil, m. Returns whether it is another one.
+    pub fn set_dug(&mut self, cell: usize, height_m: f32) -> bool {
+        if self.heights_m[cell] == height_m {
+            return false;
+        }
+        if self.undug_m.is_empty() {
+            self.undug_m = self.heights_m.clone();
+        }
+        self.hash = self.hash.wrapping_sub(self.cell_hash(cell));
+        self.heights_m[cell] = height_m;
+        self.hash = self.hash.wrapping_add(self.cell_hash(cell));
+        true
+    }
+
+    /// Whether soil has changed any height.
+    pub fn is_dug(&self) -> bool {
+        !self.undug_m.is_empty()
+    }
+
+    /// Undoes all changes by the soil.
+    pub fn undo_dug(&mut self) {
+        for cell in 0..self.undug_m.len() {
+            self.set_dug(cell, self.undug_m[cell]);
+        }
+        (self.undug_m, self.soil_revision) = (Vec::new(), 0);
     }
 }

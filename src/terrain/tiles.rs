@@ -67,6 +67,10 @@ pub(crate) struct Terrain {
     pub bounds: Option<CellRect>,
     /// Revision, which grows with every change.
     pub revision: u64,
+    /// Revision after the host's last change.
+    pub host_revision: u64,
+    /// Revision of the soil whose change the heights include.
+    pub soil_revision: u64,
     /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
     /// Last changes of its cells.
@@ -97,6 +101,8 @@ impl Terrain {
             slots: BTreeMap::new(),
             bounds: None,
             revision: 1,
+            host_revision: 1,
+            soil_revision: 0,
             hash: 0,
             recent: RecentChanges::default(),
         })
@@ -125,6 +131,11 @@ impl Terrain {
     /// Key of the tile position that holds a lattice position, with or without a tile there.
     pub fn key_of(&self, [x, y]: [i32; 2]) -> TileKey {
         TileKey::new(x >> self.bits, y >> self.bits)
+    }
+
+    /// Slot of the tile that holds a lattice position.
+    pub fn slot_at(&self, [x, y]: [i32; 2]) -> Option<u32> {
+        self.slot(TileKey::new(x >> self.bits, y >> self.bits))
     }
 
     /// Rectangle of a tile's cells on the lattice.
@@ -186,7 +197,7 @@ impl Terrain {
         let mut tile = Tile::level(cells.key, side);
         tile.take(cells, side);
         self.revision += 1;
-        tile.revision = self.revision;
+        (tile.revision, self.host_revision) = (self.revision, self.revision);
         self.hash = self.hash.wrapping_add(hash_of(&tile));
         let free = self.tiles.iter().position(|t| t.heights_m.is_empty()).unwrap_or(self.tiles.len());
         if free == self.tiles.len() {
@@ -254,7 +265,7 @@ impl Terrain {
             return None;
         }
         self.revision += 1;
-        tile.revision = self.revision;
+        (tile.revision, self.host_revision) = (self.revision, self.revision);
         self.hash = self.hash.wrapping_sub(before).wrapping_add(hash_of(tile));
         let corner = self.rect(cells.key).low;
         let low = [0, 1].map(|i| corner[i] + cells.first[i] as i32);
@@ -275,15 +286,66 @@ impl Terrain {
         self.slots.remove(&key);
         self.bounds = self.slots.keys().map(|key| self.rect(*key)).reduce(CellRect::with);
         self.revision += 1;
+        self.host_revision = self.revision;
         let rect = self.rect(key);
         self.recent.add(self.revision, rect);
         Ok(rect)
     }
 
+    /// Sets heights of a tile's cells with the change of the soil, m, as a change with this revision. Returns the
+    /// rectangle of those that are others.
+    pub fn set_dug(&mut self, slot: u32, heights: &[(usize, f32)], revision: u64) -> Option<CellRect> {
+        let tile = Arc::make_mut(&mut self.tiles[slot as usize]);
+        let (key, before) = (tile.key, hash_of(tile));
+        let mut changed: Option<CellRect> = None;
+        for cell in heights.iter().filter_map(|(cell, height_m)| tile.set_dug(*cell, *height_m).then_some(*cell)) {
+            let low = [key.east << self.bits, key.north << self.bits];
+            let mask = (1usize << self.bits) - 1;
+            let low = [low[0] + (cell & mask) as i32, low[1] + (cell >> self.bits) as i32];
+            let one = CellRect { low, high: low.map(|v| v + 1) };
+            changed = Some(changed.map_or(one, |rect| rect.with(one)));
+        }
+        if let Some(rect) = changed {
+            self.recent.add(revision, rect);
+            (self.revision, tile.revision) = (revision, revision);
+            self.hash = self.hash.wrapping_sub(before).wrapping_add(hash_of(tile));
+        }
+        changed
+    }
+
+    /// Notes that the heights of a tile include the change of the soil up to its revision.
+    pub fn note_dug(&mut self, slot: u32, soil_revision: u64) {
+        Arc::make_mut(&mut self.tiles[slot as usize]).soil_revision = soil_revision;
+    }
+
+    /// Undoes all changes by the soil. Returns the rectangles of the tiles that had any.
+    pub fn undo_dug(&mut self) -> Vec<CellRect> {
+        let mut changed = Vec::new();
+        for tile in self.tiles.iter_mut().filter(|tile| tile.is_dug()) {
+            let tile = Arc::make_mut(tile);
+            let before = hash_of(tile);
+            tile.undo_dug();
+            self.revision += 1;
+            tile.revision = self.revision;
+            self.hash = self.hash.wrapping_sub(before).wrapping_add(hash_of(tile));
+            changed.push(tile.key);
+        }
+        self.soil_revision = 0;
+        let changed: Vec<_> = changed.into_iter().map(|key| self.rect(key)).collect();
+        changed.iter().for_each(|rect| self.recent.add(self.revision, *rect));
+        changed
+    }
+
+    /// Height of the cell at a lattice position before anything was dug, m; `None` without ground.
+    pub fn undug_m(&self, place: [i32; 2]) -> Option<f64> {
+        let (tile, cell) = (self.tile(self.slot_at(place)?), self.in_tile(place));
+        tile.has_ground(cell).then(|| f64::from(tile.undug_m(cell)))
+    }
+
     /// Cell at a lattice position, if it has ground.
-    pub fn cell_at(&self, [x, y]: [i32; 2]) -> Option<CellId> {
-        let slot = self.slot(TileKey::new(x >> self.bits, y >> self.bits))?;
-        let cell = self.in_tile([x, y]);
+    pub fn cell_at(&self, place: [i32; 2]) -> Option<CellId> {
+        let slot = self.slot_at(place)?;
+        let cell = self.in_tile(place);
         self.tile(slot).has_ground(cell).then(|| self.joined(slot, cell))
     }
 

@@ -11,6 +11,7 @@ use super::{
     color::color_columns,
     couplings::Couplings,
     detours::KeptDetours,
+    dug::DugGround,
     settings::{NightSettings, Settings},
 };
 use crate::{
@@ -53,6 +54,8 @@ pub(crate) struct World {
     pub(super) detours: KeptDetours,
     /// The lying snow, if it is simulated.
     pub snow: Option<Box<LyingSnow>>,
+    /// Ground that was dug, if the context has soil.
+    pub dug: Option<Box<DugGround>>,
     pub time_s: f64,
     pub(super) ephemeris: Ephemeris,
     pub(super) couplings: Couplings,
@@ -121,6 +124,7 @@ impl World {
             wind_texture: WindTexture::default(),
             detours: KeptDetours::default(),
             snow: None,
+            dug: None,
             time_s: 0.0,
             ephemeris: Ephemeris::default(),
             couplings,

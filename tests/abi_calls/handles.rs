@@ -7,9 +7,9 @@ use std::ptr::{null, null_mut};
 use welkin::capi::{
     abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
     environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
-    occluder::*, plan::*, query::*, radiance::*, rain::*, region::*, sea::*, sky::*, snow::*, snowpack::*, stars::*,
-    status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*, wind_field::*,
-    wind_grid::*, windscreen::*,
+    occluder::*, plan::*, query::*, radiance::*, rain::*, region::*, sea::*, sky::*, snow::*, snowpack::*, soil::*,
+    stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
+    wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{World, init, message, next_frame};
@@ -125,6 +125,35 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
         case("wk_context_update_terrain", "context", false, |h| unsafe { wk_context_update_terrain(h.cast(), null()) }),
         case("wk_context_remove_terrain_tile", "context", false, |h| unsafe {
             wk_context_remove_terrain_tile(h.cast(), 0, 0)
+        }),
+        case("wk_context_set_soil", "context", false, |h| unsafe { wk_context_set_soil(h.cast(), null()) }),
+        case("wk_context_add_soil_tool", "context", false, |h| unsafe {
+            wk_context_add_soil_tool(h.cast(), null(), null(), null_mut())
+        }),
+        case("wk_context_move_soil_tool", "context", false, |h| unsafe {
+            wk_context_move_soil_tool(h.cast(), 1, null())
+        }),
+        case("wk_context_end_soil_tool", "context", false, |h| unsafe { wk_context_end_soil_tool(h.cast(), 1) }),
+        case("wk_context_get_soil_tool", "context", false, |h| unsafe {
+            wk_context_get_soil_tool(h.cast(), 1, null_mut())
+        }),
+        case("wk_context_get_soil_resistance", "context", false, |h| unsafe {
+            wk_context_get_soil_resistance(h.cast(), 1, null(), null_mut())
+        }),
+        case("wk_context_bring_soil", "context", false, |h| unsafe {
+            wk_context_bring_soil(h.cast(), null(), 0, 0.0, null_mut())
+        }),
+        case("wk_context_get_soil_points", "context", false, |h| unsafe {
+            wk_context_get_soil_points(h.cast(), null(), 0, 0, null_mut(), 0)
+        }),
+        case("wk_context_get_soil_changes", "context", false, |h| unsafe {
+            wk_context_get_soil_changes(h.cast(), 0, null_mut(), 0, 0, null_mut())
+        }),
+        case("wk_context_get_soil_cells", "context", false, |h| unsafe {
+            wk_context_get_soil_cells(h.cast(), null(), null(), null(), null_mut(), 0, 0)
+        }),
+        case("wk_context_get_soil_balance", "context", false, |h| unsafe {
+            wk_context_get_soil_balance(h.cast(), null_mut())
         }),
         case("wk_context_get_terrain_revision", "context", false, |h| unsafe {
             wk_context_get_terrain_revision(h.cast(), null_mut())

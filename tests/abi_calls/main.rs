@@ -20,6 +20,7 @@ mod regions;
 mod sea;
 mod shelters;
 mod sky;
+mod soil;
 mod state;
 mod structs;
 mod terrain;

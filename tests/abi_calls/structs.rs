@@ -10,8 +10,8 @@ use welkin::capi::{
     abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
     environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
     occluder::*, opengl::*, plan::*, query::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*,
-    stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, weather::*,
-    wind::*, wind_field::*, wind_grid::*, windscreen::*,
+    soil::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    weather::*, wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use super::world::{Bytes, World, init, message, next_frame};
@@ -142,6 +142,27 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_terrain_cells", "terrain_cells", false, move |p| unsafe {
             wk_context_update_terrain(context, p.cast())
         }),
+        case("wk_soil", "soil", true, move |p| unsafe { wk_context_set_soil(context, p.cast()) }),
+        case("wk_soil_kind", "soil.own_kinds[0]", true, move |p| {
+            let soil = wk_soil { own_kind_count: 1, own_kinds: p.cast(), own_kind_stride: 1 << 24, ..init("wk_soil") };
+            unsafe { wk_context_set_soil(context, &soil) }
+        }),
+        case("wk_soil_tool", "shape", false, move |p| unsafe {
+            wk_context_add_soil_tool(context, p.cast(), &init("wk_soil_pose"), &mut 0)
+        }),
+        case("wk_soil_pose", "pose", false, move |p| unsafe { wk_context_move_soil_tool(context, 1, p.cast()) }),
+        case("wk_soil_tool_report", "out_report", false, move |p| unsafe {
+            wk_context_get_soil_tool(context, 1, p.cast())
+        }),
+        case("wk_soil_blade", "blade", false, move |p| unsafe {
+            wk_context_get_soil_resistance(context, 1, p.cast(), &mut init("wk_cutting_force"))
+        }),
+        case("wk_cutting_force", "out_force", false, move |p| unsafe {
+            wk_context_get_soil_resistance(context, 1, &init("wk_soil_blade"), p.cast())
+        }),
+        case("wk_soil_balance", "out_balance", false, move |p| unsafe {
+            wk_context_get_soil_balance(context, p.cast())
+        }),
         case("wk_rain", "rain", true, move |p| unsafe { wk_view_set_rain(view, p.cast()) }),
         case("wk_snow", "snow", true, move |p| unsafe { wk_view_set_snow(view, p.cast()) }),
         case("wk_clouds", "clouds", true, move |p| unsafe { wk_view_set_clouds(view, p.cast()) }),
@@ -249,6 +270,8 @@ const ELSEWHERE: &[&str] = &[
     "wk_ground_light",
     "wk_ground_cell",
     "wk_terrain_point",
+    "wk_soil_point",
+    "wk_soil_change",
     "wk_lying_snow",
     "wk_sea_point",
     "wk_segment",

@@ -14,6 +14,7 @@ use welkin::{
     rain::{AreaMotion, AreaShape, Planes, RainArea, Shelter},
     scene::HostLight,
     snowpack::SnowStrip,
+    soil::{SoilKindId, SoilSettings, SoilToolPose, SoilToolShape},
     stars::StarSettings,
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{CloudMap, Precipitation, PrecipitationKind, Surface, Weather, Wind},
@@ -226,6 +227,31 @@ pub const INPUTS: &[Input] = &[
     }),
     ("pressing", |c, _, _| {
         let _ = c.press_snow(&strip());
+    }),
+    ("soil", |c, _, n| {
+        // Refused without tiles, as all of soil is without soil, and while steps remain.
+        let saturation = 0.1 + 0.2 * f64::from(n % 2);
+        let _ = c.set_soil(Some(SoilSettings { saturation, ..SoilSettings::default() }));
+    }),
+    ("a bucket", |c, _, n| {
+        let shape = SoilToolShape::Bucket { struck_m3: 0.4, heap_rise: 1.0 };
+        let pose = |i: u32| {
+            let (x, z) = (3.0 + 0.5 * f64::from(i) + 0.1 * f64::from(n % 7), 0.2 - 0.2 * f64::from(i));
+            let side = |x: f64, z: f64| [4.0, 2.0].map(|y| DVec3::new(x, y, z));
+            let (edge, upper) = (side(x, z), side(x - 0.2, z + 1.0));
+            let time_s = c.time_s() + 0.1 + 3.0 * f64::from(i);
+            SoilToolPose { time_s, edge, upper, facing: DVec3::new(1.0, 0.0, 0.2), load_n: 0.0 }
+        };
+        let poses: Vec<_> = (0..4).map(pose).collect();
+        let Ok(tool) = c.add_soil_tool(shape, &poses[0]) else { return };
+        poses[1..].iter().for_each(|pose| _ = c.move_soil_tool(tool, pose));
+        c.end_soil_tool(tool).unwrap();
+    }),
+    ("sand by the truck", |c, _, n| {
+        let _ = c.bring_soil(DVec3::new(f64::from(n % 5), 6.0, 0.0), SoilKindId::SAND, 900.0);
+    }),
+    ("no soil", |c, _, _| {
+        let _ = c.set_soil(None);
     }),
     ("a wind field", |c, _, n| {
         // Refused where the host has already set a later change.

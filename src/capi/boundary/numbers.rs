@@ -184,6 +184,22 @@ pub const WK_STRUCT_TYPE_SEA_STATE: wk_struct_type = 114;
 pub const WK_STRUCT_TYPE_WEATHER_REGION: wk_struct_type = 95;
 /// wk_air
 pub const WK_STRUCT_TYPE_AIR: wk_struct_type = 96;
+/// wk_soil
+pub const WK_STRUCT_TYPE_SOIL: wk_struct_type = 120;
+/// wk_soil_kind
+pub const WK_STRUCT_TYPE_SOIL_KIND: wk_struct_type = 121;
+/// wk_soil_tool
+pub const WK_STRUCT_TYPE_SOIL_TOOL: wk_struct_type = 122;
+/// wk_soil_pose
+pub const WK_STRUCT_TYPE_SOIL_POSE: wk_struct_type = 123;
+/// wk_soil_tool_report
+pub const WK_STRUCT_TYPE_SOIL_TOOL_REPORT: wk_struct_type = 124;
+/// wk_soil_blade
+pub const WK_STRUCT_TYPE_SOIL_BLADE: wk_struct_type = 125;
+/// wk_cutting_force
+pub const WK_STRUCT_TYPE_CUTTING_FORCE: wk_struct_type = 126;
+/// wk_soil_balance
+pub const WK_STRUCT_TYPE_SOIL_BALANCE: wk_struct_type = 127;
 
 /// Severity of a message.
 pub type wk_log_level = u32;

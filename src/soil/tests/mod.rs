@@ -31,7 +31,8 @@ fn firm(swell: f64) -> SoilKind {
 
 fn site_of(kind: SoilKind, cell_m: f64) -> SoilSite {
     let horizons = vec![SoilHorizon { top_m: 0.0, kind: SoilKindId(7) }];
-    SoilSite::new(SoilSiteDesc { cell_m, own_kinds: vec![kind], horizons }).unwrap()
+    let settings = SoilSettings { own_kinds: vec![kind], horizons, ..SoilSettings::default() };
+    SoilSite::new(SoilSiteDesc { cell_m, settings }).unwrap()
 }
 
 /// Pose of a bucket of 1.5 m whose opening looks along the heading and by `tilt` above the horizontal.
@@ -170,7 +171,7 @@ fn a_loaded_site_continues_with_the_same_bits() {
     assert_eq!(loaded.encode().unwrap(), site.encode().unwrap());
     assert!(site.books().is_balanced());
     let broken = [
-        saved.replace("steps = ", "steps = -"),
+        saved.replace("steps = ", "steps = 999999999999"),
         saved.replacen("loose = \"", "loose = \"1 ", 1),
         saved.replace("brought = \"0\"", "brought = \"1\""),
         saved.replace("shape = \"bucket\"", "shape = \"spoon\""),
@@ -371,19 +372,27 @@ fn an_undug_site_holds_and_costs_nothing() {
 
 #[test]
 fn wrong_input_is_named_and_changes_nothing() {
-    let fault = |desc: SoilSiteDesc| SoilSite::new(desc).unwrap_err().to_string();
     let desc = SoilSiteDesc::default;
-    assert!(fault(SoilSiteDesc { cell_m: 0.0, ..desc() }).starts_with("cell_m must be in [0.01, 4] m"));
+    let e = SoilSite::new(SoilSiteDesc { cell_m: 0.0, ..desc() }).unwrap_err();
+    assert!(e.to_string().starts_with("cell_m must be in [0.01, 4] m"));
+    let fault = |settings| SoilSite::new(SoilSiteDesc { settings, ..desc() }).unwrap_err().to_string();
+    let settings = SoilSettings::default;
     let kind = SoilKind { swell: -0.1, ..BUILT_IN[0] };
     assert!(
-        fault(SoilSiteDesc { own_kinds: vec![kind], ..desc() }).starts_with("own_kinds[0].swell must be in [0, 1.5]")
+        fault(SoilSettings { own_kinds: vec![kind], ..settings() })
+            .starts_with("own_kinds[0].swell must be in [0, 1.5]")
     );
     let deep = vec![SoilHorizon { top_m: 0.1, kind: SoilKindId(0) }];
-    assert!(fault(SoilSiteDesc { horizons: deep, ..desc() }).starts_with("horizons[0].top_m must be 0, the surface"));
+    assert!(
+        fault(SoilSettings { horizons: deep, ..settings() }).starts_with("horizons[0].top_m must be 0, the surface")
+    );
     let unknown = vec![SoilHorizon { top_m: 0.0, kind: SoilKindId(7) }];
     assert!(
-        fault(SoilSiteDesc { horizons: unknown, ..desc() }).contains("horizons[0].kind must be a known kind of soil")
+        fault(SoilSettings { horizons: unknown, ..settings() })
+            .contains("horizons[0].kind must be a known kind of soil")
     );
+
+    assert!(fault(SoilSettings { saturation: 1.5, ..settings() }).starts_with("saturation must be in [0, 1]"));
 
     let mut site = SoilSite::new(desc()).unwrap();
     let good = bucket_pose(1.0, DVec3::ZERO, 0.0, 0.2);
@@ -398,9 +407,9 @@ fn wrong_input_is_named_and_changes_nothing() {
         (SoilToolPose { upper: [good.upper[1], good.upper[0]], ..next }, "pose.facing must be out of the opening"),
         (SoilToolPose { facing: DVec3::ZERO, ..next }, "pose.facing must be finite"),
         (SoilToolPose { edge: [DVec3::NAN, good.edge[1]], ..next }, "pose.edge[0] must be finite"),
-        (SoilToolPose { upper: good.edge, ..next }, "pose.upper.distance must be in [0.02, 20] m"),
+        (SoilToolPose { upper: good.edge, ..next }, "pose.upper[0] must be in [0.02, 20] m"),
         (SoilToolPose { load_n: -1.0, ..next }, "pose.load_n must be in [0, 10000000] N"),
-        (SoilToolPose { time_s: f64::NAN, ..next }, "pose.time_s must be in [0, "),
+        (SoilToolPose { time_s: f64::NAN, ..next }, "pose.time_s must be in [-1000000000000, "),
         (far, "pose.edge[0] must be within 20 m of the pose before"),
         (good, "pose.time_s must be more than 1 s"),
         (SoilToolPose { time_s: 1e9, ..next }, "pose.time_s must be at most 600 s after the pose before"),

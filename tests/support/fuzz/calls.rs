@@ -7,8 +7,8 @@ use welkin::capi::{
     abi, air::*, area::*, cloud_map::*, cloud_shadow::*, clouds::*, conditions::*, context::*, device::*,
     environment::*, fog_law::*, frame::*, ground::*, ground_grid::*, ground_texture::*, light::*, lightning::*,
     occluder::*, plan::*, query::*, radiance::*, rain::*, region::*, report::*, sea::*, sky::*, snow::*, snowpack::*,
-    stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*, wind::*,
-    wind_field::*, wind_grid::*, windscreen::*,
+    soil::*, stars::*, status::*, surface::*, terrain::*, texture::*, timeline::*, veil::*, view::*, vulkan::*,
+    wind::*, wind_field::*, wind_grid::*, windscreen::*,
 };
 
 use crate::refusals::message;
@@ -77,6 +77,36 @@ fn tiled(d: &mut Dice, contexts: &[*mut wk_context]) -> *mut wk_context {
         unsafe {
             wk_context_set_terrain(context, terrain.ptr().cast());
             wk_context_set_terrain_tile(context, tile.ptr().cast());
+        }
+    }
+    context
+}
+
+/// A pose of a bucket about the middle of tile (0, 0), in or above the ground, mostly later than all before.
+fn soil_pose(d: &mut Dice, time_s: f64) -> Struct {
+    let mut pose = Struct::random(d, "wk_soil_pose", 60);
+    let (x, z) = (14.0 + 4.0 * d.unit(), 0.5 + d.unit());
+    pose.set("time_s", if d.one_in(10) { d.float() } else { time_s + 1e-3 + 0.1 * d.unit() });
+    if !d.one_in(8) {
+        pose.set("edge_left_m", [x, 17.0, z]);
+        pose.set("edge_right_m", [x, 15.0, z]);
+        pose.set("upper_left_m", [x - 0.2, 17.0, z + 1.0]);
+        pose.set("upper_right_m", [x - 0.2, 15.0, z + 1.0]);
+        pose.set("facing", [1.0f64, 0.0, 0.2]);
+        pose.set("load_n", if d.one_in(2) { 0.0 } else { 1e4 * d.unit() });
+    }
+    pose
+}
+
+/// A context that mostly has soil on its tile, and a tool in it.
+fn dug(d: &mut Dice, w: &World) -> *mut wk_context {
+    let context = tiled(d, &w.contexts);
+    if !d.one_in(4) && w.contexts.contains(&context) {
+        let (mut soil, mut shape) = (Struct::plain("wk_soil"), Struct::plain("wk_soil_tool"));
+        let (mut pose, mut tool) = (soil_pose(d, w.time_s), 0);
+        unsafe {
+            wk_context_set_soil(context, soil.ptr().cast());
+            wk_context_add_soil_tool(context, shape.ptr().cast(), pose.ptr().cast(), &mut tool);
         }
     }
     context
@@ -653,6 +683,69 @@ pub const CALLS: &[(&str, Call)] = &[
     ("wk_context_remove_terrain_tile", |d, w| {
         let (east, north) = (d.below(3) as i32 - 1, d.below(3) as i32 - 1);
         unsafe { wk_context_remove_terrain_tile(tiled(d, &w.contexts), east, north) }.into()
+    }),
+    ("wk_context_set_soil", |d, w| {
+        let mut soil = Struct::random(d, "wk_soil", 10);
+        let (mut kinds, count) = Struct::random_list(d, "wk_soil_kind", 20);
+        let (tops, layers) = ([0.0, 0.3, d.unit()], [d.below(9) as u32, 4, 3]);
+        if d.one_in(2) {
+            soil.set("own_kind_count", count);
+            soil.set("own_kind_stride", kinds.stride());
+            soil.set("own_kinds", kinds.ptr());
+            soil.set("horizon_count", d.below(4) as u32);
+            soil.set("horizon_tops_m", tops.as_ptr());
+            soil.set("horizon_kinds", layers.as_ptr());
+        }
+        unsafe { wk_context_set_soil(tiled(d, &w.contexts), soil.ptr().cast()) }.into()
+    }),
+    ("wk_context_add_soil_tool", |d, w| {
+        let (context, mut shape, mut tool) = (dug(d, w), Struct::random(d, "wk_soil_tool", 20), 0);
+        shape.set("shape", d.below(6) as u32);
+        let mut pose = soil_pose(d, w.time_s);
+        unsafe { wk_context_add_soil_tool(context, shape.ptr().cast(), pose.ptr().cast(), &mut tool) }.into()
+    }),
+    ("wk_context_move_soil_tool", |d, w| {
+        let (context, mut pose) = (dug(d, w), soil_pose(d, w.time_s + 0.2));
+        unsafe { wk_context_move_soil_tool(context, d.below(4) as u32, pose.ptr().cast()) }.into()
+    }),
+    ("wk_context_end_soil_tool", |d, w| unsafe { wk_context_end_soil_tool(dug(d, w), d.below(4) as u32) }.into()),
+    ("wk_context_get_soil_tool", |d, w| {
+        let (context, tool) = (dug(d, w), d.below(4) as u32);
+        get("wk_soil_tool_report", |p| unsafe { wk_context_get_soil_tool(context, tool, p.cast()) })
+    }),
+    ("wk_context_get_soil_resistance", |d, w| {
+        let (context, tool, mut blade) = (dug(d, w), d.below(4) as u32, Struct::random(d, "wk_soil_blade", 10));
+        let blade = blade.ptr().cast();
+        get("wk_cutting_force", |p| unsafe { wk_context_get_soil_resistance(context, tool, blade, p.cast()) })
+    }),
+    ("wk_context_bring_soil", |d, w| {
+        let (context, kind, mass) =
+            (dug(d, w), d.below(9) as u32, if d.one_in(5) { d.float() } else { 100.0 * d.unit() });
+        let at = if d.one_in(2) { position(d) } else { [16.0 * d.unit(), 16.0 * d.unit(), 0.0] };
+        unsafe { wk_context_bring_soil(context, &at, kind, mass, null_mut()) }.into()
+    }),
+    ("wk_context_get_soil_points", |d, w| {
+        let (context, at, mut points) = (dug(d, w), position(d), [unsafe { std::mem::zeroed() }; 1]);
+        let size = size_of_element::<wk_soil_point>(d);
+        unsafe { wk_context_get_soil_points(context, &at, 1, 24, points.as_mut_ptr(), size) }.into()
+    }),
+    ("wk_context_get_soil_changes", |d, w| {
+        let mut changes = room(unsafe { std::mem::zeroed::<wk_soil_change>() });
+        let (context, since, mut count) = (dug(d, w), d.below(20) as u64, 0);
+        let size = size_of_element::<wk_soil_change>(d);
+        let most = changes.len() as u32;
+        unsafe { wk_context_get_soil_changes(context, since, changes.as_mut_ptr(), most, size, &mut count) }.into()
+    }),
+    ("wk_context_get_soil_cells", |d, w| {
+        let mut points = vec![unsafe { std::mem::zeroed::<wk_soil_point>() }; 1024];
+        let (context, tile) = (dug(d, w), [d.below(2) as i32, 0]);
+        let [first, size] = [0, 1].map(|least| [d.below(20) as u32 + least, d.below(20) as u32 + least]);
+        let element = size_of_element::<wk_soil_point>(d);
+        unsafe { wk_context_get_soil_cells(context, &tile, &first, &size, points.as_mut_ptr(), 1024, element) }.into()
+    }),
+    ("wk_context_get_soil_balance", |d, w| {
+        let context = dug(d, w);
+        get("wk_soil_balance", |p| unsafe { wk_context_get_soil_balance(context, p.cast()) })
     }),
     ("wk_context_get_terrain_revision", |d, w| {
         let mut revision = 0;
