@@ -146,6 +146,7 @@
  *
  * The sea
  *   [sea]             The sea: settings and queries
+ *   [soil]            Soil
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -382,6 +383,22 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_WEATHER_REGION 95
 /** wk_air */
 #define WK_STRUCT_TYPE_AIR 96
+/** wk_soil */
+#define WK_STRUCT_TYPE_SOIL 120
+/** wk_soil_kind */
+#define WK_STRUCT_TYPE_SOIL_KIND 121
+/** wk_soil_tool */
+#define WK_STRUCT_TYPE_SOIL_TOOL 122
+/** wk_soil_pose */
+#define WK_STRUCT_TYPE_SOIL_POSE 123
+/** wk_soil_tool_report */
+#define WK_STRUCT_TYPE_SOIL_TOOL_REPORT 124
+/** wk_soil_blade */
+#define WK_STRUCT_TYPE_SOIL_BLADE 125
+/** wk_cutting_force */
+#define WK_STRUCT_TYPE_CUTTING_FORCE 126
+/** wk_soil_balance */
+#define WK_STRUCT_TYPE_SOIL_BALANCE 127
 
 /**
  * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
@@ -7173,9 +7190,11 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
  * ground. A context has either tiles or one wk_ground_grid.
  *
- * Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
- * same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
- * any time; while an update has steps left (WK_PENDING), a change takes effect after the last of them.
+ * The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
+ * queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
+ * heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and the
+ * functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a change
+ * takes effect after the last of them.
  * ====================================================================================================
  */
 
@@ -7933,6 +7952,617 @@ WK_API wk_status wk_sea_region_init(wk_sea_region *out, uint32_t struct_size);
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [soil] Soil
+ *
+ * Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
+ * undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the sum.
+ * Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
+ * heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
+ * saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
+ * pose before the update that reaches its time.
+ *
+ * A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
+ * are 1/64 s long. docs/soil.md shows how to dig.
+ * ====================================================================================================
+ */
+
+/** Number of the built-in kinds: the number of the first kind of a wk_soil. */
+#define WK_SOIL_BUILT_IN_KINDS 7
+
+/** Largest number of kinds, the built-in ones among them. */
+#define WK_SOIL_KINDS 16
+
+/** A kind of soil of the host's own. Element of a list in wk_soil. */
+typedef struct wk_soil_kind {
+    /** sizeof(wk_soil_kind) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_KIND. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Density of the undisturbed soil (bank), kg/m^3. Range [50, 10 000], default 1800. */
+    double density_kg_m3;
+    /** Growth of volume when the soil is dug, as a share of its bank volume. Range [0, 1.5], default 0.25. */
+    double swell;
+    /** Angle at which the loose soil rests, degrees. Range [5, 60], default 37. */
+    double repose_deg;
+    /**
+     * Cohesion of moist bank, kPa. Range [0, 10 000], default 2. From 100 on it counts as cemented, and water takes
+     * nothing of it.
+     */
+    double cohesion_kpa;
+    /** Friction angle of the bank, degrees. Range [0, 60], default 30. */
+    double friction_deg;
+    /**
+     * 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries them.
+     */
+    uint32_t sinks;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** Cohesive modulus kc, kN/m^(n + 1). Range [0, 1e6], default 0. */
+    double sinkage_kc;
+    /** Frictional modulus kphi, kN/m^(n + 2). Range [0.1, 1e8], default 1500. */
+    double sinkage_kphi;
+    /** Exponent n. Range [0.1, 3], default 1. */
+    double sinkage_n;
+} wk_soil_kind;
+
+/** Every field of `wk_soil_kind` at its default. */
+#define WK_SOIL_KIND_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_kind), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_KIND, \
+    /* next */ NULL, \
+    /* density_kg_m3 */ 1800.0, \
+    /* swell */ 0.25, \
+    /* repose_deg */ 37.0, \
+    /* cohesion_kpa */ 2.0, \
+    /* friction_deg */ 30.0, \
+    /* sinks */ 0, \
+    /* reserved0 */ 0, \
+    /* sinkage_kc */ 0.0, \
+    /* sinkage_kphi */ 1500.0, \
+    /* sinkage_n */ 1.0 \
+}
+
+/** Number of a kind of soil: a built-in one, or 7 and more for the kinds of a wk_soil, in their order. */
+typedef uint32_t wk_soil_kind_id;
+
+/** Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees. */
+#define WK_SOIL_SAND 0
+/** Dry gravel: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
+#define WK_SOIL_GRAVEL 1
+/** Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees. */
+#define WK_SOIL_CLAY 2
+/** Moist sandy loam: 1803 kg/m^3, 25 %, 37 degrees, 1.72 kPa, 29 degrees. */
+#define WK_SOIL_LOAM 3
+/** Topsoil: 1561 kg/m^3, 25 %, 37 degrees, 3.3 kPa, 33.7 degrees. */
+#define WK_SOIL_TOPSOIL 4
+/** Limestone: 2533 kg/m^3, 63 %, 38 degrees, 1000 kPa, 40 degrees. */
+#define WK_SOIL_ROCK 5
+/** Hard coal: 1202 kg/m^3, 35 %, 37 degrees, 100 kPa, 35 degrees. */
+#define WK_SOIL_COAL 6
+
+/** Kinds and layers of the ground. */
+typedef struct wk_soil {
+    /** sizeof(wk_soil) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Number of kinds in `own_kinds`, at most 9. Default 0. */
+    uint32_t own_kind_count;
+    /** Bytes from one kind to the next: sizeof(wk_soil_kind) of your header, which is the default. */
+    uint32_t own_kind_stride;
+    /** Your own kinds; their numbers follow those of the built-in ones. Copied. Default NULL. */
+    const wk_soil_kind *own_kinds;
+    /** Number of layers, at most 8. Default 0: 0.3 m of topsoil on loam. */
+    uint32_t horizon_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * Depth of the upper side of each layer below the undug surface, m: 0 for the first, and more for each other than
+     * for the one before, up to 1000. Copied. Default NULL.
+     */
+    const double *horizon_tops_m;
+    /** Kind of each layer, a wk_soil_kind_id. Copied. Default NULL. */
+    const wk_soil_kind_id *horizon_kinds;
+    /**
+     * Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at 0
+     * (dry sand) and at 1 (below the water table) has no cohesion.
+     */
+    double saturation;
+} wk_soil;
+
+/** Every field of `wk_soil` at its default. */
+#define WK_SOIL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL, \
+    /* next */ NULL, \
+    /* own_kind_count */ 0, \
+    /* own_kind_stride */ (uint32_t)sizeof(wk_soil_kind), \
+    /* own_kinds */ NULL, \
+    /* horizon_count */ 0, \
+    /* reserved0 */ 0, \
+    /* horizon_tops_m */ NULL, \
+    /* horizon_kinds */ NULL, \
+    /* saturation */ 0.3 \
+}
+
+/** Shape of a tool, and what it does to the soil. */
+typedef uint32_t wk_soil_tool_shape;
+
+/** Bucket or shovel: cuts with its edge, fills, carries and pours. */
+#define WK_SOIL_TOOL_BUCKET 0
+/** Blade of a dozer or grader: cuts with its edge, and pushes the soil ahead. */
+#define WK_SOIL_TOOL_BLADE 1
+/** Bed of a truck: catches what falls into it, carries and pours, but does not cut. */
+#define WK_SOIL_TOOL_BED 2
+/** Wheel: its edge is the line of contact, across its track. */
+#define WK_SOIL_TOOL_WHEEL 3
+/** Crawler track: its edge is the line under its middle, across its track. */
+#define WK_SOIL_TOOL_TRACK 4
+
+/** A tool that works the soil. */
+typedef struct wk_soil_tool {
+    /** sizeof(wk_soil_tool) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_TOOL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_SOIL_TOOL_BUCKET. */
+    wk_soil_tool_shape shape;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools. */
+    double struck_m3;
+    /**
+     * Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for loaders
+     * (SAE J742). Range [0, 1]. Used by buckets and beds.
+     */
+    double heap_rise;
+    /** Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools. */
+    double diameter_m;
+    /** Length of a track's contact with the ground, m. Range [0.1, 20], default 3. Not used by other tools. */
+    double contact_m;
+} wk_soil_tool;
+
+/** Every field of `wk_soil_tool` at its default. */
+#define WK_SOIL_TOOL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_tool), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_TOOL, \
+    /* next */ NULL, \
+    /* shape */ WK_SOIL_TOOL_BUCKET, \
+    /* reserved0 */ 0, \
+    /* struck_m3 */ 1.0, \
+    /* heap_rise */ 1.0, \
+    /* diameter_m */ 1.0, \
+    /* contact_m */ 3.0 \
+}
+
+/** Pose of a tool at a time. Left and right are those of a viewer inside the tool who looks out of its opening. */
+typedef struct wk_soil_pose {
+    /** sizeof(wk_soil_pose) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_POSE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Simulation time, s. Range [-1e10, 1e10], default 0. */
+    double time_s;
+    /** Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. */
+    double edge_left_m[3];
+    /** Right end of it, 0.05 to 20 m away. */
+    double edge_right_m[3];
+    /** Left end of the edge of the opening opposite to the cutting edge. Not used for wheels and tracks. */
+    double upper_left_m[3];
+    /** Right end of it. */
+    double upper_right_m[3];
+    /**
+     * Direction out of the opening in the host's world; need not have unit length. Not used for wheels and tracks.
+     */
+    double facing[3];
+    /** Load of a wheel or track on the ground, N. Range [0, 1e7], default 0; 0 for other tools. */
+    double load_n;
+} wk_soil_pose;
+
+/** Every field of `wk_soil_pose` at its default. */
+#define WK_SOIL_POSE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_pose), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_POSE, \
+    /* next */ NULL, \
+    /* time_s */ 0.0, \
+    /* edge_left_m */ { 0.0, 0.0, 0.0 }, \
+    /* edge_right_m */ { 0.0, 0.0, 0.0 }, \
+    /* upper_left_m */ { 0.0, 0.0, 0.0 }, \
+    /* upper_right_m */ { 0.0, 0.0, 0.0 }, \
+    /* facing */ { 0.0, 0.0, 0.0 }, \
+    /* load_n */ 0.0 \
+}
+
+/** Content of a tool, and what it met in the last step of the soil (1/64 s). */
+typedef struct wk_soil_tool_report {
+    /** sizeof(wk_soil_tool_report) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_TOOL_REPORT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Simulation time of the tool's pose, s. */
+    double time_s;
+    /** Mass held, kg. */
+    double mass_kg;
+    /** Bulk volume held, m^3. */
+    double bulk_m3;
+    /** Share of the rated volume with its heap that is filled. */
+    double fill;
+    /** Centre of what is held, in the host's world, m. */
+    double centre_m[3];
+    /** Mass of each kind held, kg, by the kind's number. */
+    double kinds_kg[16];
+    /** Share of the pores of the soil held that water fills; 0 when empty. */
+    double saturation;
+    /** Mean depth of the cut, m. */
+    double cut_depth_m;
+    /** Deepest sinkage of a wheel or track, m. */
+    double sinkage_m;
+    /** Kind of most of the soil that was cut. */
+    wk_soil_kind_id cut_kind;
+    /**
+     * 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
+     * from a set of numbers that fits a small range only; else 0.
+     */
+    uint32_t sinkage_is_beyond_range;
+    /** 1 where the edge met frozen ground, which it cannot cut; else 0. */
+    uint32_t is_stopped_by_frost;
+    /** 0. */
+    uint32_t reserved0;
+} wk_soil_tool_report;
+
+/** Every field of `wk_soil_tool_report` at its default. */
+#define WK_SOIL_TOOL_REPORT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_tool_report), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_TOOL_REPORT, \
+    /* next */ NULL, \
+    /* time_s */ 0.0, \
+    /* mass_kg */ 0.0, \
+    /* bulk_m3 */ 0.0, \
+    /* fill */ 0.0, \
+    /* centre_m */ { 0.0, 0.0, 0.0 }, \
+    /* kinds_kg */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }, \
+    /* saturation */ 0.0, \
+    /* cut_depth_m */ 0.0, \
+    /* sinkage_m */ 0.0, \
+    /* cut_kind */ 0, \
+    /* sinkage_is_beyond_range */ 0, \
+    /* is_stopped_by_frost */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** Blade of a tool, as it meets the soil. */
+typedef struct wk_soil_blade {
+    /** sizeof(wk_soil_blade) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_BLADE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Angle of the blade to the horizontal in the direction of motion, degrees; 90 is upright. Range [3, 148], default
+     * 60.
+     */
+    double rake_deg;
+    /** Friction angle between soil and blade, degrees. Range [0, 68], default 23, steel. */
+    double soil_metal_deg;
+    /** Adhesion of the soil to the blade, kPa. Range [0, 10 000], default 0. */
+    double adhesion_kpa;
+    /** Load on the surface in front of the blade, kPa. Range [0, 10 000], default 0. */
+    double surcharge_kpa;
+} wk_soil_blade;
+
+/** Every field of `wk_soil_blade` at its default. */
+#define WK_SOIL_BLADE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_blade), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_BLADE, \
+    /* next */ NULL, \
+    /* rake_deg */ 60.0, \
+    /* soil_metal_deg */ 23.0, \
+    /* adhesion_kpa */ 0.0, \
+    /* surcharge_kpa */ 0.0 \
+}
+
+/** Force of the soil on a blade. */
+typedef struct wk_cutting_force {
+    /** sizeof(wk_cutting_force) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CUTTING_FORCE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation of Reece and McKyes. */
+    double force_n;
+    /** Part of the whole force against the motion, N. */
+    double horizontal_n;
+    /** Part that pulls the blade down, N; negative where soil lifts it. */
+    double vertical_n;
+    /** Angle of the plane of failure to the horizontal, degrees. */
+    double failure_deg;
+} wk_cutting_force;
+
+/** Every field of `wk_cutting_force` at its default. */
+#define WK_CUTTING_FORCE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cutting_force), \
+    /* struct_type */ WK_STRUCT_TYPE_CUTTING_FORCE, \
+    /* next */ NULL, \
+    /* force_n */ 0.0, \
+    /* horizontal_n */ 0.0, \
+    /* vertical_n */ 0.0, \
+    /* failure_deg */ 0.0 \
+}
+
+/** Ground of a cell. Element of an array, without struct_size; calls take its sizeof instead. */
+typedef struct wk_soil_point {
+    /** Height of the surface above the terrain's origin, m: the host's height with the change. */
+    double surface_m;
+    /** Difference to the undug height, m; negative in a pit. */
+    double change_m;
+    /** Depth of loose soil, m. */
+    double loose_m;
+    /** Density of the loose soil, kg/m^3; 0 without any. */
+    double loose_kg_m3;
+    /** Revision of the terrain at the last change by soil near this place; 0 where nothing was dug. */
+    uint64_t revision;
+    /** Kind on the surface. */
+    wk_soil_kind_id kind;
+    /** 1 if the cell has ground; all other fields are 0 otherwise. */
+    uint32_t has_ground;
+} wk_soil_point;
+
+/**
+ * Rectangle of a tile in which soil has changed heights. Element of an array, without struct_size; calls take its
+ * sizeof instead.
+ */
+typedef struct wk_soil_change {
+    /** Revision of the terrain at the last change. */
+    uint64_t revision;
+    /** Key of the tile. */
+    int32_t tile[2];
+    /** South-western cell of the rectangle in the tile, cells east and north. */
+    uint32_t first_cell[2];
+    /** Size of the rectangle, cells east and north. */
+    uint32_t cells[2];
+} wk_soil_change;
+
+/**
+ * Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every call.
+ */
+typedef struct wk_soil_balance {
+    /** sizeof(wk_soil_balance) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_BALANCE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Bank that was loosened. Each number is limited to the range of its type, 9.2 million tonnes. */
+    int64_t dug_ug;
+    /** Soil that the host brought. */
+    int64_t brought_ug;
+    /** Loose soil on the ground. */
+    int64_t lying_ug;
+    /** Soil in buckets and beds. */
+    int64_t held_ug;
+    /** Soil that left with tools that ended. */
+    int64_t taken_ug;
+} wk_soil_balance;
+
+/** Every field of `wk_soil_balance` at its default. */
+#define WK_SOIL_BALANCE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_balance), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_BALANCE, \
+    /* next */ NULL, \
+    /* dug_ug */ 0, \
+    /* brought_ug */ 0, \
+    /* lying_ug */ 0, \
+    /* held_ug */ 0, \
+    /* taken_ug */ 0 \
+}
+
+/**
+ * Sets the soil of the terrain's tiles, at first undug; NULL takes the soil, and everything dug, away. Equal settings
+ * change nothing. Another lattice (wk_context_set_terrain) ends the soil. Part of the saved state. Unchanged after an
+ * error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
+ * WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
+ */
+WK_API wk_status wk_context_set_soil(wk_context *context, const wk_soil *soil);
+
+/**
+ * Adds a tool at its first pose, at most 64 at a time. `out_tool` gets its number, which no other tool of the state
+ * ever has. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
+ * remain, and for a pose before the last update.
+ */
+WK_API
+wk_status wk_context_add_soil_tool(wk_context *context,
+                                   const wk_soil_tool *shape,
+                                   const wk_soil_pose *pose,
+                                   uint32_t *out_tool);
+
+/**
+ * Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
+ * with each point at most 20 m from where it was. The tool moves evenly between its poses, and stands where the last
+ * one ends. Its edge must stay over tiles. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
+ * that has ended, without soil, and while steps of an update remain.
+ */
+WK_API
+wk_status wk_context_move_soil_tool(wk_context *context,
+                                    uint32_t tool,
+                                    const wk_soil_pose *pose);
+
+/**
+ * Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil, and
+ * while steps of an update remain.
+ */
+WK_API
+wk_status wk_context_end_soil_tool(wk_context *context,
+                                   uint32_t tool);
+
+/**
+ * Gets what a tool holds, and what it met in the last step, as of wk_context_get_state_time.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_tool(const wk_context *context,
+                                   uint32_t tool,
+                                   wk_soil_tool_report *out_report);
+
+/**
+ * Gets the force on the edge of a tool that cuts as deep as it did in the last step, in the soil that it met there:
+ * P = w (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985). Closed form, for the physics of your
+ * machine; 0 where it does not cut.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_resistance(const wk_context *context,
+                                         uint32_t tool,
+                                         const wk_soil_blade *blade,
+                                         wk_cutting_force *out_force);
+
+/**
+ * Drops loose soil that the host brings onto a place of the host's world, at once: `mass_kg`, in [0, 1e6], of a kind.
+ * Its height does not matter. `out_lands`, which may be NULL, gets 1 if there is ground to take it, else 0.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
+ * update remain.
+ */
+WK_API
+wk_status wk_context_bring_soil(wk_context *context,
+                                const double (*position_m)[3],
+                                wk_soil_kind_id kind,
+                                double mass_kg,
+                                uint32_t *out_lands);
+
+/**
+ * Gets the ground of the nearest cell at places of the host's world, at most wk_caps.max_batch of them.
+ * `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
+ * sizeof(wk_soil_point) of your header for points.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_points(const wk_context *context,
+                                     const double (*positions_m)[3],
+                                     uint32_t count,
+                                     uint32_t position_size,
+                                     wk_soil_point *points,
+                                     uint32_t point_size);
+
+/**
+ * Gets the rectangles in which soil has changed heights after a revision of the terrain
+ * (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case. If
+ * `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size` is
+ * sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
+ * heights to wk_context_update_terrain: the tiles are the undug ground.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ */
+WK_API
+wk_status wk_context_get_soil_changes(const wk_context *context,
+                                      uint64_t since_revision,
+                                      wk_soil_change *changes,
+                                      uint32_t capacity,
+                                      uint32_t change_size,
+                                      uint32_t *out_count);
+
+/**
+ * Gets the ground of a rectangle of a tile's cells, by rows from the south-west: `cells[0]` cells east and `cells[1]`
+ * north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
+ * sizeof(wk_soil_point) of your header.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too small;
+ * WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_cells(const wk_context *context,
+                                    const int32_t (*tile)[2],
+                                    const uint32_t (*first_cell)[2],
+                                    const uint32_t (*cells)[2],
+                                    wk_soil_point *points,
+                                    uint32_t capacity,
+                                    uint32_t point_size);
+
+/**
+ * Gets the balance of the soil's mass.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API wk_status wk_context_get_soil_balance(const wk_context *context, wk_soil_balance *out_balance);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_KIND_INIT`. `struct_size` is `sizeof(wk_soil_kind)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_kind_init(wk_soil_kind *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_INIT`. `struct_size` is `sizeof(wk_soil)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_init(wk_soil *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_TOOL_INIT`. `struct_size` is `sizeof(wk_soil_tool)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_tool_init(wk_soil_tool *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_POSE_INIT`. `struct_size` is `sizeof(wk_soil_pose)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_pose_init(wk_soil_pose *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_TOOL_REPORT_INIT`. `struct_size` is `sizeof(wk_soil_tool_report)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_soil_tool_report_init(wk_soil_tool_report *out,
+                                   uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_BLADE_INIT`. `struct_size` is `sizeof(wk_soil_blade)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_blade_init(wk_soil_blade *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CUTTING_FORCE_INIT`. `struct_size` is `sizeof(wk_cutting_force)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_cutting_force_init(wk_cutting_force *out,
+                                uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_BALANCE_INIT`. `struct_size` is `sizeof(wk_soil_balance)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_soil_balance_init(wk_soil_balance *out,
+                               uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -7,9 +7,11 @@
 //! has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
 //! ground. A context has either tiles or one wk_ground_grid.
 //!
-//! Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
-//! same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
-//! any time; while an update has steps left (WK_PENDING), a change takes effect after the last of them.
+//! The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
+//! queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
+//! heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and the
+//! functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a change
+//! takes effect after the last of them.
 
 use std::{ffi::c_void, ptr::null};
 
