@@ -7958,8 +7958,8 @@ WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
  * [soil] Soil
  *
  * Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
- * undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the sum.
- * Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
+ * undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the
+ * sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
  * heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
  * saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
  * pose before the update that reaches its time.
@@ -7997,7 +7997,8 @@ typedef struct wk_soil_kind {
     /** Friction angle of the bank, degrees. Range [0, 60], default 30. */
     double friction_deg;
     /**
-     * 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries them.
+     * 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries
+     * them.
      */
     uint32_t sinks;
     /** Must be 0. */
@@ -8071,8 +8072,8 @@ typedef struct wk_soil {
     /** Kind of each layer, a wk_soil_kind_id. Copied. Default NULL. */
     const wk_soil_kind_id *horizon_kinds;
     /**
-     * Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at 0
-     * (dry sand) and at 1 (below the water table) has no cohesion.
+     * Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at
+     * 0 (dry sand) and at 1 (below the water table) has no cohesion.
      */
     double saturation;
 } wk_soil;
@@ -8121,8 +8122,8 @@ typedef struct wk_soil_tool {
     /** Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools. */
     double struck_m3;
     /**
-     * Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for loaders
-     * (SAE J742). Range [0, 1]. Used by buckets and beds.
+     * Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for
+     * loaders (SAE J742). Range [0, 1]. Used by buckets and beds.
      */
     double heap_rise;
     /** Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools. */
@@ -8338,7 +8339,8 @@ typedef struct wk_soil_change {
 } wk_soil_change;
 
 /**
- * Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every call.
+ * Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every
+ * call.
  */
 typedef struct wk_soil_balance {
     /** sizeof(wk_soil_balance) of your header. */
@@ -8410,12 +8412,10 @@ wk_status wk_context_move_soil_tool(wk_context *context,
 /**
  * Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil, and
- * while steps of an update remain.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
+ * and while steps of an update remain.
  */
-WK_API
-wk_status wk_context_end_soil_tool(wk_context *context,
-                                   uint32_t tool);
+WK_API wk_status wk_context_end_soil_tool(wk_context *context, uint32_t tool);
 
 /**
  * Gets what a tool holds, and what it met in the last step, as of wk_context_get_state_time.
@@ -8471,9 +8471,9 @@ wk_status wk_context_get_soil_points(const wk_context *context,
 
 /**
  * Gets the rectangles in which soil has changed heights after a revision of the terrain
- * (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case. If
- * `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size` is
- * sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
+ * (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case.
+ * If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size`
+ * is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
  * heights to wk_context_update_terrain: the tiles are the undug ground.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
@@ -8491,8 +8491,8 @@ wk_status wk_context_get_soil_changes(const wk_context *context,
  * north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
  * sizeof(wk_soil_point) of your header.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too small;
- * WK_ERROR_WRONG_ORDER without soil.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too
+ * small; WK_ERROR_WRONG_ORDER without soil.
  */
 WK_API
 wk_status wk_context_get_soil_cells(const wk_context *context,

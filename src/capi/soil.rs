@@ -1,8 +1,8 @@
 //! Soil
 //!
 //! Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
-//! undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the sum.
-//! Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
+//! undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the
+//! sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
 //! heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
 //! saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
 //! pose before the update that reaches its time.
@@ -202,8 +202,8 @@ pub unsafe extern "C" fn wk_context_move_soil_tool(
 
 /// Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil, and
-/// while steps of an update remain.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
+/// and while steps of an update remain.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_end_soil_tool(context: *mut wk_context, tool: u32) -> wk_status {
     guard("wk_context_end_soil_tool", |call| {
@@ -328,9 +328,9 @@ pub unsafe extern "C" fn wk_context_get_soil_points(
 }
 
 /// Gets the rectangles in which soil has changed heights after a revision of the terrain
-/// (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case. If
-/// `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size` is
-/// sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
+/// (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case.
+/// If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size`
+/// is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
 /// heights to wk_context_update_terrain: the tiles are the undug ground.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
@@ -372,8 +372,8 @@ pub unsafe extern "C" fn wk_context_get_soil_changes(
 /// north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
 /// sizeof(wk_soil_point) of your header.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too small;
-/// WK_ERROR_WRONG_ORDER without soil.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too
+/// small; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_soil_cells(
     context: *const wk_context,

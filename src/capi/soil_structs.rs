@@ -60,7 +60,8 @@ pub struct wk_soil_kind {
     pub cohesion_kpa: f64,
     /// Friction angle of the bank, degrees. Range [0, 60], default 30.
     pub friction_deg: f64,
-    /// 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries them.
+    /// 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries
+    /// them.
     pub sinks: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -115,8 +116,8 @@ pub struct wk_soil {
     pub horizon_tops_m: *const f64,
     /// Kind of each layer, a wk_soil_kind_id. Copied. Default NULL.
     pub horizon_kinds: *const wk_soil_kind_id,
-    /// Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at 0
-    /// (dry sand) and at 1 (below the water table) has no cohesion.
+    /// Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at
+    /// 0 (dry sand) and at 1 (below the water table) has no cohesion.
     pub saturation: f64,
 }
 
@@ -152,8 +153,8 @@ pub struct wk_soil_tool {
     pub reserved0: u32,
     /// Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools.
     pub struck_m3: f64,
-    /// Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for loaders
-    /// (SAE J742). Range [0, 1]. Used by buckets and beds.
+    /// Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for
+    /// loaders (SAE J742). Range [0, 1]. Used by buckets and beds.
     pub heap_rise: f64,
     /// Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools.
     pub diameter_m: f64,
@@ -371,7 +372,8 @@ impl wk_cutting_force {
     }
 }
 
-/// Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every call.
+/// Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every
+/// call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_balance {

@@ -37,10 +37,10 @@ fn local_pose(terrain: &Terrain, pose: &SoilToolPose) -> Result<SoilToolPose> {
 }
 
 impl Context {
-    /// Sets the soil of the terrain's tiles: the kinds and layers of the ground that is dug. The tiles are then the undug
-    /// ground. Soil adds what was dug and heaped, and [`Context::terrain_at`], water, snow and wind see the sum. The
-    /// ground is undug at first; `None` takes the soil and everything dug away. Equal settings change nothing. Soil is
-    /// part of the saved state.
+    /// Sets the soil of the terrain's tiles: the kinds and layers of the ground that is dug. The tiles are then the
+    /// undug ground. Soil adds what was dug and heaped, and [`Context::terrain_at`], water, snow and wind see the sum.
+    /// The ground is undug at first; `None` takes the soil and everything dug away. Equal settings change nothing. Soil
+    /// is part of the saved state.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain in tiles, and while steps of an update remain;
@@ -161,8 +161,8 @@ impl Context {
     /// Returns the ground of a rectangle of a tile's cells, by rows from the south-west; `None` for holes.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] without soil; [`Status::InvalidArgument`] naming the parameter, for the key of no tile, or
-    /// for more than 2^20 cells.
+    /// [`Status::WrongOrder`] without soil; [`Status::InvalidArgument`] naming the parameter, for the key of no tile,
+    /// or for more than 2^20 cells.
     pub fn soil_cells(
         &self,
         tile: TileKey,

@@ -28,8 +28,8 @@ impl Context {
     }
 
     /// Adds a tile, or replaces all cells of an existing one. A new tile starts as wet as level ground, with as much
-    /// simulated snow. An existing one keeps its water, and its snow wherever there is still ground. Heights are those of
-    /// the undug ground: soil adds what was dug and heaped there, also on a tile that had been removed.
+    /// simulated snow. An existing one keeps its water, and its snow wherever there is still ground. Heights are those
+    /// of the undug ground: soil adds what was dug and heaped there, also on a tile that had been removed.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] naming the field, or for
@@ -56,8 +56,8 @@ impl Context {
         Ok(())
     }
 
-    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off. Soil stays in the books,
-    /// and comes back with the tile.
+    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off. Soil stays in the
+    /// books, and comes back with the tile.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that does not

@@ -209,8 +209,8 @@ impl HeldSoil {
         Ok((self.site.as_deref_mut().ok_or_else(without_soil)?, tiles))
     }
 
-    /// Returns the rectangles in which heights changed after a revision of the terrain, by rows from the south, on tiles
-    /// of this side.
+    /// Returns the rectangles in which heights changed after a revision of the terrain, by rows from the south, on
+    /// tiles of this side.
     pub fn changes_since(&self, revision: u64, tile_cells: u32) -> impl Iterator<Item = SoilChange> + '_ {
         let side = tile_cells as i32;
         let later = self.listed.iter().filter(move |(_, listed)| **listed > revision);
@@ -235,7 +235,8 @@ impl HeldSoil {
     /// Takes the soil out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for values that cannot be soil; [`Status::InvalidArgument`] if the tiles are missing or others.
+    /// [`Status::Parse`] for values that cannot be soil; [`Status::InvalidArgument`] if the tiles are missing or
+    /// others.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedSoil> {
         let saved: Option<SavedSite> =
             state.remove(KEY).map(|v| v.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))).transpose()?;
