@@ -27,7 +27,7 @@ mod wind;
 pub(crate) use binary::{binary_text, text_binary};
 pub(crate) use color::color_of;
 pub(crate) use couplings::Couplings;
-pub(crate) use dug::{DUG_SIDE, DUG_WATER_S, DugGround, DugWater};
+pub(crate) use dug::{DUG_SIDE, DUG_WATER_S, DugGround};
 pub(crate) use held::{HeldEffect, HeldEffects, UpdateBudget};
 pub(crate) use kept::KeptScene;
 pub(crate) use saved::{LoadedWorld, SavedWorld, parse_error};

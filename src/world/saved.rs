@@ -138,9 +138,10 @@ impl World {
             time_s: _,
             ephemeris: _,
             couplings: _,
-            // The effects of the night sky and the snow save these.
+            // The effects of the night sky, the snow and the soil save these.
             night: _,
             snow: _,
+            dug: _,
             surroundings_revision: _,
             regions_revision: _,
         } = self;
