@@ -36,13 +36,14 @@ use crate::{
     planet::Planet,
     rain::{self, RainSettings, RainView, Streaks},
     scene::WorldFrame,
-    sea::HeldSea,
+    sea::{HeldSea, SeaView},
     sky::{self, FollowedSky, SkySettings, SkyView, SkyVolume},
     snow::{self, FlakeContrast, SnowSettings, SnowView},
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
     soil::{HeldSoil, LoadedSoil},
     stage::{
-        Composition, DrawContext, DrawnEffect, FrameContext, MergedFrame, NO_OUTPUTS, Outputs, Recording, ordered,
+        Composition, Constant, DrawContext, DrawnEffect, FrameContext, MergedFrame, NO_OUTPUTS, Outputs, Recording,
+        ordered,
     },
     stars::{self, HeldStars, StarsView},
     world::{Couplings, HeldEffect, World},
@@ -286,6 +287,7 @@ pub(crate) struct Effects {
     pub lightning: LightningView,
     pub bow: BowView,
     pub land: LandView,
+    pub sea: SeaView,
     #[cfg(test)]
     pub plane: plane::PlaneView,
     /// Indices into [`Effects::each`]: the order in which effects gather, and the order in which they compose and draw.
@@ -315,6 +317,7 @@ impl Effects {
             lightning: LightningView::default(),
             bow: BowView::default(),
             land: LandView::new(blocks),
+            sea: SeaView::default(),
             #[cfg(test)]
             plane: plane::PlaneView::default(),
             gathers: [0; COUNT],
@@ -340,6 +343,7 @@ impl Effects {
             &mut self.lightning,
             &mut self.bow,
             &mut self.land,
+            &mut self.sea,
             #[cfg(test)]
             &mut self.plane,
         ]
@@ -359,6 +363,7 @@ impl Effects {
             &self.lightning,
             &self.bow,
             &self.land,
+            &self.sea,
             #[cfg(test)]
             &self.plane,
         ]
@@ -425,6 +430,11 @@ impl Effects {
     /// Whether the plan decides about a part that its gauge cannot see.
     pub fn weighs_unseen(&self) -> bool {
         self.rain.is_planned() || self.snow.is_planned()
+    }
+
+    /// Returns the look-up tables of sky and air for opaque draws: layout, bind group, and constants.
+    pub fn light_tables(&self) -> (wgpu::BindGroupLayout, wgpu::BindGroup, [Constant; 2]) {
+        self.sky.tables()
     }
 
     /// Returns the work of building the default tables, in units of one pixel of a picture with the view's settings.

@@ -175,6 +175,9 @@ fn spot_at(host: vec3f, albedo_known: bool, ray: ViewRay, range: f32, surface: H
         // The terrain's cells already account for boxes; elsewhere, and for ice, boxes are tested here.
         gets = rained_on(off_surface(at, normal, range), here.share < 0.5 || ground.glaze > 0.0);
     }
+    // Neither puddles nor snow lie on the sea.
+    let over_sea = at.z + 0.5 * ground.curvature * dot(at.xy, at.xy) - ground.sea.x;
+    gets *= select(0.0, 1.0, over_sea > 0.0);
     // Only paved ground has hollows; elsewhere the film is that of mean ground.
     let wanted = lies.look.hollows > 0.0 && (TERRAIN || min(ground.level, ground.film_level) < 100.0);
     let pattern = hollow_depth(place, across, along * (side / cosine), wanted || SNOW);

@@ -98,6 +98,8 @@ struct GroundUniform {
     // Snow on level, open ground. x: level in the hollows up to which it covers the ground. y: wetness. z: albedo. w:
     // depth, m; -1 if the terrain's cells have no snow of their own.
     snow: vec4f,
+    // x: height below which all is the sea's, with its waves, camera-relative, m. Without a sea it lies deep.
+    sea: vec4f,
     // Look of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,
     // Phases of the hollows' waves at the camera, turns.

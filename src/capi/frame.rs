@@ -56,8 +56,8 @@ pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
-/// Access of Welkin to the target's depth. Without opaque objects of Welkin's own, such as the terrain of
-/// wk_context_set_terrain_drawing, both values give the same picture.
+/// Access of Welkin to the target's depth. The sea is drawn only into depth that may be written. Without a sea both
+/// values give the same picture.
 pub type wk_depth_access = u32;
 /// Read it: Welkin leaves every bit as it is, and draws nothing opaque of its own.
 pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;

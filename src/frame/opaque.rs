@@ -7,8 +7,8 @@ use crate::{
     error::{Error, Result},
     gpu::Layer,
     stage::{
-        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, OpaqueDraw, OpaqueTarget, PlannedShares,
-        Recording, Stages, check_written, uniform,
+        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, LightTables, OpaqueDraw, OpaqueTarget,
+        PlannedShares, Recording, Stages, check_written, uniform,
     },
 };
 
@@ -87,7 +87,9 @@ impl View {
             plan,
         };
         let target = OpaqueTarget::of(frame, color.texture, depth.texture);
-        let opaque = OpaqueDraw { target, layout: &layout, clip: OpaqueDraw::clip_of(&context) };
+        let (tables_layout, tables_group, constants) = self.effects.light_tables();
+        let tables = LightTables { layout: &tables_layout, group: &tables_group, constants };
+        let opaque = OpaqueDraw { target, layout: &layout, tables, clip: OpaqueDraw::clip_of(&context) };
         for effect in self.effects.each().into_iter().filter(|effect| effect.has_opaque()) {
             effect.draw_opaque(&context, &opaque, &mut pass)?;
         }

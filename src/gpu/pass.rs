@@ -134,7 +134,7 @@ pub(crate) fn depth_test(
 /// Returns a target whose pipeline llvmpipe compiles once instead of twice. Unless the target blends, llvmpipe compiles
 /// a second version of the shader for blocks of pixels that a triangle covers wholly. A blend that replaces the
 /// target's values draws the same picture.
-fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
+pub(crate) fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
     let features = target.format.guaranteed_format_features(device.device.features()).flags;
     let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);
     match target.blend {

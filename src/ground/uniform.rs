@@ -84,6 +84,7 @@ pub(crate) struct GroundUniform {
     pub normal_y: [f32; 4],
     pub normal_z: [f32; 4],
     pub snow: [f32; 4],
+    pub sea: [f32; 4],
     pub looks: [SurfaceLook; CLASSES],
     pub phases: [[f32; 4]; WAVES / 4],
 }
@@ -117,6 +118,8 @@ pub(crate) struct WetScene<'a> {
     pub curvature: f64,
     /// Optical depth of the fog straight up.
     pub fog_depth: f64,
+    /// Height of the highest crests of the drawn sea above the camera, m, if there is one.
+    pub sea_top_m: Option<f64>,
     /// Steps in normalised device coordinates to the next pixel to the right and below.
     pub pixel: [f64; 2],
     /// Rounding error of the host's depth: absolute, and relative to the value.
@@ -148,6 +151,9 @@ fn look_of(wetness: f64) -> (f64, f64) {
 /// Level that is deeper than any hollow, in units of the root mean square depth: no water stands there. Twin of
 /// `NO_LEVEL` in `shaders/ground/hollows.wgsl`.
 const NO_LEVEL: f32 = 1000.0;
+
+/// Height that no surface lies below, m.
+const NO_SEA_M: f32 = -1e9;
 
 /// Returns the level that the hollows exceed in depth on the share `covered` of the ground, in units of their root mean
 /// square depth.
@@ -261,6 +267,7 @@ impl WetScene<'_> {
                 let level = level_of(snow_cover(self.snow.depth_m));
                 [level, self.snow.wetness as f32, self.snow.albedo as f32, own]
             },
+            sea: [self.sea_top_m.map_or(NO_SEA_M, |top| top as f32), 0.0, 0.0, 0.0],
             looks: self.looks(),
             phases: self.hollows.seen_from(at),
         }
@@ -330,6 +337,7 @@ mod tests {
                 ring_slope2,
                 disc2,
                 wind,
+                sea,
                 fog_depth,
                 falls,
                 phases,

@@ -55,7 +55,7 @@ impl GroundView {
 
 impl DrawnEffect for GroundView {
     fn gathers(&self) -> Exchange {
-        Exchange { needs: &[Output::FogDepth], ..Exchange::NONE }
+        Exchange { needs: &[Output::FogDepth, Output::Sea], ..Exchange::NONE }
     }
 
     fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
@@ -67,7 +67,7 @@ impl DrawnEffect for GroundView {
         self.has_snow = seen.snow.depth_m > 0.0 || seen.has_snowy_terrain;
         self.block = None;
         if let (true, Some(color), Some(_)) = (self.has_water || self.has_snow, frame.color, frame.depth) {
-            let scene = wet_scene(now, (frame, color), &seen, glaze, given.fog_depth)?;
+            let scene = wet_scene(now, (frame, color), &seen, glaze, given)?;
             self.block = Some(scene.uniform(&mut self.drops));
         }
         // Takes the textures of the host's tiles around the camera, or of its grid. They are updated only if the
@@ -129,7 +129,7 @@ fn wet_scene<'a>(
     (frame, color): (&Frame<'_>, &wgpu::Texture),
     held: &'a GroundSeen<'_>,
     glaze: f64,
-    fog_depth: f64,
+    given: &Outputs,
 ) -> Result<WetScene<'a>> {
     let (width, height) = (f64::from(color.width()), f64::from(color.height()));
     let down = if frame.origin_bottom_left { 2.0 } else { -2.0 };
@@ -147,7 +147,8 @@ fn wet_scene<'a>(
             WorldKind::Flat => 0.0,
             WorldKind::Tangent | WorldKind::Ecef => 1.0 / (now.planet_radius_m + now.scene.place.altitude_m),
         },
-        fog_depth,
+        fog_depth: given.fog_depth,
+        sea_top_m: given.sea_top_m,
         pixel: [2.0 / width, down / height],
         depth_rounding: frame.depth.map_or([0.0; 2], rounding),
         most_cd_m2: MOST_UNITS * frame.cd_m2_per_unit,

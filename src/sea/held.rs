@@ -19,7 +19,7 @@ use super::{
 use crate::{
     error::{Error, Result, Status},
     weather::Timeline,
-    world::{HeldEffect, UpdateBudget, World, parse_error},
+    world::{HeldEffect, UpdateBudget, World, next_revision, parse_error},
 };
 
 /// Sea of a context.
@@ -27,6 +27,8 @@ use crate::{
 pub(crate) struct HeldSea {
     sea: Option<PreparedSea>,
     regions: Vec<PlacedRegion>,
+    /// Number that no other settings have had.
+    revision: u64,
     /// States at the ends of changes that the timeline has forgotten or may forget next.
     kept: Vec<DatedGrowth>,
     /// Values that follow from all this and from the timeline; empty until the first query.
@@ -215,6 +217,11 @@ impl HeldSea {
         self.sea.as_ref().map(|sea| &sea.settings)
     }
 
+    /// Returns a number that changes with the settings.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
     /// Sets the sea, or takes it away.
     ///
     /// # Errors
@@ -225,6 +232,7 @@ impl HeldSea {
             self.kept.clear();
         }
         self.sea = settings.map(|settings| PreparedSea::new(settings, seed));
+        self.revision = next_revision();
         *self.workshop.get_mut().unwrap_or_else(PoisonError::into_inner) = None;
         Ok(())
     }
@@ -241,7 +249,8 @@ impl HeldSea {
             return Err(parse_error(format_args!("{KEY}: numbers must be finite")));
         }
         let sea = Some(PreparedSea::new(saved.settings()?, world.seed));
-        Ok(Self { sea, regions, kept: saved.grown.iter().map(dated_of).collect(), workshop: Mutex::default() })
+        let kept = saved.grown.iter().map(dated_of).collect();
+        Ok(Self { sea, regions, revision: next_revision(), kept, workshop: Mutex::default() })
     }
 
     /// Replaces the regions.

@@ -1,8 +1,8 @@
-//! The sea: waves that have the spectrum and the height that were asked for, and queries of their surface.
+//! The sea: waves that have the spectrum and the height that were asked for, queries of their surface, and its picture.
 //!
 //! The surface is a function of (seed, time, settings, the weather's timeline). All views and machines see the same
-//! sea, and any time can be asked, past or future. Nothing draws it yet: this room has the waves, their laws and the
-//! queries, all in f64, and what draws it later will be held against them.
+//! sea, and any time can be asked, past or future. Waves, laws and queries are in f64; the picture is held against
+//! them.
 //!
 //! # Model
 //! * [`spectrum`]: JONSWAP with the depth function of TMA. The height comes from the host, from the weather, or from
@@ -26,14 +26,24 @@
 //! [`dispersion`], [`slopes`], [`water`], [`foam`], [`shore`], [`wake`] and [`far`] have the laws of lengths and
 //! speeds, slopes, light, whitecaps, shores, ships' wakes, ice and the horizon, each with its author.
 //!
+//! # Picture
+//! The sea is an opaque thing in the host's depth. Its mesh is square rings around the camera on a lattice that is
+//! fixed in the world (`mesh.rs`). A vertex sums the single waves and looks the tiles up, as far as the cells there
+//! resolve them. What they do not resolve is in the slopes of the pixels; what a pixel does not resolve is known by its
+//! covariances, so that all of it together is Cox and Munk's at every distance (`shaders/sea/surface.wgsl`). Pixels
+//! mirror the sky with the mean reflectance of such slopes, sun and moon by their distribution, and show the light out
+//! of the water, and foam where the surface is compressed (`shaders/sea/light.wgsl`). Phases are reduced in f64 about
+//! an anchor near the camera.
+//!
 //! # Settings
 //! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
 //! settings there is no sea. Regions are set apart, since hulls move.
 //!
 //! # Cost
 //! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
-//! that was asked before costs some microseconds, about 1/200 of a transform of 256^2. A weather that changes adds some
-//! milliseconds a time for its spectrum. The sums of two times are kept: 7 MB.
+//! that was asked before costs some microseconds. A weather that changes adds some milliseconds a time for its
+//! spectrum. The sums of two times are kept: 7 MB. A view holds 2 MB of textures; nothing is worked out for it where no
+//! sea is seen.
 //!
 //! # Error
 //! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
@@ -43,13 +53,16 @@
 //! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
-//! No drawing, no shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A
-//! lake has the waves of the sea around it, as high as its region says. There is no `view.rs`, `passes.rs` or
-//! `candidates.rs`, because nothing is drawn; no `reference.rs`, because all of it is the reference.
+//! No shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A lake has the
+//! waves of the sea around it, as high as its region says; pictures show no regions. There is no `candidates.rs`, because there is one way to draw it; no `reference.rs`,
+//! because all that queries use is the f64 reference.
 
 mod bins;
 mod clarity;
 pub mod dispersion;
+mod drawn;
+#[cfg(test)]
+mod drawn_probe;
 pub mod far;
 mod fft;
 pub mod foam;
@@ -59,9 +72,11 @@ mod history;
 mod ice;
 mod lanes;
 mod lattice;
+mod mesh;
 mod mode;
 mod model;
 mod outline;
+mod passes;
 pub mod probe;
 mod regions;
 mod settings;
@@ -75,6 +90,8 @@ mod surface;
 mod tests;
 mod tiles;
 mod turn;
+mod uniform;
+mod view;
 pub mod wake;
 pub mod water;
 
@@ -89,3 +106,4 @@ pub use settings::{MAX_SWELLS, MOST_STEEPNESS, SeaSettings, SeaSwell, Tide, Wind
 pub use single::{MAX_SINGLE_WAVES, MOST_SINGLE_STEEPNESS, SingleWave, WaveScale};
 pub use surface::SeaPoint;
 pub(crate) use surface::SeaSurface;
+pub(crate) use view::SeaView;

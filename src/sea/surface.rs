@@ -53,12 +53,16 @@ pub struct SeaPoint {
 
 /// A tile's fields at the surface's time.
 #[derive(Clone, Debug)]
-struct TileFields {
-    fields: Vec<[f64; VALUES]>,
-    length_m: f64,
-    turn: DVec2,
-    variance_m2: f64,
-    lowering_m: f64,
+pub(super) struct TileFields {
+    /// B-spline coefficients.
+    pub fields: Vec<[f64; VALUES]>,
+    pub length_m: f64,
+    /// Cosine and sine of the tile's turn.
+    pub turn: DVec2,
+    /// Variance of heights, m^2; the fields of a tile without any are those of an earlier time.
+    pub variance_m2: f64,
+    /// Lowering of the mean level, m.
+    pub lowering_m: f64,
     image_m2: f64,
     shortest_m: f64,
     longest_m: f64,
@@ -277,13 +281,55 @@ impl SeaSurface {
 }
 
 /// Turns a vector (east, north) into a tile's axes.
-fn to_tile(turn: DVec2, v: DVec2) -> DVec2 {
+pub(super) fn to_tile(turn: DVec2, v: DVec2) -> DVec2 {
     DVec2::new(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x)
 }
 
 /// Turns a vector in a tile's axes into (east, north).
-fn from_tile(turn: DVec2, v: DVec2) -> DVec2 {
+pub(super) fn from_tile(turn: DVec2, v: DVec2) -> DVec2 {
     DVec2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
+}
+
+/// A single wave at the surface's time, for what draws it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfaceWave {
+    /// Wave vector, turns per metre.
+    pub turns_per_m: DVec2,
+    /// Phase at the map's origin, turns.
+    pub phase: f64,
+    /// Amplitude of the height and of the displacement, m.
+    pub height_m: f64,
+    pub shift_m: DVec2,
+    /// Lowering of the mean level, m.
+    pub lowering_m: f64,
+}
+
+impl SeaSurface {
+    /// Returns the single waves, from long to short.
+    pub(super) fn waves(&self) -> impl Iterator<Item = SurfaceWave> + '_ {
+        let lanes = &self.lanes;
+        (0..lanes.length_m.len()).map(|i| {
+            let (group, l) = (&lanes.groups[i / LANES], i % LANES);
+            let before = if i > 0 { lanes.lowering_m[i - 1] } else { 0.0 };
+            SurfaceWave {
+                turns_per_m: DVec2::new(group.turns_x[l], group.turns_y[l]),
+                phase: group.phase[l],
+                height_m: group.height[l],
+                shift_m: DVec2::new(group.shift_x[l], group.shift_y[l]),
+                lowering_m: lanes.lowering_m[i] - before,
+            }
+        })
+    }
+
+    /// Returns the tiles.
+    pub(super) fn tiles(&self) -> &[TileFields] {
+        &self.tiles
+    }
+
+    /// Returns the values that hold everywhere.
+    pub(super) fn still(&self) -> &StillSea {
+        &self.still
+    }
 }
 
 /// Returns the determinant of 1 + `slopes`, at least 0.1: where waves fold, Newton's steps stay short.

@@ -79,32 +79,87 @@ pub fn diffuse_reflectance(index: f64) -> f64 {
 /// that it shows to the eye, without shadowing. Towards the horizon it is far below that of flat water, because facets
 /// that face the eye are seen most.
 pub fn mean_reflectance(cos_view: f64, mean_square: f64, index: f64) -> f64 {
+    reflectance_by_steps((cos_view, 0.5 * mean_square), index, 48)
+}
+
+/// Returns the mean reflectance for the variance of slopes along one axis, by so many pairs of steps over 6 deviations
+/// both ways: along the view by Simpson's rule, up to where facets turn away from the eye; across by trapezoids, which
+/// converge like exponentials for such integrands.
+fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32) -> f64 {
     let cos = cos_view.clamp(0.0, 1.0);
     let sin = (1.0 - cos * cos).sqrt();
-    let deviation = (0.5 * mean_square).sqrt();
+    let deviation = variance.sqrt();
     if deviation < 1e-6 {
         return fresnel_reflectance(cos, index);
     }
-    // Trapezoids over 6 deviations converge like exponentials for such integrands; the kink where a facet turns away
-    // from the eye costs some 1e-4.
-    const STEPS: i32 = 48;
     let (mut reflected, mut shown) = (0.0, 0.0);
-    for i in -STEPS..=STEPS {
-        let along = 6.0 * f64::from(i) / f64::from(STEPS);
-        let facing = cos - along * deviation * sin;
-        if facing <= 0.0 {
-            continue;
-        }
-        for j in 0..=STEPS {
-            let across = 6.0 * f64::from(j) / f64::from(STEPS);
+    let last = if cos < 6.0 * deviation * sin { cos / (deviation * sin) } else { 6.0 };
+    for i in 0..=2 * steps {
+        let along = -6.0 + (last + 6.0) * f64::from(i) / f64::from(2 * steps);
+        let facing = (cos - along * deviation * sin).max(0.0);
+        let simpson = if i == 0 || i == 2 * steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+        for j in 0..=steps {
+            let across = 6.0 * f64::from(j) / f64::from(steps);
             let half = if j == 0 { 0.5 } else { 1.0 };
-            let weight = half * facing * libm::exp(-0.5 * (along * along + across * across));
+            let weight = simpson * half * facing * libm::exp(-0.5 * (along * along + across * across));
             let square = deviation * deviation * (along * along + across * across);
             reflected += weight * fresnel_reflectance(facing / (1.0 + square).sqrt(), index);
             shown += weight;
         }
     }
     reflected / shown
+}
+
+/// Sides of the table of [`reflectance_table`].
+pub(super) const TABLE_SIDES: [usize; 2] = [64, 32];
+/// Largest root mean square slope of the table. Twin of `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl`.
+pub(super) const TABLE_MOST_SLOPE: f64 = 0.4;
+
+/// Returns the mean reflectance row by row: rows by root mean square slope along one axis, from 0 to
+/// [`TABLE_MOST_SLOPE`]; columns by the root of the cosine of the view's zenith angle, from 0 to 1.
+pub(super) fn reflectance_table(index: f64) -> Vec<f64> {
+    let [columns, rows] = TABLE_SIDES;
+    let entry = |i: usize| {
+        let root = (i % columns) as f64 / (columns - 1) as f64;
+        let slope = TABLE_MOST_SLOPE * (i / columns) as f64 / (rows - 1) as f64;
+        reflectance_by_steps((root * root, slope * slope), index, 14)
+    };
+    (0..columns * rows).map(entry).collect()
+}
+
+/// Diffuse attenuation of pure sea water, 1/m, at 450, 550 and 650 nm: below that of Jerlov's clearest type.
+const PURE_ATTENUATION_PER_M: [f64; 3] = [0.0168, 0.0607, 0.342];
+/// Wavelengths of attenuations, nm.
+const ATTENUATED_NM: [f64; 3] = [450.0, 550.0, 650.0];
+
+/// Returns how bright a body of deep water is, seen from straight above, over the light that enters it, at 450, 550 and
+/// 650 nm, for its diffuse attenuation, 1/m. Below the surface the reflectance is 0.33 b / a (Morel and Prieur 1977)
+/// with b what water and particles scatter back and a the absorption. Particles follow from the attenuation of blue
+/// light over that of pure water by way of chlorophyll: K - Kw = 0.11 C^0.67, and they scatter 0.416 C^0.766 (0.002 +
+/// 0.01 (0.5 - 0.25 log C)) back (Morel and Maritorena 2001).
+pub(super) fn body_reflectance(attenuation_per_m: [f64; 3], index: f64) -> [f64; 3] {
+    let green_blue = (attenuation_per_m[0] - PURE_ATTENUATION_PER_M[0]).max(1e-4) / 0.11;
+    let chlorophyll = libm::pow(green_blue, 1.0 / 0.67).clamp(0.01, 10.0);
+    let share = (0.002 + 0.01 * (0.5 - 0.25 * libm::log10(chlorophyll))).max(0.002);
+    let particles = 0.416 * libm::pow(chlorophyll, 0.766) * share;
+    let inside = diffuse_inside(index);
+    std::array::from_fn(|i| {
+        let back = 0.5 * pure_scattering_per_m(ATTENUATED_NM[i]) + particles * 550.0 / ATTENUATED_NM[i];
+        // Downward light goes aslant; its attenuation is (a + b) over a mean cosine of some 0.9.
+        let absorbed = (0.9 * attenuation_per_m[i] - back).max(0.1 * attenuation_per_m[i]);
+        let below = (0.33 * back / absorbed).min(0.3);
+        // Light that leaves spreads into a wider cone, by the square of the index; some is thrown back inside.
+        below * (1.0 - fresnel_reflectance(1.0, index)) / (index * index * (1.0 - inside * below))
+    })
+}
+
+/// Returns the share of diffuse light that the surface throws back into the water: what enters from outside must leave
+/// again, 1 - r = (1 - R) / n^2.
+fn diffuse_inside(index: f64) -> f64 {
+    // Mean reflectance from outside, by steps of equal light.
+    let at = |i: i32| fresnel_reflectance(((f64::from(i) + 0.5) / 1000.0).sqrt(), index);
+    let outside = (0..1000).map(at).sum::<f64>() / 1000.0;
+    1.0 - (1.0 - outside) / (index * index)
 }
 
 /// Returns the scattering coefficient of pure sea water, 1/m, at a wavelength, nm: 16.06 times its volume scattering at
@@ -178,6 +233,44 @@ mod tests {
                 assert!((found - wanted).abs() < 1e-3, "{wind} {deg}: {found} {wanted}");
             }
         }
+    }
+
+    #[test]
+    fn the_table_has_the_mean_reflectance() {
+        let table = reflectance_table(1.34);
+        let [columns, rows] = TABLE_SIDES;
+        // As the shader looks it up: linear between entries.
+        let found = |cos: f64, slope: f64| {
+            let x = cos.sqrt() * (columns - 1) as f64;
+            let y = slope / TABLE_MOST_SLOPE * (rows - 1) as f64;
+            let (i, j) = ((x as usize).min(columns - 2), (y as usize).min(rows - 2));
+            let (s, t) = (x - i as f64, y - j as f64);
+            let row = |j: usize| table[j * columns + i] * (1.0 - s) + table[j * columns + i + 1] * s;
+            row(j) * (1.0 - t) + row(j + 1) * t
+        };
+        let mut worst = 0.0f64;
+        for wind in [0.5, 2.0, 5.0, 10.0, 15.0, 20.0] {
+            let variance = 0.5 * super::super::slopes::mean_square_slope(wind);
+            for deg in [0.0f64, 20.0, 40.0, 60.0, 70.0, 75.0, 80.0, 83.0, 85.0, 87.0, 89.0, 89.8] {
+                let cos = deg.to_radians().cos();
+                let off = found(cos, variance.sqrt()) - mean_reflectance(cos, 2.0 * variance, 1.34);
+                println!("{wind} m/s, {deg} deg: {off:+.4}");
+                worst = worst.max(off.abs());
+            }
+        }
+        println!("worst {worst:.4}");
+        assert!(worst < 4e-3, "{worst}");
+    }
+
+    #[test]
+    fn clear_water_is_blue_and_turbid_water_green() {
+        assert!((diffuse_inside(1.3398) - diffuse_reflectance(1.0 / 1.3398)).abs() < 5e-4);
+        let of = |water: WaterType| body_reflectance(water.diffuse_attenuation_per_m(), 1.34);
+        let [blue, green, red] = of(WaterType::IB);
+        // Remote sensing finds 0.02 to 0.04 just below the surface in blue water of this type, half of it above.
+        assert!(blue > 2.0 * green && green > 2.0 * red && (0.008..0.03).contains(&blue), "{blue} {green} {red}");
+        let [blue, green, _] = of(WaterType::Coast3);
+        assert!(green > blue, "{blue} {green}");
     }
 
     #[test]

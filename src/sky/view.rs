@@ -11,8 +11,8 @@ use crate::{
     moment::{Light, Scene},
     plan::Price,
     stage::{
-        Contribution, CostItem, DrawContext, DrawnEffect, FrameBlock, FrameContext, Outputs, PutPart, Recording,
-        Stages, Traits, flag,
+        Constant, Contribution, CostItem, DrawContext, DrawnEffect, FrameBlock, FrameContext, Outputs, PutPart,
+        Recording, Stages, Traits, flag,
     },
 };
 
@@ -37,6 +37,14 @@ impl SkyView {
     /// Work of building default tables, in pixels of a picture with these settings.
     pub fn rebuild_work(&self) -> f64 {
         self.rebuild_work
+    }
+
+    /// Returns the tables for shaders that include `sky/lookup.wgsl`: layout and bind group, and the constants that they
+    /// were made for.
+    pub fn tables(&self) -> (wgpu::BindGroupLayout, wgpu::BindGroup, [Constant; 2]) {
+        let is_marched = self.settings().model == SkyModel::BruteForce;
+        let constants = [("SKY_MARCH", flag(is_marched)), ("SKY_LAMPS", f64::from(self.volume.lamp_count()))];
+        (self.volume.layout().clone(), self.volume.bind_group().clone(), constants)
     }
 
     /// Settings with which the last frame's sky was drawn.

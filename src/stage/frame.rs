@@ -25,8 +25,7 @@ pub enum ColorSpace {
 
 /// Access that Welkin has to a host's depth.
 ///
-/// Both give the same picture unless Welkin draws something opaque, such as the terrain of
-/// [`Context::set_terrain_drawing`](crate::context::Context::set_terrain_drawing).
+/// The sea ([`crate::sea`]) is drawn only into depth that may be written. Without a sea both give the same picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
     /// Read only. Welkin changes no bit of the depth and draws nothing opaque

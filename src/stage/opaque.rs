@@ -2,7 +2,7 @@
 
 use glam::DMat4;
 
-use super::{context::DrawContext, frame::Frame};
+use super::{composition::Constant, context::DrawContext, frame::Frame};
 use crate::{
     gpu::pass,
     scene::{ClipSpace, DepthKind},
@@ -45,12 +45,21 @@ impl OpaqueTarget {
     }
 }
 
+/// Look-up tables of sky and air (group 1), for opaque things that mirror the sky.
+pub(crate) struct LightTables<'a> {
+    pub layout: &'a wgpu::BindGroupLayout,
+    pub group: &'a wgpu::BindGroup,
+    /// Values of the `override` constants of `shaders/sky/lookup.wgsl`.
+    pub constants: [Constant; 2],
+}
+
 /// Target, layout and clip space for opaque draws. The pass itself has the host's images as its attachments and the
 /// group of `shaders/common/opaque.wgsl` as group 0.
 pub(crate) struct OpaqueDraw<'a> {
     pub target: OpaqueTarget,
     /// Layout of group 0.
     pub layout: &'a wgpu::BindGroupLayout,
+    pub tables: LightTables<'a>,
     /// Matrix from camera-relative (east, north, up) to wgpu's clip space for these images.
     pub clip: DMat4,
 }

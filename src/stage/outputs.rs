@@ -10,6 +10,8 @@ pub(crate) enum Output {
     Flashes,
     /// Optical depth of fog from the camera straight up.
     FogDepth,
+    /// Height of the drawn sea.
+    Sea,
     /// Layer of stars behind the sky's own light.
     Stars,
     /// All layers of the sky, including clouds.
@@ -25,6 +27,8 @@ pub(crate) enum Output {
 pub(crate) struct Outputs {
     /// [`Output::FogDepth`]; 0 if no effect has given it.
     pub fog_depth: f64,
+    /// [`Output::Sea`]: height of its highest crests above the camera, m, if a sea is drawn.
+    pub sea_top_m: Option<f64>,
     /// [`Output::Stars`], if any star shows.
     pub stars: Option<wgpu::TextureView>,
     /// [`Output::Rain`] or [`Output::Snow`], if anything is drawn into the layer.
@@ -32,7 +36,7 @@ pub(crate) struct Outputs {
 }
 
 /// No outputs, for effects that need none.
-pub(crate) static NO_OUTPUTS: Outputs = Outputs { fog_depth: 0.0, stars: None, before: None };
+pub(crate) static NO_OUTPUTS: Outputs = Outputs { fog_depth: 0.0, sea_top_m: None, stars: None, before: None };
 
 impl Outputs {
     /// Returns only the outputs that an effect `needs`, so that it sees no others.
@@ -40,6 +44,7 @@ impl Outputs {
         let has = |output| needs.contains(&output);
         Self {
             fog_depth: if has(Output::FogDepth) { self.fog_depth } else { 0.0 },
+            sea_top_m: if has(Output::Sea) { self.sea_top_m } else { None },
             stars: if has(Output::Stars) { self.stars.clone() } else { None },
             before: if has(Output::Rain) || has(Output::Snow) { self.before.clone() } else { None },
         }
@@ -49,6 +54,9 @@ impl Outputs {
     pub fn take(&mut self, gathered: &Self, gives: &[Output]) {
         if gives.contains(&Output::FogDepth) {
             self.fog_depth = gathered.fog_depth;
+        }
+        if gives.contains(&Output::Sea) {
+            self.sea_top_m = gathered.sea_top_m;
         }
     }
 

@@ -132,7 +132,7 @@ pub struct Report {
     /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// Number of effects whose opaque parts were not drawn because the host's depth may only be read
-    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)).
+    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)): the sea, if one is seen.
     pub opaque_left_out: u32,
     /// The plan's prediction for the frame.
     pub prediction: Prediction,

@@ -9,4 +9,6 @@ mod longest;
 mod moment;
 mod opaque;
 mod prepared;
+mod sea;
+mod seascapes;
 pub mod textures;

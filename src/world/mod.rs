@@ -35,4 +35,4 @@ pub(crate) use saved_settings::{values, words};
 pub(crate) use scene::{light_above_clouds, night_share, zenith_depth};
 pub use settings::GivenDirection;
 pub(crate) use settings::{NightSettings, Settings};
-pub(crate) use state::{World, WorldDesc};
+pub(crate) use state::{World, WorldDesc, next_revision};

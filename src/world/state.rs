@@ -65,8 +65,8 @@ pub(crate) struct World {
     pub(super) regions_revision: u64,
 }
 
-/// Returns a number that no timeline has had.
-pub(super) fn next_revision() -> u64 {
+/// Returns a number that no timeline and no settings have had.
+pub(crate) fn next_revision() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }

@@ -133,7 +133,7 @@ fn folders_of_shaders_use_what_their_rows_name_and_form_no_circle() {
 }
 
 const EFFECTS: [&str; 11] =
-    ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "land", "glass", "bow"];
+    ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "land", "glass", "bow", "sea"];
 
 #[test]
 fn the_effects_are_those_of_the_list() {

@@ -1,0 +1,111 @@
+// Blocks of the drawn sea. Places are on the map (east, north), m, from an anchor near the camera. src/sea/uniform.rs
+// writes them.
+
+const SEA_TILES: u32 = 3u;
+const SEA_MIPS: u32 = 8u;
+// Texels along a tile's side.
+const SEA_SIDE: f32 = 128.0;
+const MOST_SEA_WAVES: u32 = 512u;
+
+struct SeaTile {
+    // Texture coordinates of the anchor.
+    anchor: vec2f,
+    // Cosine and sine of the tile's turn.
+    turn: vec2f,
+    // Length, m.
+    length: f32,
+    // Lowering of the mean level, m.
+    lowering: f32,
+    // 1 for a tile with waves, 0 for one without.
+    is_there: f32,
+    pad: f32,
+    // Covariances of the slopes at each mip level: east east, east north, north north.
+    slopes: array<vec4f, 8>,
+}
+
+struct SeaUniform {
+    // From camera-relative (east, north, up) to clip space.
+    clip: mat4x4f,
+    // Place of the sea's level below the camera, camera-relative, m.
+    foot: vec3f,
+    // Height of the camera above the sea's level, m.
+    height: f32,
+    // Camera-relative change of a place of the level per metre on the map, to the east and to the north, and per square
+    // metre: east east, east north, north north.
+    east: vec3f,
+    // Number of single waves.
+    waves: u32,
+    north: vec3f,
+    // Angle of a pixel, rad.
+    pixel: f32,
+    bend_xx: vec3f,
+    // Compression of the surface at which it is under foam.
+    foam_from: f32,
+    bend_xy: vec3f,
+    // Variance of the compression of all waves.
+    compression: f32,
+    bend_yy: vec3f,
+    // Optical depth of the fog straight up.
+    fog_depth: f32,
+    // Place of the camera.
+    eye: vec2f,
+    // Largest luminance, cd/m^2.
+    most: f32,
+    // Variance of slopes that stands for the disc of sun or moon.
+    disc2: f32,
+    // Towards the sun or the moon, and its light on a surface that faces it, lux.
+    to_lamp: vec3f,
+    index: f32,
+    lamp_lux: vec3f,
+    pad_a: f32,
+    // Light of the sky on level ground, lux.
+    sky_lux: vec3f,
+    pad_b: f32,
+    // Luminance of the light that leaves the water when seen from above, cd/m^2.
+    body: vec3f,
+    pad_c: f32,
+    // Luminance of a white surface, cd/m^2.
+    white: vec3f,
+    pad_d: f32,
+    // Covariances of all slopes, those of ripples too short to be drawn included: east east, east north, north north;
+    // and the sum of the variances of the slopes that are drawn.
+    slopes: vec4f,
+    tiles: array<SeaTile, 3>,
+}
+
+// A single wave.
+struct SeaWave {
+    // Wave vector, turns per metre.
+    turns: vec2f,
+    // Phase at the anchor, turns.
+    phase: f32,
+    // Amplitudes of height and of displacement, m.
+    height: f32,
+    shift: vec2f,
+    // Length of the wave vector, turns per metre.
+    turns_per_m: f32,
+    // Lowering of the mean level, m.
+    lowering: f32,
+}
+
+@group(2) @binding(0) var<uniform> sea: SeaUniform;
+// From long to short.
+@group(2) @binding(1) var<uniform> sea_waves: array<SeaWave, 512>;
+// B-spline coefficients of height and displacement along a tile's axes, m.
+@group(2) @binding(2) var sea_shapes: texture_2d_array<f32>;
+// Slopes along a tile's axes, and compression.
+@group(2) @binding(3) var sea_slopes: texture_2d_array<f32>;
+// Mean reflectance by the root of the cosine of the view's zenith angle, and by the root mean square slope.
+@group(2) @binding(4) var sea_reflectance: texture_2d<f32>;
+@group(2) @binding(5) var sea_repeating: sampler;
+@group(2) @binding(6) var sea_clamped: sampler;
+
+// Turns a vector (east, north) into a tile's axes.
+fn to_tile(turn: vec2f, v: vec2f) -> vec2f {
+    return vec2f(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x);
+}
+
+// Turns a vector in a tile's axes into (east, north).
+fn from_tile(turn: vec2f, v: vec2f) -> vec2f {
+    return vec2f(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y);
+}

@@ -1,0 +1,265 @@
+//! GPU resources with which the sea is drawn: pipeline, blocks, blocks of the mesh, and textures of the tiles.
+
+use std::sync::Arc;
+
+use half::f16;
+
+use super::{
+    drawn::{DrawnTiles, MIPS, MOST_WAVES, WaveUniform},
+    fft::SIDE,
+    mesh::{self, MOST_BLOCKS, MeshBlock},
+    tiles::TILES,
+    uniform::SeaUniform,
+    water::{TABLE_SIDES, reflectance_table},
+};
+use crate::{
+    error::Result,
+    gpu::{
+        Device,
+        bind::{self, Slot},
+        counts::DeviceWork,
+        flat_texture,
+        pass::compiled_once,
+    },
+    stage::{OpaqueDraw, OpaqueTarget},
+};
+
+/// Change of the refractive index from which on the table of reflectances is computed anew.
+const INDEX_STEP: f64 = 5e-4;
+
+/// Pipeline of a target.
+struct SeaPipeline {
+    target: OpaqueTarget,
+    constants: [(&'static str, f64); 2],
+    pipeline: wgpu::RenderPipeline,
+}
+
+/// Resources of a view.
+pub(super) struct SeaPasses {
+    pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) group: wgpu::BindGroup,
+    block: wgpu::Buffer,
+    waves: wgpu::Buffer,
+    blocks: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    shapes: wgpu::Texture,
+    slopes: wgpu::Texture,
+    reflectance: wgpu::Texture,
+    /// Index that the table of reflectances is for.
+    table_index: Option<f64>,
+    pipeline: Option<SeaPipeline>,
+}
+
+/// What a draw needs besides the resources.
+pub(super) struct SeaDraw<'a> {
+    pub block: &'a SeaUniform,
+    pub waves: &'a [WaveUniform],
+    pub blocks: &'a [MeshBlock],
+    /// Refractive index of the water.
+    pub index: f64,
+}
+
+/// Creates the bind group layout of `shaders/sea/uniform.wgsl`.
+pub(super) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let slots = [
+        (0, Slot::Uniform(size_of::<SeaUniform>())),
+        (1, Slot::Uniform(MOST_WAVES * size_of::<WaveUniform>())),
+        (2, Slot::FilteredArray),
+        (3, Slot::FilteredArray),
+        (4, Slot::Filtered),
+        (5, Slot::Sampler),
+        (6, Slot::Sampler),
+    ];
+    bind::layout(device, "sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
+}
+
+/// Creates the texture of all tiles, with mip levels.
+fn tiles_texture(device: &wgpu::Device, label: &str) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: TILES as u32 },
+        mip_level_count: MIPS as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+fn sampler(device: &wgpu::Device, address: wgpu::AddressMode) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("sea"),
+        address_mode_u: address,
+        address_mode_v: address,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
+impl SeaPasses {
+    pub fn new(device: &Device) -> Self {
+        let made = &device.device;
+        let layout = layout(made);
+        let [shapes, slopes] = ["shapes of the sea", "slopes of the sea"].map(|label| tiles_texture(made, label));
+        let size = TABLE_SIDES.map(|side| side as u32);
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let format = wgpu::TextureFormat::R16Float;
+        let reflectance = flat_texture(made, "reflectance of the sea", (size[0], size[1]), format, usage);
+        let block = bind::block(made, "sea", size_of::<SeaUniform>());
+        let waves = bind::block(made, "waves of the sea", MOST_WAVES * size_of::<WaveUniform>());
+        let indices = mesh::indices();
+        let buffer = |label, bytes: usize, usage| {
+            made.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes as u64,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let index_buffer = buffer("triangles of the sea", 2 * indices.len(), wgpu::BufferUsages::INDEX);
+        device.write_buffer(&index_buffer, 0, bytemuck::cast_slice(&indices));
+        let blocks = buffer("blocks of the sea", MOST_BLOCKS * size_of::<MeshBlock>(), wgpu::BufferUsages::VERTEX);
+        let group = made.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("sea"),
+            layout: &layout,
+            entries: &[
+                bind::buffer(0, &block),
+                bind::buffer(1, &waves),
+                bind::view(2, &bind::as_layers(&shapes)),
+                bind::view(3, &bind::as_layers(&slopes)),
+                bind::view(4, &reflectance.create_view(&Default::default())),
+                bind::sampler(5, &sampler(made, wgpu::AddressMode::Repeat)),
+                bind::sampler(6, &sampler(made, wgpu::AddressMode::ClampToEdge)),
+            ],
+        });
+        let index_count = indices.len() as u32;
+        Self {
+            layout,
+            group,
+            block,
+            waves,
+            blocks,
+            indices: index_buffer,
+            index_count,
+            shapes,
+            slopes,
+            reflectance,
+            table_index: None,
+            pipeline: None,
+        }
+    }
+
+    /// Returns the bytes of GPU memory in use.
+    pub fn bytes(&self) -> u64 {
+        let texels: usize = (0..MIPS).map(|mip| TILES * (SIDE >> mip) * (SIDE >> mip)).sum();
+        let buffers = [&self.block, &self.waves, &self.blocks, &self.indices].map(wgpu::Buffer::size);
+        (2 * 8 * texels + 2 * TABLE_SIDES[0] * TABLE_SIDES[1]) as u64 + buffers.iter().sum::<u64>()
+    }
+
+    /// Uploads the tiles of another time.
+    pub fn upload(&self, device: &Device, tiles: &DrawnTiles) {
+        for (texture, levels) in [(&self.shapes, &tiles.shapes), (&self.slopes, &tiles.slopes)] {
+            for (mip, texels) in levels.iter().enumerate() {
+                let side = (SIDE >> mip) as u32;
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(8 * side),
+                    rows_per_image: Some(side),
+                };
+                let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: TILES as u32 };
+                let to = wgpu::TexelCopyTextureInfo { mip_level: mip as u32, ..texture.as_image_copy() };
+                device.write_texture(to, bytemuck::cast_slice(texels), layout, size);
+            }
+        }
+    }
+
+    fn upload_reflectance(&mut self, device: &Device, index: f64) {
+        if self.table_index.is_some_and(|of| (of - index).abs() < INDEX_STEP) {
+            return;
+        }
+        let texels: Vec<u16> = reflectance_table(index).into_iter().map(|v| f16::from_f64(v).to_bits()).collect();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(2 * TABLE_SIDES[0] as u32),
+            rows_per_image: None,
+        };
+        let bytes = bytemuck::cast_slice(&texels);
+        device.write_texture(self.reflectance.as_image_copy(), bytes, layout, self.reflectance.size());
+        self.table_index = Some(index);
+    }
+
+    /// Draws the sea.
+    ///
+    /// # Errors
+    /// A missing shader file.
+    pub fn draw(
+        &mut self,
+        device: &Arc<Device>,
+        draw: &SeaDraw<'_>,
+        opaque: &OpaqueDraw<'_>,
+        pass: &mut wgpu::RenderPass<'_>,
+    ) -> Result<()> {
+        self.upload_reflectance(device, draw.index);
+        device.write_buffer(&self.block, 0, bytemuck::bytes_of(draw.block));
+        device.write_buffer(&self.waves, 0, bytemuck::cast_slice(draw.waves));
+        device.write_buffer(&self.blocks, 0, bytemuck::cast_slice(draw.blocks));
+        let constants = opaque.tables.constants;
+        if self.pipeline.as_ref().is_none_or(|made| made.target != opaque.target || made.constants != constants) {
+            let pipeline = pipeline(device, &self.layout, opaque)?;
+            self.pipeline = Some(SeaPipeline { target: opaque.target, constants, pipeline });
+        }
+        let Some(made) = &self.pipeline else { return Ok(()) };
+        pass.set_pipeline(&made.pipeline);
+        pass.set_bind_group(1, opaque.tables.group, &[]);
+        pass.set_bind_group(2, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.blocks.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..self.index_count, 0, 0..draw.blocks.len() as u32);
+        Ok(())
+    }
+}
+
+/// Creates the pipeline for a target.
+fn pipeline(device: &Device, layout: &wgpu::BindGroupLayout, opaque: &OpaqueDraw<'_>) -> Result<wgpu::RenderPipeline> {
+    let begun = std::time::Instant::now();
+    let (target, tables) = (opaque.target, &opaque.tables);
+    let module = device.shader("sea/draw.wgsl")?;
+    let pipeline_layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("sea"),
+        bind_group_layouts: &[Some(opaque.layout), Some(tables.layout), Some(layout)],
+        immediate_size: 0,
+    });
+    let block = wgpu::VertexBufferLayout {
+        array_stride: size_of::<MeshBlock>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &[wgpu::VertexAttribute { format: wgpu::VertexFormat::Sint32x4, offset: 0, shader_location: 0 }],
+    };
+    let options = wgpu::PipelineCompilationOptions { constants: &tables.constants, ..Default::default() };
+    let pipeline = device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("sea"),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: options.clone(),
+            buffers: &[Some(block)],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(target.depth_test()),
+        multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(if target.logarithmic { "logarithmic" } else { "plain" }),
+            compilation_options: options,
+            targets: &[Some(compiled_once(device, target.color_target()))],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    device.counts.add_timed([DeviceWork::Pipelines, DeviceWork::PipelineTime], begun);
+    Ok(pipeline)
+}
