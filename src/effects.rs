@@ -151,7 +151,7 @@ impl Held {
     }
 
     /// Returns all effects with simulation state, in the order in which they are advanced.
-    pub fn each(&mut self) -> [&mut dyn HeldEffect; 9] {
+    pub fn each(&mut self) -> [&mut dyn HeldEffect; 10] {
         [
             &mut self.flow,
             &mut self.soil,
@@ -296,7 +296,7 @@ pub(crate) struct Effects {
 }
 
 /// Number of effects of a view.
-const COUNT: usize = if cfg!(test) { 12 } else { 11 };
+const COUNT: usize = if cfg!(test) { 13 } else { 12 };
 
 impl Effects {
     /// Creates the effects of a view.

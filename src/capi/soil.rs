@@ -1,7 +1,7 @@
 //! Soil
 //!
 //! Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
-//! undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_points, water, snow and wind see the
+//! undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_at, water, snow and wind see the
 //! sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
 //! heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
 //! saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each

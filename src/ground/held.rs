@@ -359,7 +359,6 @@ impl HeldGround {
         std::mem::swap(&mut self.terrain_from_s, &mut other.terrain_from_s);
         std::mem::swap(&mut self.tiled, &mut other.tiled);
         std::mem::swap(&mut self.waiting, &mut other.waiting);
-        self.recent = RecentChanges::default();
     }
 }
 

@@ -119,7 +119,6 @@ impl HeldGround {
         let (Some(terrain), Some(dug)) = (&world.set.tiles, &world.dug) else { return };
         for rect in &dug.changes {
             let changed = Changed { revision: terrain.revision, rect: *rect, is_removal: false };
-            self.recent.add(changed);
             self.follow_change(&changed, terrain);
         }
     }

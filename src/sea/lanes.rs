@@ -84,7 +84,36 @@ fn sum(v: Vec4) -> f64 {
     (f64::from(v.x) + f64::from(v.y)) + (f64::from(v.z) + f64::from(v.w))
 }
 
+/// A single wave at the surface's time, for what draws it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfaceWave {
+    /// Wave vector, turns per metre.
+    pub turns_per_m: DVec2,
+    /// Phase at the map's origin, turns.
+    pub phase: f64,
+    /// Amplitude of the height and of the displacement, m.
+    pub height_m: f64,
+    pub shift_m: DVec2,
+    /// Lowering of the mean level, m.
+    pub lowering_m: f64,
+}
+
 impl WaveLanes {
+    /// Returns the waves, from long to short.
+    pub fn each(&self) -> impl Iterator<Item = SurfaceWave> + '_ {
+        (0..self.length_m.len()).map(|i| {
+            let (group, l) = (&self.groups[i / LANES], i % LANES);
+            let before = if i > 0 { self.lowering_m[i - 1] } else { 0.0 };
+            SurfaceWave {
+                turns_per_m: DVec2::new(group.turns_x[l], group.turns_y[l]),
+                phase: group.phase[l],
+                height_m: f64::from(group.height[l]),
+                shift_m: DVec2::new(f64::from(group.shift_x[l]), f64::from(group.shift_y[l])),
+                lowering_m: self.lowering_m[i] - before,
+            }
+        })
+    }
+
     /// Takes over waves, which must be sorted from long to short, at a time.
     pub fn fill(&mut self, waves: &[SeaWave], time_s: f64) {
         self.groups.clear();

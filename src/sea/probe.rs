@@ -65,8 +65,7 @@ impl SeaProbe {
         check_range("y", place_m.y, -1e12, 1e12, "m")?;
         check_range("t", time_s, -1e10, 1e10, "s")?;
         let past = WeatherPast { timeline: &self.timeline, revision: 0, kept: &[] };
-        let open = WaterBody { lake: None, wave_share: 1.0 };
-        Ok(self.workshop.surface(&self.sea, &past, time_s).within(&open, place_m, 0.0))
+        Ok(self.workshop.surface(&self.sea, &past, time_s).within(&WaterBody::OPEN, place_m, 0.0))
     }
 }
 

@@ -109,6 +109,11 @@ pub(crate) struct WaterBody {
     pub wave_share: f64,
 }
 
+impl WaterBody {
+    /// The open sea.
+    pub const OPEN: Self = Self { lake: None, wave_share: 1.0 };
+}
+
 /// A valid region in the form in which places are looked up.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedRegion {
@@ -151,7 +156,7 @@ impl PlacedRegion {
 /// Returns the water at a position and time; `None` where there is none. `is_sea` says whether there is sea outside all
 /// regions. Later regions count before earlier ones, dry ones before all.
 pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, time_s: f64) -> Option<WaterBody> {
-    let mut water = is_sea.then_some(WaterBody { lake: None, wave_share: 1.0 });
+    let mut water = is_sea.then_some(WaterBody::OPEN);
     for placed in regions {
         let region = &placed.region;
         let Some(p) = placed.within(position, time_s).filter(|p| outline::holds(&region.corners_m, *p)) else {
@@ -194,7 +199,7 @@ mod tests {
         regions.iter().map(|r| PlacedRegion::new(r.clone(), &frame).expect("a region")).collect()
     }
 
-    const OPEN: Option<WaterBody> = Some(WaterBody { lake: None, wave_share: 1.0 });
+    const OPEN: Option<WaterBody> = Some(WaterBody::OPEN);
 
     #[test]
     fn hulls_move_and_turn() {

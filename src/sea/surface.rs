@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     fft::SIDE,
-    lanes::{Displacement, IncludedLanes, ParticleMotion, Phases, WaveLanes},
+    lanes::{Displacement, IncludedLanes, ParticleMotion, Phases, SurfaceWave, WaveLanes},
     lattice::SeaWave,
     regions::WaterBody,
     tiles::{TILES, TileWork, VALUES, WaveTiles, sample},
@@ -158,7 +158,7 @@ impl SeaSurface {
     /// Returns the open sea at a place, as [`SeaSurface::within`].
     #[cfg(test)]
     pub fn at(&self, place_m: DVec2, shortest_m: f64) -> SeaPoint {
-        self.within(&WaterBody { lake: None, wave_share: 1.0 }, place_m, shortest_m)
+        self.within(&WaterBody::OPEN, place_m, shortest_m)
     }
 
     /// Returns the water at a place (east and north of the world's origin, m), with waves of at least `shortest_m` and
@@ -290,35 +290,10 @@ pub(super) fn from_tile(turn: DVec2, v: DVec2) -> DVec2 {
     DVec2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
 }
 
-/// A single wave at the surface's time, for what draws it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SurfaceWave {
-    /// Wave vector, turns per metre.
-    pub turns_per_m: DVec2,
-    /// Phase at the map's origin, turns.
-    pub phase: f64,
-    /// Amplitude of the height and of the displacement, m.
-    pub height_m: f64,
-    pub shift_m: DVec2,
-    /// Lowering of the mean level, m.
-    pub lowering_m: f64,
-}
-
 impl SeaSurface {
     /// Returns the single waves, from long to short.
     pub(super) fn waves(&self) -> impl Iterator<Item = SurfaceWave> + '_ {
-        let lanes = &self.lanes;
-        (0..lanes.length_m.len()).map(|i| {
-            let (group, l) = (&lanes.groups[i / LANES], i % LANES);
-            let before = if i > 0 { lanes.lowering_m[i - 1] } else { 0.0 };
-            SurfaceWave {
-                turns_per_m: DVec2::new(group.turns_x[l], group.turns_y[l]),
-                phase: group.phase[l],
-                height_m: group.height[l],
-                shift_m: DVec2::new(group.shift_x[l], group.shift_y[l]),
-                lowering_m: lanes.lowering_m[i] - before,
-            }
-        })
+        self.lanes.each()
     }
 
     /// Returns the tiles.

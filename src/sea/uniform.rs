@@ -10,7 +10,7 @@ use super::{
     model::SeaStatistics,
     slopes::cox_munk,
     tiles::TILES,
-    water::{WaterType, body_reflectance, fresnel_reflectance},
+    water::{body_reflectance, fresnel_reflectance},
 };
 use crate::{
     moment::{Light, Scene},
@@ -174,7 +174,7 @@ impl DrawnSea<'_> {
     fn diffuse(&self, lamp: &Light, lamp_lux: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let index = self.statistics.refractive_index;
         let up = lamp.apparent.z.max(0.0);
-        let body = body_reflectance(WaterType::IB.diffuse_attenuation_per_m(), index);
+        let body = body_reflectance(self.statistics.attenuation_per_m, index);
         let entering = 1.0 - fresnel_reflectance(up, index);
         let sky = self.scene.ground.sky_lux;
         let light = [0, 1, 2].map(|i| {

@@ -9,6 +9,8 @@ use super::{
     mesh::{MOST_BLOCKS, MeshBlock, MeshEye},
     model::SeaStatistics,
     passes::{SeaDraw, SeaPasses},
+    regions::WaterBody,
+    settings::SeaSettings,
     uniform::{DrawnSea, SeaChart, SeaUniform},
 };
 use crate::{
@@ -92,7 +94,7 @@ impl SeaView {
         let (now, world) = (context.now, context.world);
         let surface = held.surface(world, now.time_s)?;
         // From below the surface is not drawn.
-        if surface.at(eye.place_m, 0.0).height_m > now.scene.place.altitude_m {
+        if surface.within(&WaterBody::OPEN, eye.place_m, 0.0).height_m > now.scene.place.altitude_m {
             self.blocks.clear();
             return Ok(());
         }
@@ -132,7 +134,9 @@ impl DrawnEffect for SeaView {
         self.blocks.clear();
         let (now, world) = (context.now, context.world);
         let held = context.held.of::<HeldSea>()?;
-        let Some(settings) = held.settings().filter(|_| context.asked.has(Stages::SURFACE)) else { return Ok(()) };
+        // Water in regions alone is only in the queries.
+        let is_seen = |settings: &&SeaSettings| !settings.only_in_regions && context.asked.has(Stages::SURFACE);
+        let Some(settings) = held.settings().filter(is_seen) else { return Ok(()) };
         let level_m = settings.level_at_m(now.time_s);
         let height_m = now.scene.place.altitude_m - level_m;
         if !(-DEEPEST_TROUGH_M..=MOST_HEIGHT_M).contains(&height_m) {

@@ -3,7 +3,7 @@
 use std::ptr::{null, null_mut};
 
 use super::world::{World, init, message, update};
-use welkin::capi::{context::*, soil::*, status::*, terrain::*};
+use welkin::capi::{context::*, soil::*, status::*, terrain::*, timeline::*};
 
 const SIDE: usize = 32;
 const POINT: u32 = size_of::<wk_soil_point>() as u32;
@@ -86,7 +86,7 @@ fn a_bucket_digs_and_reports_through_c() {
         assert!((lowest + 0.3).abs() < 0.02, "{lowest}");
         let mut point = std::mem::zeroed::<wk_terrain_point>();
         let size = size_of::<wk_terrain_point>() as u32;
-        assert_eq!(wk_context_get_terrain_points(context, &[3.0, 4.0, 9.0], 1, 24, &mut point, size), WK_OK);
+        assert_eq!(wk_context_get_terrain_at(context, &[3.0, 4.0, 9.0], 1, 24, &mut point, size), WK_OK);
         assert!((point.height_m - 1.7).abs() < 0.02, "the dug height: {}", point.height_m);
         let at = [4.0, 6.5, 0.0];
         assert_eq!(wk_context_bring_soil(context, &at, WK_SOIL_SAND, 200.0, &mut lands), WK_OK, "{}", message());
