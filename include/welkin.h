@@ -120,6 +120,8 @@
  *   [rain]            Rain
  *   [snow]            Snow
  *   [area]            Rain areas
+ *   [region]          Weather regions
+ *   [air]             Air at a height
  *
  * Wind, shelter and lamps
  *   [wind_grid]       Wind that varies in space
@@ -141,6 +143,10 @@
  *   [ground_texture]  Water on the host's terrain as a texture
  *   [snowpack]        Lying snow
  *   [terrain]         Terrain in tiles
+ *
+ * The sea
+ *   [sea]             The sea: settings and queries
+ *   [soil]            Soil
  */
 #ifndef WELKIN_H
 #define WELKIN_H
@@ -331,6 +337,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_TERRAIN 52
 /** wk_terrain_cells */
 #define WK_STRUCT_TYPE_TERRAIN_CELLS 53
+/** wk_terrain_drawing */
+#define WK_STRUCT_TYPE_TERRAIN_DRAWING 98
 /** wk_frame_light */
 #define WK_STRUCT_TYPE_FRAME_LIGHT 60
 /** wk_part_wish */
@@ -361,6 +369,36 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_CLOUD_MAP 86
 /** wk_metar_options */
 #define WK_STRUCT_TYPE_METAR_OPTIONS 90
+/** wk_sea */
+#define WK_STRUCT_TYPE_SEA 110
+/** wk_sea_swell */
+#define WK_STRUCT_TYPE_SEA_SWELL 111
+/** wk_sea_wave */
+#define WK_STRUCT_TYPE_SEA_WAVE 112
+/** wk_sea_region */
+#define WK_STRUCT_TYPE_SEA_REGION 113
+/** wk_sea_state */
+#define WK_STRUCT_TYPE_SEA_STATE 114
+/** wk_weather_region */
+#define WK_STRUCT_TYPE_WEATHER_REGION 95
+/** wk_air */
+#define WK_STRUCT_TYPE_AIR 96
+/** wk_soil */
+#define WK_STRUCT_TYPE_SOIL 120
+/** wk_soil_kind */
+#define WK_STRUCT_TYPE_SOIL_KIND 121
+/** wk_soil_tool */
+#define WK_STRUCT_TYPE_SOIL_TOOL 122
+/** wk_soil_pose */
+#define WK_STRUCT_TYPE_SOIL_POSE 123
+/** wk_soil_tool_report */
+#define WK_STRUCT_TYPE_SOIL_TOOL_REPORT 124
+/** wk_soil_blade */
+#define WK_STRUCT_TYPE_SOIL_BLADE 125
+/** wk_cutting_force */
+#define WK_STRUCT_TYPE_CUTTING_FORCE 126
+/** wk_soil_balance */
+#define WK_STRUCT_TYPE_SOIL_BALANCE 127
 
 /**
  * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
@@ -2234,8 +2272,9 @@ typedef uint32_t wk_world_kind;
 /** East-north-up at the origin's place, with the curved planet below. */
 #define WK_WORLD_TANGENT 1
 /**
- * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect; the origin only affects the sunlight that
- * dries a simulated ground (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+ * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin is the zero point of maps (of
+ * local cloud cover, fog patches, waves and lightning), and the place of the sunlight that dries a simulated ground
+ * (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
  */
 #define WK_WORLD_ECEF 2
 
@@ -3005,11 +3044,12 @@ typedef struct wk_cloud_slab {
 } wk_cloud_slab;
 
 /**
- * Gets the conditions at a position and a past or future simulation time. Precipitation is that at the position
- * itself: it includes the rain areas there (wk_context_set_rain_areas), weighted by their rims, and is zero above the
- * cloud that it falls from. rain_mm_h and drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at.
- * precipitation_extinction_per_m, extinction_per_m and visibility_m include that precipitation. All other fields are
- * the weather's: the same everywhere, at the station's height unless they say otherwise.
+ * Gets the conditions at a position and a past or future simulation time, with the weather regions there
+ * (wk_context_set_weather_regions). Precipitation is that at the position itself: it includes the rain areas there
+ * (wk_context_set_rain_areas), weighted by their rims, and is zero above the cloud that it falls from. rain_mm_h and
+ * drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at. precipitation_extinction_per_m, extinction_per_m and
+ * visibility_m include that precipitation. All other fields are those of the station's height unless they say
+ * otherwise.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
  * forgotten every time before the end of the last change of weather that was over at the last update.
@@ -5072,6 +5112,227 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
 
 /*
  * ====================================================================================================
+ * [region] Weather regions
+ *
+ * Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
+ * ground plan, a perimeter outside it over which its weather fades into what is around it, and a wk_weather of which
+ * `has` names the parts that it takes. At each place, every query and the picture of a camera there see the merged
+ * weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity,
+ * never with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the
+ * same on every channel.
+ *
+ * Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
+ * them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
+ * weights. docs/regions.md has the rules, and a table of what differs by place and what does not yet: a camera's
+ * picture shows the weather at the camera, so a region is not seen from outside.
+ * ====================================================================================================
+ */
+
+/** Parts of the weather. */
+typedef uint32_t wk_weather_part_flags;
+
+/** Haze: visibility_m without fog and precipitation, and the aerosol fields. */
+#define WK_WEATHER_PART_HAZE 1
+/** Low layer: fog or mist with its top, matter that the wind lifts. Alone, it lies in the haze around the region. */
+#define WK_WEATHER_PART_FOG 2
+/** Precipitation of all kinds. */
+#define WK_WEATHER_PART_PRECIPITATION 4
+/** Thunder, as queries report it. Flashes follow the weather outside all regions. */
+#define WK_WEATHER_PART_LIGHTNING 8
+/** Temperature. */
+#define WK_WEATHER_PART_TEMPERATURE 16
+/** Humidity. */
+#define WK_WEATHER_PART_HUMIDITY 32
+/** Pressure. */
+#define WK_WEATHER_PART_PRESSURE 64
+/** Wind, its gusts, and vertical_wind_m_s. */
+#define WK_WEATHER_PART_WIND 128
+/** Cloud layers, and the overrides of the cloud light. */
+#define WK_WEATHER_PART_CLOUDS 256
+/** Water, ice and snow on the ground. */
+#define WK_WEATHER_PART_SURFACE 512
+/** Sea. */
+#define WK_WEATHER_PART_SEA 1024
+
+/** Shape of a weather region. */
+typedef uint32_t wk_region_shape;
+
+/** Ellipse of the half extents half_size_m. */
+#define WK_REGION_SHAPE_ELLIPSE 0
+/** Rectangle of the half extents half_size_m with round corners of corner_radius_m. */
+#define WK_REGION_SHAPE_RECTANGLE 1
+/** Polygon of corner_count corners. */
+#define WK_REGION_SHAPE_POLYGON 2
+
+/** Region with a weather of its own. */
+typedef struct wk_weather_region {
+    /** sizeof(wk_weather_region) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_WEATHER_REGION. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Parts of `weather` that the region has. Default 0. */
+    wk_weather_part_flags has;
+    /**
+     * Parts that are averaged with those of earlier regions that merge them too. In all other parts the region covers
+     * what is before it in the list. Default 0.
+     */
+    wk_weather_part_flags merges;
+    /**
+     * Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights
+     * count from the station of the weather outside; station_altitude_m, the runway visual range and the ozone column
+     * have no effect. Read during the call only.
+     */
+    const wk_weather *weather;
+    /**
+     * Centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no effect. Default
+     * 0, 0, 0.
+     */
+    double center_m[3];
+    /**
+     * Half extents of an ellipse or a rectangle to the right of the heading and along it, m. Range [1, 1e6], default
+     * 2000, 2000.
+     */
+    double half_size_m[2];
+    /** Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0. */
+    double corner_radius_m;
+    /**
+     * Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance
+     * from the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch
+     * others, and the polygon must be larger than 1 m^2. Default 0.
+     */
+    double corners_m[32];
+    /** Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0. */
+    uint32_t corner_count;
+    /** Shape. Default WK_REGION_SHAPE_ELLIPSE. */
+    wk_region_shape shape;
+    /** Heading of the shape, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double heading_deg;
+    /**
+     * Width of the band outside the shape over which the region's weather fades, m. Range [0, 1e6]; 0 is a step at the
+     * border. Default 500.
+     */
+    double perimeter_m;
+    /** Velocity to the east and north, m/s. Range [-400, 400] each, default 0, 0. */
+    double velocity_m_s[2];
+    /** Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. */
+    double at_s;
+    /** Share by which the region acts, to fade it in and out. Range [0, 1], default 1. */
+    double strength;
+    /**
+     * Upward velocity of the wind above 100 m, m/s; it decreases linearly to 0 at the station's height. Needs
+     * WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
+     */
+    double vertical_wind_m_s;
+} wk_weather_region;
+
+/** Every field of `wk_weather_region` at its default. */
+#define WK_WEATHER_REGION_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_weather_region), \
+    /* struct_type */ WK_STRUCT_TYPE_WEATHER_REGION, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* merges */ 0, \
+    /* weather */ NULL, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* half_size_m */ { 2000.0, 2000.0 }, \
+    /* corner_radius_m */ 0.0, \
+    /* corners_m */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }, \
+    /* corner_count */ 0, \
+    /* shape */ WK_REGION_SHAPE_ELLIPSE, \
+    /* heading_deg */ 0.0, \
+    /* perimeter_m */ 500.0, \
+    /* velocity_m_s */ { 0.0, 0.0 }, \
+    /* at_s */ 0.0, \
+    /* strength */ 1.0, \
+    /* vertical_wind_m_s */ 0.0 \
+}
+
+/**
+ * Replaces the list of weather regions; count 0 removes all. At most 64. Regions move by themselves; set them again to
+ * change them, or in every frame at their new places. Unchanged after an error. Copied during the call.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
+ * corner radius beyond the smaller half extent.
+ */
+WK_API
+wk_status wk_context_set_weather_regions(wk_context *context,
+                                         const wk_weather_region *regions,
+                                         uint32_t count,
+                                         uint32_t stride);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_WEATHER_REGION_INIT`. `struct_size` is `sizeof(wk_weather_region)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_weather_region_init(wk_weather_region *out,
+                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [air] Air at a height
+ *
+ * Temperature, humidity and pressure at any place and altitude, by the laws of the standard atmosphere from what the
+ * weather has at the station.
+ * ====================================================================================================
+ */
+
+/** Air at a place and altitude. */
+typedef struct wk_air {
+    /** sizeof(wk_air) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_AIR. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Temperature, degrees Celsius: 6.5 K/km less than at the station up to 11 km above sea level, constant above.
+     */
+    double temperature_c;
+    /**
+     * Relative humidity over water, 0 to 1. The density of water vapour falls by a factor e every 2 km (ITU-R P.835).
+     */
+    double relative_humidity;
+    /** Pressure, hPa, in hydrostatic equilibrium (ICAO Doc 7488). */
+    double pressure_hpa;
+    /** Density of the air, taken as dry, kg/m^3. */
+    double density_kg_m3;
+} wk_air;
+
+/** Every field of `wk_air` at its default. */
+#define WK_AIR_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_air), \
+    /* struct_type */ WK_STRUCT_TYPE_AIR, \
+    /* next */ NULL, \
+    /* temperature_c */ 0.0, \
+    /* relative_humidity */ 0.0, \
+    /* pressure_hpa */ 0.0, \
+    /* density_kg_m3 */ 0.0 \
+}
+
+/**
+ * Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
+ * there. The altitude of the position counts. Heights up to 1 km below the station follow the same laws; lower ones
+ * have the air of 1 km below it.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_air(const wk_context *context,
+                             const double (*position_m)[3],
+                             double time_s,
+                             wk_air *out_air);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_AIR_INIT`. `struct_size` is `sizeof(wk_air)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_air_init(wk_air *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
  * [wind_grid] Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
@@ -6929,9 +7190,11 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
  * ground. A context has either tiles or one wk_ground_grid.
  *
- * Heights belong to the host: wk_context_save saves only the water of the tiles, and wk_context_load requires that the
- * same tiles have been set before. wk_context_set_terrain and the functions of tiles may be called between updates at
- * any time; while an update has steps left (WK_PENDING), a change takes effect after the last of them.
+ * The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
+ * queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
+ * heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and the
+ * functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a change
+ * takes effect after the last of them.
  * ====================================================================================================
  */
 
@@ -7046,19 +7309,46 @@ typedef struct wk_terrain_cells {
     /* no_data_m */ 0.0f \
 }
 
+/** Settings with which Welkin draws the tiles of a terrain. */
+typedef struct wk_terrain_drawing {
+    /** sizeof(wk_terrain_drawing) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_TERRAIN_DRAWING. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels. Range [0.25, 16],
+     * default 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is
+     * so rough that more would be needed is drawn with a larger error.
+     */
+    double error_px;
+} wk_terrain_drawing;
+
+/** Every field of `wk_terrain_drawing` at its default. */
+#define WK_TERRAIN_DRAWING_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_terrain_drawing), \
+    /* struct_type */ WK_STRUCT_TYPE_TERRAIN_DRAWING, \
+    /* next */ NULL, \
+    /* error_px */ 1.0 \
+}
+
 /** Terrain at a queried place. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_terrain_point {
     /**
-     * Height of the ground above the terrain's origin, m, interpolated linearly between cells; 0 where there is none.
+     * Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
+     * four cells is split from its south-western to its north-eastern cell. 0 where there is none.
      */
     double height_m;
+    /** Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground. */
+    double normal[3];
     /** Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground. */
     uint64_t revision;
     /** Key of the nearest cell's tile. */
     int32_t tile[2];
     /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none. */
     wk_surface_class surface_class;
-    /** 1 on the ground of a tile, else 0. */
+    /** 1 on the ground of a tile, else 0: on a triangle of which a cell is a hole or lies off all tiles. */
     uint32_t has_ground;
 } wk_terrain_point;
 
@@ -7097,6 +7387,15 @@ wk_status wk_context_update_terrain(wk_context *context,
 WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t tile_east, int32_t tile_north);
 
 /**
+ * Sets whether and how Welkin draws the tiles into frames whose depth it may write, in WK_STAGE_SURFACE. NULL, the
+ * default, leaves them to the host. Settings are not saved. Unchanged after an error. Thread: exclusive. Errors:
+ * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ */
+WK_API
+wk_status wk_context_set_terrain_drawing(wk_context *context,
+                                         const wk_terrain_drawing *terrain_drawing);
+
+/**
  * Gets a number that grows whenever the tiles change; 0 without a terrain.
  * Thread: concurrent.
  */
@@ -7108,12 +7407,12 @@ WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint
  * sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
  */
 WK_API
-wk_status wk_context_get_terrain_points(const wk_context *context,
-                                        const double (*positions_m)[3],
-                                        uint32_t count,
-                                        uint32_t position_size,
-                                        wk_terrain_point *points,
-                                        uint32_t point_size);
+wk_status wk_context_get_terrain_at(const wk_context *context,
+                                    const double (*positions_m)[3],
+                                    uint32_t count,
+                                    uint32_t position_size,
+                                    wk_terrain_point *points,
+                                    uint32_t point_size);
 
 /**
  * Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
@@ -7137,12 +7436,1133 @@ wk_status wk_context_get_terrain_water(const wk_context *context,
 WK_API wk_status wk_terrain_init(wk_terrain *out, uint32_t struct_size);
 
 /**
+ * Writes the default of every field: the same bytes as `WK_TERRAIN_DRAWING_INIT`. `struct_size` is `sizeof(wk_terrain_drawing)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_terrain_drawing_init(wk_terrain_drawing *out,
+                                  uint32_t struct_size);
+
+/**
  * Writes the default of every field: the same bytes as `WK_TERRAIN_CELLS_INIT`. `struct_size` is `sizeof(wk_terrain_cells)`
  * as the caller was compiled, and is stored in the struct.
  */
 WK_API
 wk_status wk_terrain_cells_init(wk_terrain_cells *out,
                                 uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [sea] The sea: settings and queries
+ *
+ * Say what your sea is like, and ask at any time where its surface is, how steep it is and how the water moves; a hull
+ * can float by the answers. Without settings a context has no sea. What you set here replaces the wave height and the
+ * swell of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m); what you leave out follows the
+ * weather: its wind raises waves by fetch and duration. Heights keep what was asked within 1 %, no two places look
+ * alike, and the same time gives the same bits on every machine. Regions say where there is no water, where a harbour
+ * shelters it, and where a lake has a level of its own.
+ *
+ * wk_sea sea = WK_SEA_INIT;
+ * sea.has = WK_SEA_HAS_HEIGHT | WK_SEA_HAS_PEAK_PERIOD;
+ * sea.significant_height_m = 2.1;
+ * sea.peak_period_s = 6.2;
+ * wk_context_set_sea(context, &sea);
+ * wk_context_get_sea_at(context, corners_m, 4, sizeof corners_m[0], time_s, 0.0, points, sizeof points[0]);
+ * ====================================================================================================
+ */
+
+/** Flags of the optional fields of a wk_sea that are set. */
+typedef uint32_t wk_sea_has_flags;
+
+/** fetch_m */
+#define WK_SEA_HAS_FETCH 1
+/** significant_height_m; not together with SEA_STATE or BEAUFORT. */
+#define WK_SEA_HAS_HEIGHT 2
+/** peak_period_s; needs HEIGHT. */
+#define WK_SEA_HAS_PEAK_PERIOD 4
+/** peak_gamma; needs HEIGHT. */
+#define WK_SEA_HAS_PEAK_GAMMA 8
+/** sea_state; not together with HEIGHT or BEAUFORT. */
+#define WK_SEA_HAS_SEA_STATE 16
+/** beaufort; not together with HEIGHT or SEA_STATE. */
+#define WK_SEA_HAS_BEAUFORT 32
+/** wind_sea_from_deg */
+#define WK_SEA_HAS_WIND_SEA_FROM 64
+/** swells: they replace the weather's swell, also with swell_count 0. */
+#define WK_SEA_HAS_SWELLS 128
+/** temperature_c */
+#define WK_SEA_HAS_TEMPERATURE 256
+/** clarity_percent, in place of water_type. */
+#define WK_SEA_HAS_CLARITY 512
+/** ice_cover, ice_floe_m and ice_width_m */
+#define WK_SEA_HAS_ICE 1024
+
+/** Properties of a sea. */
+typedef uint32_t wk_sea_flags;
+
+/** Waves break without foam. */
+#define WK_SEA_WITHOUT_WHITECAPS 1
+/** There is water only inside regions (wk_context_set_sea_regions). */
+#define WK_SEA_ONLY_IN_REGIONS 2
+
+/** Optical type of water (Jerlov 1976). */
+typedef uint32_t wk_water_type;
+
+/** Ocean I, the clearest. */
+#define WK_WATER_TYPE_I 0
+/** Ocean IB. */
+#define WK_WATER_TYPE_IB 1
+/** Ocean II. */
+#define WK_WATER_TYPE_II 2
+/** Ocean III. */
+#define WK_WATER_TYPE_III 3
+/** Coast 1C. */
+#define WK_WATER_TYPE_1C 4
+/** Coast 3C. */
+#define WK_WATER_TYPE_3C 5
+/** Coast 5C. */
+#define WK_WATER_TYPE_5C 6
+/** Coast 7C, the most turbid. */
+#define WK_WATER_TYPE_7C 7
+
+/** A swell: waves from far away. */
+typedef struct wk_sea_swell {
+    /** sizeof(wk_sea_swell) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_SWELL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Significant height, m. Range [0, 20], default 0; at most a fifteenth of the wave length at the peak. */
+    double height_m;
+    /** Peak period, s. Range [1, 30], default 10. */
+    double period_s;
+    /** Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    double from_deg;
+    /** Directional width, degrees. Range [1, 60]; 0, the default, is 15. */
+    double spread_deg;
+} wk_sea_swell;
+
+/** Every field of `wk_sea_swell` at its default. */
+#define WK_SEA_SWELL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_swell), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_SWELL, \
+    /* next */ NULL, \
+    /* height_m */ 0.0, \
+    /* period_s */ 10.0, \
+    /* from_deg */ 0.0, \
+    /* spread_deg */ 0.0 \
+}
+
+/** A regular wave of infinite crests, added to all others. */
+typedef struct wk_sea_wave {
+    /** sizeof(wk_sea_wave) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_WAVE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Height from trough to crest, m. Range [0, 40], default 0. The steepnesses of all such waves together are at most
+     * 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
+     */
+    double height_m;
+    /** Wave length, m. Range [0.1, 2000]; 0, the default, where period_s says it. */
+    double length_m;
+    /** Period, s. Range [0.25, 40]; 0, the default, where length_m says it. One of the two must be set. */
+    double period_s;
+    /** Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    double from_deg;
+    /**
+     * Time of a crest at the world's origin, in degrees of the period after simulation time 0. Range [-360, 360],
+     * default 0.
+     */
+    double phase_deg;
+} wk_sea_wave;
+
+/** Every field of `wk_sea_wave` at its default. */
+#define WK_SEA_WAVE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_wave), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_WAVE, \
+    /* next */ NULL, \
+    /* height_m */ 0.0, \
+    /* length_m */ 0.0, \
+    /* period_s */ 0.0, \
+    /* from_deg */ 0.0, \
+    /* phase_deg */ 0.0 \
+}
+
+/** The sea of a context. Optional fields have a flag in `has`. */
+typedef struct wk_sea {
+    /** sizeof(wk_sea) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Flags of the optional fields that are set. Default 0. */
+    wk_sea_has_flags has;
+    /** Properties. Default 0. */
+    wk_sea_flags flags;
+    /** Mean level, m above mean sea level. Range [-500, 9000], default 0. */
+    double level_m;
+    /**
+     * Depth of the water below the mean level, m, the same everywhere. Range [0.5, 12000], default 4000. It sets the
+     * lengths and speeds of waves; where the terrain has a bed, answers have the depth above that.
+     */
+    double depth_m;
+    /**
+     * Height of high water above the mean level, m; the tide has the period of the moon's half-day, 12.4206 h. Range
+     * [0, 10]; 0, the default, is no tide.
+     */
+    double tide_amplitude_m;
+    /** Simulation time of a high water, s. Range [-1e10, 1e10], default 0. */
+    double tide_high_water_s;
+    /** Optional: distance over which the wind raises waves, m. Range [10, 2e7]; else the open sea. */
+    double fetch_m;
+    /**
+     * Optional: significant height of the wind sea, m. Range [0, 30], at most a fifteenth of the wave length at the
+     * peak; else by sea_state, beaufort, or the weather.
+     */
+    double significant_height_m;
+    /**
+     * Optional: peak period of the wind sea, s. Range [0.5, 30]; else that of a fully developed sea of this height.
+     */
+    double peak_period_s;
+    /** Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without. */
+    double peak_gamma;
+    /** Optional: Beaufort number. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch. */
+    double beaufort;
+    /**
+     * Optional: direction that the wind sea comes from, degrees clockwise from true north. Range [0, 360]; else that
+     * of the wind that raised it.
+     */
+    double wind_sea_from_deg;
+    /** Optional: temperature of the water, degrees Celsius. Range [-3, 45]; else the weather's. */
+    double temperature_c;
+    /** Salinity, g/kg. Range [0, 45], default 35. */
+    double salinity_g_kg;
+    /**
+     * Optional: share of downward blue light (450 nm) that a metre of water leaves, percent. Range [41.1, 98.1], which
+     * are types 7C and I; else by water_type.
+     */
+    double clarity_percent;
+    /** Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice. */
+    double ice_cover;
+    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them. */
+    double ice_floe_m;
+    /**
+     * Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by
+     * Meylan, Bennetts and Kohout (2014).
+     */
+    double ice_width_m;
+    /**
+     * Optional: WMO sea state, code table 3700. Range 0 to 9: the middle of its range of heights, fully developed.
+     */
+    uint32_t sea_state;
+    /** Optical type of the water. Default WK_WATER_TYPE_IB. */
+    wk_water_type water_type;
+    /** Optional: the swells; may be NULL if there are none. Read during the call only. Else the weather's swell. */
+    const wk_sea_swell *swells;
+    /** Number of swells, at most 4. Default 0. */
+    uint32_t swell_count;
+    /** Bytes from one swell to the next: sizeof(wk_sea_swell) of your header, which is the default. */
+    uint32_t swell_stride;
+    /** Single waves; may be NULL if there are none. Read during the call only. */
+    const wk_sea_wave *waves;
+    /** Number of single waves, at most 16. Default 0. */
+    uint32_t wave_count;
+    /** Bytes from one wave to the next: sizeof(wk_sea_wave) of your header, which is the default. */
+    uint32_t wave_stride;
+} wk_sea;
+
+/** Every field of `wk_sea` at its default. */
+#define WK_SEA_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA, \
+    /* next */ NULL, \
+    /* has */ 0, \
+    /* flags */ 0, \
+    /* level_m */ 0.0, \
+    /* depth_m */ 4000.0, \
+    /* tide_amplitude_m */ 0.0, \
+    /* tide_high_water_s */ 0.0, \
+    /* fetch_m */ 0.0, \
+    /* significant_height_m */ 0.0, \
+    /* peak_period_s */ 0.0, \
+    /* peak_gamma */ 0.0, \
+    /* beaufort */ 0.0, \
+    /* wind_sea_from_deg */ 0.0, \
+    /* temperature_c */ 0.0, \
+    /* salinity_g_kg */ 35.0, \
+    /* clarity_percent */ 0.0, \
+    /* ice_cover */ 0.0, \
+    /* ice_floe_m */ 20.0, \
+    /* ice_width_m */ 1000.0, \
+    /* sea_state */ 0, \
+    /* water_type */ WK_WATER_TYPE_IB, \
+    /* swells */ NULL, \
+    /* swell_count */ 0, \
+    /* swell_stride */ (uint32_t)sizeof(wk_sea_swell), \
+    /* waves */ NULL, \
+    /* wave_count */ 0, \
+    /* wave_stride */ (uint32_t)sizeof(wk_sea_wave) \
+}
+
+/** Kind of water inside a region. */
+typedef uint32_t wk_sea_region_kind;
+
+/** No water: inside a hull or an empty dock. Such a region counts before all others. */
+#define WK_SEA_REGION_DRY 0
+/** The sea with lower waves: a harbour. */
+#define WK_SEA_REGION_SHELTERED 1
+/** Water with a level of its own: a lake, a lock. */
+#define WK_SEA_REGION_LAKE 2
+
+/** A region of the ground plan with water of its own, or without water. */
+typedef struct wk_sea_region {
+    /** sizeof(wk_sea_region) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_REGION. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Corners of the outline, m to the right and ahead of the centre, in order, either way around, each within 1e6 m.
+     * The outline must not cross or touch itself. Read during the call only.
+     */
+    const double (*corners_m)[2];
+    /** Number of corners. Range 3 to 64. */
+    uint32_t corner_count;
+    /** Kind of water inside. Default WK_SEA_REGION_DRY. */
+    wk_sea_region_kind kind;
+    /**
+     * Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin. Its height does not
+     * matter. Default 0, 0, 0.
+     */
+    double center_m[3];
+    /** Heading of `ahead` at at_s, degrees clockwise from true north. Range [-360, 360], default 0. */
+    double heading_deg;
+    /** Velocity east and north, m/s, of at most 60 m/s. Default 0, 0. */
+    double velocity_m_s[2];
+    /** Rate of turn, degrees clockwise a second. Range [-90, 90], default 0. */
+    double turn_deg_s;
+    /** Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. */
+    double at_s;
+    /** Lakes: level without waves, m above mean sea level. Range [-500, 9000], default 0. */
+    double level_m;
+    /**
+     * Lakes: depth below that level, m. Range [0.1, 12000], default 10. Waves keep the lengths that they have over the
+     * sea's depth.
+     */
+    double depth_m;
+    /** Lakes and sheltered regions: height of the waves over that on the open sea. Range [0, 1], default 1. */
+    double wave_share;
+    /**
+     * Sheltered regions: width of the band inside the outline over which waves become lower, m. Range [0, 10000],
+     * default 0: at once.
+     */
+    double rim_m;
+} wk_sea_region;
+
+/** Every field of `wk_sea_region` at its default. */
+#define WK_SEA_REGION_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_region), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_REGION, \
+    /* next */ NULL, \
+    /* corners_m */ NULL, \
+    /* corner_count */ 0, \
+    /* kind */ WK_SEA_REGION_DRY, \
+    /* center_m */ { 0.0, 0.0, 0.0 }, \
+    /* heading_deg */ 0.0, \
+    /* velocity_m_s */ { 0.0, 0.0 }, \
+    /* turn_deg_s */ 0.0, \
+    /* at_s */ 0.0, \
+    /* level_m */ 0.0, \
+    /* depth_m */ 10.0, \
+    /* wave_share */ 1.0, \
+    /* rim_m */ 0.0 \
+}
+
+/**
+ * The sea at a place and time. Element of an array, without struct_size; calls take its sizeof instead. Where there is
+ * no water, surface_m is the position that was asked about, normal is up, and all other numbers are 0.
+ */
+typedef struct wk_sea_point {
+    /** Height of the surface above mean sea level, m. */
+    double height_m;
+    /**
+     * Largest error of the height, m: 4 standard deviations of the waves left out, and the tolerances of the sums.
+     */
+    double height_error_m;
+    /** Point of the surface above or below the position, in the host's world, m. */
+    double surface_m[3];
+    /** Unit normal of the surface (east, north, up). */
+    double normal[3];
+    /** Velocity of the water at the surface, m/s (east, north, up), without its slow drift. */
+    double velocity_m_s[3];
+    /** Acceleration of the water at the surface, m/s^2 (east, north, up). */
+    double acceleration_m_s2[3];
+    /** Depth of the water under the surface, m. */
+    double depth_m;
+    /** Share of the place under foam of waves that break now, 0 to 1. */
+    double foam;
+    /** 1 where there is water, else 0. */
+    uint32_t has_water;
+    /** 0. */
+    uint32_t reserved0;
+} wk_sea_point;
+
+/** Statistics of the sea at a time. */
+typedef struct wk_sea_state {
+    /** sizeof(wk_sea_state) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_STATE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Level without waves, m above mean sea level: the mean level and the tide. */
+    double level_m;
+    /**
+     * Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
+     */
+    double significant_height_m;
+    /** Period of the strongest waves, s; 0 without waves. */
+    double peak_period_s;
+    /**
+     * Mean direction that the waves come from, degrees clockwise from true north, weighted by variance; 0 without
+     * waves.
+     */
+    double mean_from_deg;
+    /**
+     * Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
+     */
+    double mean_square_slope;
+    /** Part of it that the waves of the surface have; the rest is in waves too short for it. */
+    double drawn_square_slope;
+    /**
+     * Height of the largest wave expected in an hour, m, crest to trough (Longuet-Higgins 1952), plus the heights of
+     * all single waves.
+     */
+    double highest_in_hour_m;
+    /** Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980), less under ice. */
+    double whitecap_share;
+    /** Temperature of the water, degrees Celsius. */
+    double water_temperature_c;
+    /** Refractive index of the water against air at 550 nm (Quan and Fry 1995). */
+    double refractive_index;
+    /** Diffuse attenuation of downward light at 450, 550 and 650 nm, 1/m (Jerlov 1976). */
+    double attenuation_per_m[3];
+} wk_sea_state;
+
+/** Every field of `wk_sea_state` at its default. */
+#define WK_SEA_STATE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_state), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_STATE, \
+    /* next */ NULL, \
+    /* level_m */ 0.0, \
+    /* significant_height_m */ 0.0, \
+    /* peak_period_s */ 0.0, \
+    /* mean_from_deg */ 0.0, \
+    /* mean_square_slope */ 0.0, \
+    /* drawn_square_slope */ 0.0, \
+    /* highest_in_hour_m */ 0.0, \
+    /* whitecap_share */ 0.0, \
+    /* water_temperature_c */ 0.0, \
+    /* refractive_index */ 0.0, \
+    /* attenuation_per_m */ { 0.0, 0.0, 0.0 } \
+}
+
+/**
+ * Sets the sea; NULL removes it. Part of the state that wk_context_save keeps. Set it before the first update: what
+ * it says about fetch holds for all weather that the timeline still knows. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
+ */
+WK_API wk_status wk_context_set_sea(wk_context *context, const wk_sea *sea);
+
+/**
+ * Replaces the list of regions; count 0 removes all. At most 64. Regions that move at a constant velocity and rate of
+ * turn move by themselves: set them again when these change. Later regions count before earlier ones, dry ones before
+ * all. Part of the state that wk_context_save keeps. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range: outlines that cross themselves, too.
+ */
+WK_API
+wk_status wk_context_set_sea_regions(wk_context *context,
+                                     const wk_sea_region *regions,
+                                     uint32_t count,
+                                     uint32_t stride);
+
+/**
+ * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
+ * them. Only the place on the ground of a position counts, not its height. There is no water in dry regions, and where
+ * the terrain's tiles lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. `shortest_wave_m`, range
+ * [0, 10000], leaves out waves shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are
+ * the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for
+ * points. The first call for a time costs some milliseconds; the sums of the last two times are kept, and each place
+ * then costs some microseconds. No device is needed, and nothing is allocated after the first calls.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
+ * wk_context_get_conditions.
+ */
+WK_API
+wk_status wk_context_get_sea_at(const wk_context *context,
+                                const double (*positions_m)[3],
+                                uint32_t count,
+                                uint32_t position_size,
+                                double time_s,
+                                double shortest_wave_m,
+                                wk_sea_point *points,
+                                uint32_t point_size);
+
+/**
+ * Gets the statistics of the open sea at a simulation time, past or future.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a sea; for times as wk_context_get_conditions.
+ */
+WK_API wk_status wk_context_get_sea_state(const wk_context *context, double time_s, wk_sea_state *out_state);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_SWELL_INIT`. `struct_size` is `sizeof(wk_sea_swell)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_swell_init(wk_sea_swell *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_WAVE_INIT`. `struct_size` is `sizeof(wk_sea_wave)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_wave_init(wk_sea_wave *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_INIT`. `struct_size` is `sizeof(wk_sea)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_init(wk_sea *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_REGION_INIT`. `struct_size` is `sizeof(wk_sea_region)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_region_init(wk_sea_region *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SEA_STATE_INIT`. `struct_size` is `sizeof(wk_sea_state)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
+
+/*
+ * ====================================================================================================
+ * [soil] Soil
+ *
+ * Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
+ * undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_at, water, snow and wind see the
+ * sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
+ * heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
+ * saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
+ * pose before the update that reaches its time.
+ *
+ * A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
+ * are 1/64 s long. docs/soil.md shows how to dig.
+ * ====================================================================================================
+ */
+
+/** Number of the built-in kinds: the number of the first kind of a wk_soil. */
+#define WK_SOIL_BUILT_IN_KINDS 7
+
+/** Largest number of kinds, the built-in ones among them. */
+#define WK_SOIL_KINDS 16
+
+/** A kind of soil of the host's own. Element of a list in wk_soil. */
+typedef struct wk_soil_kind {
+    /** sizeof(wk_soil_kind) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_KIND. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Density of the undisturbed soil (bank), kg/m^3. Range [50, 10 000], default 1800. */
+    double density_kg_m3;
+    /** Growth of volume when the soil is dug, as a share of its bank volume. Range [0, 1.5], default 0.25. */
+    double swell;
+    /** Angle at which the loose soil rests, degrees. Range [5, 60], default 37. */
+    double repose_deg;
+    /**
+     * Cohesion of moist bank, kPa. Range [0, 10 000], default 2. From 100 on it counts as cemented, and water takes
+     * nothing of it.
+     */
+    double cohesion_kpa;
+    /** Friction angle of the bank, degrees. Range [0, 60], default 30. */
+    double friction_deg;
+    /**
+     * 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries
+     * them.
+     */
+    uint32_t sinks;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** Cohesive modulus kc, kN/m^(n + 1). Range [0, 1e6], default 0. */
+    double sinkage_kc;
+    /** Frictional modulus kphi, kN/m^(n + 2). Range [0.1, 1e8], default 1500. */
+    double sinkage_kphi;
+    /** Exponent n. Range [0.1, 3], default 1. */
+    double sinkage_n;
+} wk_soil_kind;
+
+/** Every field of `wk_soil_kind` at its default. */
+#define WK_SOIL_KIND_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_kind), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_KIND, \
+    /* next */ NULL, \
+    /* density_kg_m3 */ 1800.0, \
+    /* swell */ 0.25, \
+    /* repose_deg */ 37.0, \
+    /* cohesion_kpa */ 2.0, \
+    /* friction_deg */ 30.0, \
+    /* sinks */ 0, \
+    /* reserved0 */ 0, \
+    /* sinkage_kc */ 0.0, \
+    /* sinkage_kphi */ 1500.0, \
+    /* sinkage_n */ 1.0 \
+}
+
+/** Number of a kind of soil: a built-in one, or 7 and more for the kinds of a wk_soil, in their order. */
+typedef uint32_t wk_soil_kind_id;
+
+/** Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees. */
+#define WK_SOIL_SAND 0
+/** Dry gravel: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
+#define WK_SOIL_GRAVEL 1
+/** Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees. */
+#define WK_SOIL_CLAY 2
+/** Moist sandy loam: 1803 kg/m^3, 25 %, 37 degrees, 1.72 kPa, 29 degrees. */
+#define WK_SOIL_LOAM 3
+/** Topsoil: 1561 kg/m^3, 25 %, 37 degrees, 3.3 kPa, 33.7 degrees. */
+#define WK_SOIL_TOPSOIL 4
+/** Limestone: 2533 kg/m^3, 63 %, 38 degrees, 1000 kPa, 40 degrees. */
+#define WK_SOIL_ROCK 5
+/** Hard coal: 1202 kg/m^3, 35 %, 37 degrees, 100 kPa, 35 degrees. */
+#define WK_SOIL_COAL 6
+
+/** Kinds and layers of the ground. */
+typedef struct wk_soil {
+    /** sizeof(wk_soil) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Number of kinds in `own_kinds`, at most 9. Default 0. */
+    uint32_t own_kind_count;
+    /** Bytes from one kind to the next: sizeof(wk_soil_kind) of your header, which is the default. */
+    uint32_t own_kind_stride;
+    /** Your own kinds; their numbers follow those of the built-in ones. Copied. Default NULL. */
+    const wk_soil_kind *own_kinds;
+    /** Number of layers, at most 8. Default 0: 0.3 m of topsoil on loam. */
+    uint32_t horizon_count;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /**
+     * Depth of the upper side of each layer below the undug surface, m: 0 for the first, and more for each other than
+     * for the one before, up to 1000. Copied. Default NULL.
+     */
+    const double *horizon_tops_m;
+    /** Kind of each layer, a wk_soil_kind_id. Copied. Default NULL. */
+    const wk_soil_kind_id *horizon_kinds;
+    /**
+     * Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at
+     * 0 (dry sand) and at 1 (below the water table) has no cohesion.
+     */
+    double saturation;
+} wk_soil;
+
+/** Every field of `wk_soil` at its default. */
+#define WK_SOIL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL, \
+    /* next */ NULL, \
+    /* own_kind_count */ 0, \
+    /* own_kind_stride */ (uint32_t)sizeof(wk_soil_kind), \
+    /* own_kinds */ NULL, \
+    /* horizon_count */ 0, \
+    /* reserved0 */ 0, \
+    /* horizon_tops_m */ NULL, \
+    /* horizon_kinds */ NULL, \
+    /* saturation */ 0.3 \
+}
+
+/** Shape of a tool, and what it does to the soil. */
+typedef uint32_t wk_soil_tool_shape;
+
+/** Bucket or shovel: cuts with its edge, fills, carries and pours. */
+#define WK_SOIL_TOOL_BUCKET 0
+/** Blade of a dozer or grader: cuts with its edge, and pushes the soil ahead. */
+#define WK_SOIL_TOOL_BLADE 1
+/** Bed of a truck: catches what falls into it, carries and pours, but does not cut. */
+#define WK_SOIL_TOOL_BED 2
+/** Wheel: its edge is the line of contact, across its track. */
+#define WK_SOIL_TOOL_WHEEL 3
+/** Crawler track: its edge is the line under its middle, across its track. */
+#define WK_SOIL_TOOL_TRACK 4
+
+/** A tool that works the soil. */
+typedef struct wk_soil_tool {
+    /** sizeof(wk_soil_tool) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_TOOL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Default WK_SOIL_TOOL_BUCKET. */
+    wk_soil_tool_shape shape;
+    /** Must be 0. */
+    uint32_t reserved0;
+    /** Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools. */
+    double struck_m3;
+    /**
+     * Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for
+     * loaders (SAE J742). Range [0, 1]. Used by buckets and beds.
+     */
+    double heap_rise;
+    /** Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools. */
+    double diameter_m;
+    /** Length of a track's contact with the ground, m. Range [0.1, 20], default 3. Not used by other tools. */
+    double contact_m;
+} wk_soil_tool;
+
+/** Every field of `wk_soil_tool` at its default. */
+#define WK_SOIL_TOOL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_tool), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_TOOL, \
+    /* next */ NULL, \
+    /* shape */ WK_SOIL_TOOL_BUCKET, \
+    /* reserved0 */ 0, \
+    /* struck_m3 */ 1.0, \
+    /* heap_rise */ 1.0, \
+    /* diameter_m */ 1.0, \
+    /* contact_m */ 3.0 \
+}
+
+/** Pose of a tool at a time. Left and right are those of a viewer inside the tool who looks out of its opening. */
+typedef struct wk_soil_pose {
+    /** sizeof(wk_soil_pose) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_POSE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Simulation time, s. Range [-1e10, 1e10], default 0. */
+    double time_s;
+    /** Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. */
+    double edge_left_m[3];
+    /** Right end of it, 0.05 to 20 m away. */
+    double edge_right_m[3];
+    /** Left end of the edge of the opening opposite to the cutting edge. Not used for wheels and tracks. */
+    double upper_left_m[3];
+    /** Right end of it. */
+    double upper_right_m[3];
+    /**
+     * Direction out of the opening in the host's world; need not have unit length. Not used for wheels and tracks.
+     */
+    double facing[3];
+    /** Load of a wheel or track on the ground, N. Range [0, 1e7], default 0; 0 for other tools. */
+    double load_n;
+} wk_soil_pose;
+
+/** Every field of `wk_soil_pose` at its default. */
+#define WK_SOIL_POSE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_pose), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_POSE, \
+    /* next */ NULL, \
+    /* time_s */ 0.0, \
+    /* edge_left_m */ { 0.0, 0.0, 0.0 }, \
+    /* edge_right_m */ { 0.0, 0.0, 0.0 }, \
+    /* upper_left_m */ { 0.0, 0.0, 0.0 }, \
+    /* upper_right_m */ { 0.0, 0.0, 0.0 }, \
+    /* facing */ { 0.0, 0.0, 0.0 }, \
+    /* load_n */ 0.0 \
+}
+
+/** Content of a tool, and what it met in the last step of the soil (1/64 s). */
+typedef struct wk_soil_tool_report {
+    /** sizeof(wk_soil_tool_report) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_TOOL_REPORT. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Simulation time of the tool's pose, s. */
+    double time_s;
+    /** Mass held, kg. */
+    double mass_kg;
+    /** Bulk volume held, m^3. */
+    double bulk_m3;
+    /** Share of the rated volume with its heap that is filled. */
+    double fill;
+    /** Centre of what is held, in the host's world, m. */
+    double centre_m[3];
+    /** Mass of each kind held, kg, by the kind's number. */
+    double kinds_kg[16];
+    /** Share of the pores of the soil held that water fills; 0 when empty. */
+    double saturation;
+    /** Mean depth of the cut, m. */
+    double cut_depth_m;
+    /** Deepest sinkage of a wheel or track, m. */
+    double sinkage_m;
+    /** Kind of most of the soil that was cut. */
+    wk_soil_kind_id cut_kind;
+    /**
+     * 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
+     * from a set of numbers that fits a small range only; else 0.
+     */
+    uint32_t sinkage_is_beyond_range;
+    /** 1 where the edge met frozen ground, which it cannot cut; else 0. */
+    uint32_t is_stopped_by_frost;
+    /** 0. */
+    uint32_t reserved0;
+} wk_soil_tool_report;
+
+/** Every field of `wk_soil_tool_report` at its default. */
+#define WK_SOIL_TOOL_REPORT_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_tool_report), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_TOOL_REPORT, \
+    /* next */ NULL, \
+    /* time_s */ 0.0, \
+    /* mass_kg */ 0.0, \
+    /* bulk_m3 */ 0.0, \
+    /* fill */ 0.0, \
+    /* centre_m */ { 0.0, 0.0, 0.0 }, \
+    /* kinds_kg */ { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }, \
+    /* saturation */ 0.0, \
+    /* cut_depth_m */ 0.0, \
+    /* sinkage_m */ 0.0, \
+    /* cut_kind */ 0, \
+    /* sinkage_is_beyond_range */ 0, \
+    /* is_stopped_by_frost */ 0, \
+    /* reserved0 */ 0 \
+}
+
+/** Blade of a tool, as it meets the soil. */
+typedef struct wk_soil_blade {
+    /** sizeof(wk_soil_blade) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_BLADE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /**
+     * Angle of the blade to the horizontal in the direction of motion, degrees; 90 is upright. Range [3, 148], default
+     * 60.
+     */
+    double rake_deg;
+    /** Friction angle between soil and blade, degrees. Range [0, 68], default 23, steel. */
+    double soil_metal_deg;
+    /** Adhesion of the soil to the blade, kPa. Range [0, 10 000], default 0. */
+    double adhesion_kpa;
+    /** Load on the surface in front of the blade, kPa. Range [0, 10 000], default 0. */
+    double surcharge_kpa;
+} wk_soil_blade;
+
+/** Every field of `wk_soil_blade` at its default. */
+#define WK_SOIL_BLADE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_blade), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_BLADE, \
+    /* next */ NULL, \
+    /* rake_deg */ 60.0, \
+    /* soil_metal_deg */ 23.0, \
+    /* adhesion_kpa */ 0.0, \
+    /* surcharge_kpa */ 0.0 \
+}
+
+/** Force of the soil on a blade. */
+typedef struct wk_cutting_force {
+    /** sizeof(wk_cutting_force) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_CUTTING_FORCE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation of Reece and McKyes. */
+    double force_n;
+    /** Part of the whole force against the motion, N. */
+    double horizontal_n;
+    /** Part that pulls the blade down, N; negative where soil lifts it. */
+    double vertical_n;
+    /** Angle of the plane of failure to the horizontal, degrees. */
+    double failure_deg;
+} wk_cutting_force;
+
+/** Every field of `wk_cutting_force` at its default. */
+#define WK_CUTTING_FORCE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_cutting_force), \
+    /* struct_type */ WK_STRUCT_TYPE_CUTTING_FORCE, \
+    /* next */ NULL, \
+    /* force_n */ 0.0, \
+    /* horizontal_n */ 0.0, \
+    /* vertical_n */ 0.0, \
+    /* failure_deg */ 0.0 \
+}
+
+/** Ground of a cell. Element of an array, without struct_size; calls take its sizeof instead. */
+typedef struct wk_soil_point {
+    /** Height of the surface above the terrain's origin, m: the host's height with the change. */
+    double surface_m;
+    /** Difference to the undug height, m; negative in a pit. */
+    double change_m;
+    /** Depth of loose soil, m. */
+    double loose_m;
+    /** Density of the loose soil, kg/m^3; 0 without any. */
+    double loose_kg_m3;
+    /** Revision of the terrain at the last change by soil near this place; 0 where nothing was dug. */
+    uint64_t revision;
+    /** Kind on the surface. */
+    wk_soil_kind_id kind;
+    /** 1 if the cell has ground; all other fields are 0 otherwise. */
+    uint32_t has_ground;
+} wk_soil_point;
+
+/**
+ * Rectangle of a tile in which soil has changed heights. Element of an array, without struct_size; calls take its
+ * sizeof instead.
+ */
+typedef struct wk_soil_change {
+    /** Revision of the terrain at the last change. */
+    uint64_t revision;
+    /** Key of the tile. */
+    int32_t tile[2];
+    /** South-western cell of the rectangle in the tile, cells east and north. */
+    uint32_t first_cell[2];
+    /** Size of the rectangle, cells east and north. */
+    uint32_t cells[2];
+} wk_soil_change;
+
+/**
+ * Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every
+ * call.
+ */
+typedef struct wk_soil_balance {
+    /** sizeof(wk_soil_balance) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SOIL_BALANCE. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Bank that was loosened. Each number is limited to the range of its type, 9.2 million tonnes. */
+    int64_t dug_ug;
+    /** Soil that the host brought. */
+    int64_t brought_ug;
+    /** Loose soil on the ground. */
+    int64_t lying_ug;
+    /** Soil in buckets and beds. */
+    int64_t held_ug;
+    /** Soil that left with tools that ended. */
+    int64_t taken_ug;
+} wk_soil_balance;
+
+/** Every field of `wk_soil_balance` at its default. */
+#define WK_SOIL_BALANCE_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_soil_balance), \
+    /* struct_type */ WK_STRUCT_TYPE_SOIL_BALANCE, \
+    /* next */ NULL, \
+    /* dug_ug */ 0, \
+    /* brought_ug */ 0, \
+    /* lying_ug */ 0, \
+    /* held_ug */ 0, \
+    /* taken_ug */ 0 \
+}
+
+/**
+ * Sets the soil of the terrain's tiles, at first undug; NULL takes the soil, and everything dug, away. Equal settings
+ * change nothing. Another lattice (wk_context_set_terrain) ends the soil. Part of the saved state. Unchanged after an
+ * error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
+ * WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
+ */
+WK_API wk_status wk_context_set_soil(wk_context *context, const wk_soil *soil);
+
+/**
+ * Adds a tool at its first pose, at most 64 at a time. `out_tool` gets its number, which no other tool of the state
+ * ever has. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
+ * remain, and for a pose before the last update.
+ */
+WK_API
+wk_status wk_context_add_soil_tool(wk_context *context,
+                                   const wk_soil_tool *shape,
+                                   const wk_soil_pose *pose,
+                                   uint32_t *out_tool);
+
+/**
+ * Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
+ * with each point at most 20 m from where it was. The tool moves evenly between its poses, and stands where the last
+ * one ends. Its edge must stay over tiles. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
+ * that has ended, without soil, and while steps of an update remain.
+ */
+WK_API
+wk_status wk_context_move_soil_tool(wk_context *context,
+                                    uint32_t tool,
+                                    const wk_soil_pose *pose);
+
+/**
+ * Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
+ * and while steps of an update remain.
+ */
+WK_API wk_status wk_context_end_soil_tool(wk_context *context, uint32_t tool);
+
+/**
+ * Gets what a tool holds, and what it met in the last step, as of wk_context_get_state_time.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_tool(const wk_context *context,
+                                   uint32_t tool,
+                                   wk_soil_tool_report *out_report);
+
+/**
+ * Gets the force on the edge of a tool that cuts as deep as it did in the last step, in the soil that it met there:
+ * P = w (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985). Closed form, for the physics of your
+ * machine; 0 where it does not cut.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_resistance(const wk_context *context,
+                                         uint32_t tool,
+                                         const wk_soil_blade *blade,
+                                         wk_cutting_force *out_force);
+
+/**
+ * Drops loose soil that the host brings onto a place of the host's world, at once: `mass_kg`, in [0, 1e6], of a kind.
+ * Its height does not matter. `out_lands`, which may be NULL, gets 1 if there is ground to take it, else 0.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
+ * update remain.
+ */
+WK_API
+wk_status wk_context_bring_soil(wk_context *context,
+                                const double (*position_m)[3],
+                                wk_soil_kind_id kind,
+                                double mass_kg,
+                                uint32_t *out_lands);
+
+/**
+ * Gets the ground of the nearest cell at places of the host's world, at most wk_caps.max_batch of them.
+ * `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
+ * sizeof(wk_soil_point) of your header for points.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_points(const wk_context *context,
+                                     const double (*positions_m)[3],
+                                     uint32_t count,
+                                     uint32_t position_size,
+                                     wk_soil_point *points,
+                                     uint32_t point_size);
+
+/**
+ * Gets the rectangles in which soil has changed heights after a revision of the terrain
+ * (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case.
+ * If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size`
+ * is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
+ * heights to wk_context_update_terrain: the tiles are the undug ground.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ */
+WK_API
+wk_status wk_context_get_soil_changes(const wk_context *context,
+                                      uint64_t since_revision,
+                                      wk_soil_change *changes,
+                                      uint32_t capacity,
+                                      uint32_t change_size,
+                                      uint32_t *out_count);
+
+/**
+ * Gets the ground of a rectangle of a tile's cells, by rows from the south-west: `cells[0]` cells east and `cells[1]`
+ * north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
+ * sizeof(wk_soil_point) of your header.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too
+ * small; WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API
+wk_status wk_context_get_soil_cells(const wk_context *context,
+                                    const int32_t (*tile)[2],
+                                    const uint32_t (*first_cell)[2],
+                                    const uint32_t (*cells)[2],
+                                    wk_soil_point *points,
+                                    uint32_t capacity,
+                                    uint32_t point_size);
+
+/**
+ * Gets the balance of the soil's mass.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without soil.
+ */
+WK_API wk_status wk_context_get_soil_balance(const wk_context *context, wk_soil_balance *out_balance);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_KIND_INIT`. `struct_size` is `sizeof(wk_soil_kind)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_kind_init(wk_soil_kind *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_INIT`. `struct_size` is `sizeof(wk_soil)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_init(wk_soil *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_TOOL_INIT`. `struct_size` is `sizeof(wk_soil_tool)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_tool_init(wk_soil_tool *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_POSE_INIT`. `struct_size` is `sizeof(wk_soil_pose)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_pose_init(wk_soil_pose *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_TOOL_REPORT_INIT`. `struct_size` is `sizeof(wk_soil_tool_report)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_soil_tool_report_init(wk_soil_tool_report *out,
+                                   uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_BLADE_INIT`. `struct_size` is `sizeof(wk_soil_blade)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_soil_blade_init(wk_soil_blade *out, uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_CUTTING_FORCE_INIT`. `struct_size` is `sizeof(wk_cutting_force)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_cutting_force_init(wk_cutting_force *out,
+                                uint32_t struct_size);
+
+/**
+ * Writes the default of every field: the same bytes as `WK_SOIL_BALANCE_INIT`. `struct_size` is `sizeof(wk_soil_balance)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API
+wk_status wk_soil_balance_init(wk_soil_balance *out,
+                               uint32_t struct_size);
 
 #ifdef __cplusplus
 } /* extern "C" */

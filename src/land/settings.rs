@@ -5,8 +5,8 @@ use crate::error::{Result, check_range};
 /// Settings with which a context's views draw the tiles of its terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDrawing {
-    /// Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels, \[0.25, 16\]. Default
-    /// 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is so
+    /// Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels, \[0.25, 16\], default 1.
+    /// The error sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is so
     /// rough that more would be needed is drawn with a larger error.
     pub error_px: f64,
 }

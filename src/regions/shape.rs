@@ -14,6 +14,10 @@ const LEAST_HALF_M: f64 = 1.0;
 
 /// Shape of a region on the ground plan, in metres to the right of its heading and along it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "at most 64 shapes are held, and corners on the heap would be no plain data"
+)]
 pub enum RegionShape {
     /// Rectangle with round corners.
     Rectangle {

@@ -43,14 +43,14 @@ pub(super) struct TileUniform {
 }
 
 /// Texels of all tiles at one mip level, tile after tile, as the bits of half floats.
-type Texels = Vec<[u16; 4]>;
+type HalfTexels = Vec<[u16; 4]>;
 
 /// The tiles of a surface, with mip levels.
 pub(super) struct DrawnTiles {
     /// B-spline coefficients of height and displacement along the tile's axes.
-    pub shapes: [Texels; MIPS],
+    pub shapes: [HalfTexels; MIPS],
     /// Slopes along the tile's axes, and the compression.
-    pub slopes: [Texels; MIPS],
+    pub slopes: [HalfTexels; MIPS],
     /// Covariances of the slopes that a filtering look-up finds at each mip level, along the tile's axes: xx, xy, yy.
     covariances: [[[f64; 3]; MIPS]; TILES],
     /// One mip level of a tile, and the next.
@@ -133,7 +133,7 @@ fn each_mip(work: &mut [Vec<[f32; 4]>; 2], mut act: impl FnMut(usize, &[[f32; 4]
 }
 
 /// Stores the texels of a tile.
-fn store(level: &mut Texels, t: usize, texels: &[[f32; 4]]) {
+fn store(level: &mut HalfTexels, t: usize, texels: &[[f32; 4]]) {
     let to = &mut level[t * texels.len()..(t + 1) * texels.len()];
     to.iter_mut().zip(texels).for_each(|(to, from)| *to = from.map(|v| f16::from_f32(v).to_bits()));
 }

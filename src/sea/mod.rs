@@ -54,8 +54,8 @@
 //!
 //! # What is not here
 //! No shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A lake has the
-//! waves of the sea around it, as high as its region says; pictures show no regions. There is no `candidates.rs`, because there is one way to draw it; no `reference.rs`,
-//! because all that queries use is the f64 reference.
+//! waves of the sea around it, as high as its region says; pictures show no regions. There is no `candidates.rs`,
+//! because there is one way to draw it; no `reference.rs`, because all that queries use is the f64 reference.
 
 mod bins;
 mod clarity;

@@ -51,7 +51,7 @@ pub(super) struct SeaPasses {
     pipeline: Option<SeaPipeline>,
 }
 
-/// What a draw needs besides the resources.
+/// Values of one draw, besides the resources.
 pub(super) struct SeaDraw<'a> {
     pub block: &'a SeaUniform,
     pub waves: &'a [WaveUniform],

@@ -164,7 +164,7 @@ impl DrawnSea<'_> {
         let v = cox_munk(wind);
         let upwind = if v.total() > 0.0 { rest * v.upwind / v.total() } else { 0.5 * rest };
         let across = rest - upwind;
-        let (sin, cos) = self.statistics.mean_from_deg.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.statistics.mean_from_deg.to_radians());
         let along = upwind - across;
         [xx + across + along * sin * sin, xy + along * sin * cos, yy + across + along * cos * cos, drawn]
             .map(|v| v as f32)

@@ -38,7 +38,16 @@ impl AirChange<'_> {
     }
 }
 
-/// Share at which a fade ends.
+/// Fade to other tables.
+#[derive(Clone)]
+struct TablesFade {
+    set: Arc<TableSet>,
+    /// Weight of `set` in what is shown.
+    weight: f32,
+    to: FadeTo,
+}
+
+/// Weight at which a fade ends.
 #[derive(Clone, Copy)]
 enum FadeTo {
     /// All of the tables to show next.
@@ -51,9 +60,9 @@ enum State {
     Idle,
     /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
-    /// Tables to show next, and their weight in what is shown. The weight is 0 in the call in which observers draw them
+    /// Tables to show next. Their weight is 0 in the call in which observers draw them
     /// for the first time, and while the air has not yet left that of the shown tables.
-    Fading(Arc<TableSet>, f32, FadeTo),
+    Fading(TablesFade),
     /// Tables that the last call has finished.
     Built(Arc<TableSet>),
 }
@@ -270,8 +279,8 @@ impl SkyTables {
                 self.begin_fade(set, change);
                 Ok(0.0)
             }
-            State::Fading(set, t, to) => {
-                let fade = (set.clone(), *t, *to);
+            State::Fading(fade) => {
+                let fade = fade.clone();
                 self.fade(encoder, fade, change, share)?;
                 Ok(0.0)
             }
@@ -283,11 +292,11 @@ impl SkyTables {
         let Some(shown) = &self.shown else { return };
         let place = place_on_way(&shown.planet, &set.planet, change.now);
         self.state = if !change.goes_on() {
-            State::Fading(set, 0.0, FadeTo::End)
+            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::End })
         } else if change.leads_past(shown, &set) && place.is_near {
-            State::Fading(set, 0.0, FadeTo::Air)
+            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::Air })
         } else if place.share >= 0.5 {
-            State::Fading(set, 0.0, FadeTo::End)
+            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::End })
         } else {
             State::Idle
         };
@@ -297,11 +306,12 @@ impl SkyTables {
     fn fade(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        (set, before, to): (Arc<TableSet>, f32, FadeTo),
+        fade: TablesFade,
         change: AirChange<'_>,
         share: f32,
     ) -> Result<()> {
         let Some(shown) = self.shown.clone() else { return Ok(()) };
+        let TablesFade { set, weight: before, to } = fade;
         let place = place_on_way(&shown.planet, &set.planet, change.now);
         let follows = matches!(to, FadeTo::Air);
         let wanted = if follows { LightWay::new(&shown.planet, &set.planet).weight(place.share) as f32 } else { 1.0 };
@@ -315,7 +325,7 @@ impl SkyTables {
                 let mixed = self.kit.mixed(encoder, [&shown, &set], before)?;
                 self.show(encoder, Some(mixed));
             } else {
-                self.state = State::Fading(set, before, FadeTo::End);
+                self.state = State::Fading(TablesFade { set, weight: before, to: FadeTo::End });
             }
             return Ok(());
         }
@@ -325,7 +335,7 @@ impl SkyTables {
             self.show(encoder, Some(set));
         } else if (t - before).abs() > UNSEEN_SHARE {
             self.busy = true;
-            self.state = State::Fading(set, t, to);
+            self.state = State::Fading(TablesFade { set, weight: t, to });
             self.revision += 1;
             self.draw_light(encoder);
         }
@@ -341,7 +351,7 @@ impl SkyTables {
                 0.5 * self.kit.done(ticket) as f32
             }
             State::Built(set) if leads(set) => 0.5,
-            State::Fading(set, t, _) if leads(set) => 0.5 + 0.5 * t,
+            State::Fading(fade) if leads(&fade.set) => 0.5 + 0.5 * fade.weight,
             _ => 0.0,
         }
     }
@@ -358,7 +368,7 @@ impl SkyTables {
         };
         let shown = shown.read_light(&self.device, self.settings())?;
         Ok(match &self.state {
-            State::Fading(next, t, _) => shown.mix(&*next.read_light(&self.device, self.settings())?, *t),
+            State::Fading(fade) => shown.mix(&*fade.set.read_light(&self.device, self.settings())?, fade.weight),
             _ => LightTable::clone(&shown),
         })
     }
@@ -431,7 +441,7 @@ impl SkyTables {
     /// Returns the tables that fade in, with their share. The share is 0 in the call before the first step.
     pub(crate) fn fading(&self) -> Option<(&Arc<TableSet>, f32)> {
         match &self.state {
-            State::Fading(set, t, _) => Some((set, *t)),
+            State::Fading(fade) => Some((&fade.set, fade.weight)),
             _ => None,
         }
     }

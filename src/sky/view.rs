@@ -39,8 +39,8 @@ impl SkyView {
         self.rebuild_work
     }
 
-    /// Returns the tables for shaders that include `sky/lookup.wgsl`: layout and bind group, and the constants that they
-    /// were made for.
+    /// Returns the tables for shaders that include `sky/lookup.wgsl`: layout and bind group, and the constants that
+    /// they were made for.
     pub fn tables(&self) -> (wgpu::BindGroupLayout, wgpu::BindGroup, [Constant; 2]) {
         let is_marched = self.settings().model == SkyModel::BruteForce;
         let constants = [("SKY_MARCH", flag(is_marched)), ("SKY_LAMPS", f64::from(self.volume.lamp_count()))];

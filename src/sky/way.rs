@@ -26,14 +26,14 @@ pub(super) struct PlaceOnWay {
     pub is_near: bool,
 }
 
-/// Returns the place of `now` on the way from `from` to `to`. The three are planets of one body.
-pub(super) fn place_on_way(from: &Planet, to: &Planet, now: &Planet) -> PlaceOnWay {
-    if now == to {
+/// Returns the place of `now` on the way from `start` to `end`. The three are planets of one body.
+pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceOnWay {
+    if now == end {
         return PlaceOnWay { share: 1.0, is_near: true };
     }
-    let (way, gone) = (differences(from, to), differences(from, now));
+    let (way, gone) = (differences(start, end), differences(start, now));
     // Both are measured in the units of the whole way, which depend on its ends.
-    let units = units(from, to);
+    let units = units(start, end);
     let sum =
         |a: &[f64; NUMBERS], b: &[f64; NUMBERS]| (0..NUMBERS).map(|i| a[i] * b[i] * units[i].powi(2)).sum::<f64>();
     let length_squared = sum(&way, &way);
@@ -56,9 +56,9 @@ pub(super) struct LightWay {
 
 impl LightWay {
     /// Creates the way between two planets.
-    pub fn new(from: &Planet, to: &Planet) -> Self {
+    pub fn new(start: &Planet, end: &Planet) -> Self {
         let depth = |p: &Planet| [1, 4, 7].map(|i| numbers(p)[i]).iter().sum::<f64>();
-        Self { depth: (SLANT * (depth(to) - depth(from))).clamp(-40.0, 40.0) }
+        Self { depth: (SLANT * (depth(end) - depth(start))).clamp(-40.0, 40.0) }
     }
 
     /// Returns the weight of the tables at the end, for air at a share of the way. Scattered light follows what an
@@ -77,12 +77,12 @@ impl LightWay {
     }
 }
 
-/// Returns the planet at a share of the way from `from` to `to`.
-pub(super) fn between(from: &Planet, to: &Planet, share: f64) -> Planet {
-    let mut planet = *from;
+/// Returns the planet at a share of the way from `start` to `end`.
+pub(super) fn between(start: &Planet, end: &Planet, share: f64) -> Planet {
+    let mut planet = *start;
     for field in &FIELDS {
-        for (value, end) in (field.set)(&mut planet).iter_mut().zip((field.get)(to)) {
-            *value += share * (end - *value);
+        for (value, last) in (field.set)(&mut planet).iter_mut().zip((field.get)(end)) {
+            *value += share * (last - *value);
         }
     }
     planet

@@ -1,5 +1,7 @@
 //! Drawn terrain on the software driver, against rays through every triangle of the ground.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 
 use super::opaque::host::{Host, Mapped, ndc, pixels, view_of};
@@ -24,7 +26,7 @@ fn height(x: f64, y: f64) -> f64 {
         let length = 300.0 * libm::pow(0.47, f64::from(octave));
         let (sine, cosine) = libm::sincos(1.1 * f64::from(octave));
         let (u, v) = (cosine * x + sine * y, cosine * y - sine * x);
-        sum += 0.012 * length * (libm::sin(u * 6.28 / length) + libm::sin(v * 6.28 / (1.3 * length)));
+        sum += 0.012 * length * (libm::sin(u * TAU / length) + libm::sin(v * TAU / (1.3 * length)));
     }
     sum
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{air::planet_under, color::color_of, scene::zenith_depth, state::World};
+use super::{air::planet_under, color::color_of, state::World};
 use crate::{
     almanac::{
         moon::{self, MoonPosition},
@@ -32,12 +32,6 @@ const SNOW_ALBEDO: f64 = 0.82;
 /// Number of steps to which the share of snow on the ground is rounded for the sky's tables. Half a step changes the
 /// light of a clear sky by less than a hundredth.
 const SNOW_STEPS: f64 = 16.0;
-
-/// Times for which a change of the weather is looked ahead, s, and the change of the air's vertical optical depth up to
-/// which the longer ones serve: the sky's tables at both ends of such a part, mixed, stand for the air between them, and
-/// the error of the mix grows with the depth. The last one is longer than a build of tables takes at 60 frames/s.
-const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
-const AHEAD_DEPTH: f64 = 0.15;
 
 /// Reflectance of the land for light from above, with its share of snow.
 pub(super) struct LandSeen {
@@ -76,21 +70,6 @@ impl World {
     /// Returns the planet under a weather: its air, and its ground with the snow on it.
     pub fn planet_under(&self, c: &Conditions) -> Planet {
         self.land(c).under_sky(planet_under(&self.set.planet, c))
-    }
-
-    /// Returns the planet under the weather to which that at `position` is changing, by the timeline and by regions that
-    /// move, as it will be after one of [`AHEAD_S`]; `None` while the weather rests.
-    pub fn planet_ahead(&self, position: DVec3) -> Option<Planet> {
-        let now_s = self.time_s;
-        if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {
-            return None;
-        }
-        let after = |ahead_s: &f64| Some(self.planet_under(&self.weather_at(position, now_s + ahead_s).ok()?));
-        let depth = |planet: &Planet| zenith_depth(planet, 0.0)[1];
-        let now = depth(&after(&0.0)?);
-        let [all @ .., last] = &AHEAD_S;
-        let serves = |planet: &Planet| (depth(planet) - now).abs() <= AHEAD_DEPTH;
-        all.iter().filter_map(after).find(serves).or_else(|| after(last))
     }
 
     /// Returns the land under a weather, with the simulated snow if there is any, else the reported one.

@@ -77,6 +77,12 @@ impl ZenithDepths {
     }
 }
 
+/// Times for which a change of the weather is looked ahead, s, and the largest change of the air's vertical optical
+/// depth for which the longer ones serve. The sky's tables at both ends of such a time, mixed, stand for the air
+/// between them, and the error of the mix grows with the depth. The last time is longer than a build at 60 frames/s.
+const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
+const AHEAD_DEPTH: f64 = 0.15;
+
 /// Albedo of the grey ground to which the eye adapts, and the albedo that replaces it on snow-covered ground. Snow of
 /// albedo 0.8 then appears two stops above grey, as photographers place it (Adams 1981, The Negative: zone VII).
 const GROUND_KEY: f64 = 0.18;
@@ -211,6 +217,21 @@ impl World {
         let brought = (self.couplings.cloud_over_areas)(&self.over(), conditions, (local, position), time_s)?;
         let under_areas = brought.map(|slab| mapped.as_ref().unwrap_or(conditions).with_layer(slab));
         Ok([mapped, under_areas])
+    }
+
+    /// Returns the planet under the weather to which the weather at `position` is changing, as it will be after one of
+    /// [`AHEAD_S`]. Both the timeline and regions that move change it. `None` while the weather rests.
+    pub fn planet_ahead(&self, position: DVec3) -> Option<Planet> {
+        let now_s = self.time_s;
+        if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {
+            return None;
+        }
+        let after = |ahead_s: &f64| Some(self.planet_under(&self.weather_at(position, now_s + ahead_s).ok()?));
+        let depth = |planet: &Planet| zenith_depth(planet, 0.0)[1];
+        let now = depth(&after(&0.0)?);
+        let [all @ .., last] = &AHEAD_S;
+        let serves = |planet: &Planet| (depth(planet) - now).abs() <= AHEAD_DEPTH;
+        all.iter().filter_map(after).find(serves).or_else(|| after(last))
     }
 
     /// Returns the scene in the weather `conditions` over `land`, with the wind if it had to be computed.

@@ -132,7 +132,7 @@ fn folders_of_shaders_use_what_their_rows_name_and_form_no_circle() {
     hold(&shader_arrows(), &table("shaders"));
 }
 
-const EFFECTS: [&str; 11] =
+const EFFECTS: [&str; 12] =
     ["sky", "stars", "clouds", "lightning", "fog", "rain", "snow", "ground", "land", "glass", "bow", "sea"];
 
 #[test]

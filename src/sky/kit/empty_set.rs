@@ -57,7 +57,8 @@ impl Kit {
         })
     }
 
-    /// Returns whole tables that mix two whole sets, with the weight of the second. They stand for the air between both.
+    /// Returns whole tables that mix two whole sets, with the weight of the second. They stand for the air between
+    /// both.
     ///
     /// # Errors
     /// As [`Kit::empty_set`].

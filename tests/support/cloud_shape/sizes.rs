@@ -166,9 +166,12 @@ pub fn broken_law(numbers: &[SizeCount]) -> Option<BrokenLaw> {
     best.map(|(_, law)| law)
 }
 
+/// Terms of the two laws at a size, the logarithm of its number density, and its weight in the fit.
+type FitRow = ([f64; 3], f64, f64);
+
 /// Fits the two laws for one break by the normal equations. Returns the weighted squares that are left.
 fn broken_at(numbers: &[SizeCount], break_m: f64) -> Option<(f64, BrokenLaw)> {
-    let rows: Vec<([f64; 3], f64, f64)> = numbers
+    let rows: Vec<FitRow> = numbers
         .iter()
         .map(|size| {
             let x = (size.diameter_m / break_m).ln();
@@ -176,7 +179,7 @@ fn broken_at(numbers: &[SizeCount], break_m: f64) -> Option<(f64, BrokenLaw)> {
             ([1.0, x.min(0.0), x.max(0.0)], size.per_km2_km.ln(), weight)
         })
         .collect();
-    let sum = |of: &dyn Fn(&([f64; 3], f64, f64)) -> f64| rows.iter().map(of).sum::<f64>();
+    let sum = |of: &dyn Fn(&FitRow) -> f64| rows.iter().map(of).sum::<f64>();
     let matrix = glam::DMat3::from_cols_array_2d(
         &[0, 1, 2].map(|i| [0, 1, 2].map(|j| sum(&|(terms, _, weight)| weight * terms[i] * terms[j]))),
     );
