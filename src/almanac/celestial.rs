@@ -1,7 +1,7 @@
 //! Orientation of the starry sky over a place: sidereal time, precession, nutation.
 //!
 //! Sines and cosines come from `libm`, which gives the same bits on every machine. The sun's series
-//! ([`super::ephemeris`]) uses the platform's, so its directions agree between machines to 1e-14 only.
+//! (`ephemeris.rs`) uses the platform's, so its directions agree between machines to 1e-14 only.
 
 use glam::{DMat3, DVec3};
 
