@@ -10,20 +10,20 @@ fn probed_place(position: vec4f) -> vec2f {
 }
 
 // Displacement and height of a vertex, m, and the variance of the slopes of single waves that a pixel shows.
-@fragment fn shapes(@builtin(position) position: vec4f) -> @location(0) vec4f {
+@fragment fn shapes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let vertex = sea_vertex(probed_place(position));
     return vec4f(vertex.shift, vertex.height, vertex.seen.x + vertex.seen.z);
 }
 
 // Slope that a pixel shows, variance of the slopes that it does not show, and compression.
-@fragment fn slopes(@builtin(position) position: vec4f) -> @location(0) vec4f {
+@fragment fn slopes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let shown = sea_slopes_at(at, sea_vertex(at));
     return vec4f(shown.slope, shown.left.x + shown.left.z, shown.compression);
 }
 
 // Reflectance towards the eye, and the share under foam.
-@fragment fn reflectances(@builtin(position) position: vec4f) -> @location(0) vec4f {
+@fragment fn reflectances(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let here = sea_vertex(at);
     let shown = sea_slopes_at(at, here);

@@ -94,7 +94,7 @@ fn single_waves(at: vec2f, distance: f32, footprint: Footprint) -> SeaVertex {
     let ends = max(SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * distance), last);
     var first = sea.waves;
     var i = 0u;
-    for (; i < sea.waves; i++) {
+    for (; i < min(sea.waves, MOST_SEA_WAVES); i++) {
         let wave = sea_waves[i];
         if wave.turns_per_m >= ends {
             break;
@@ -210,7 +210,7 @@ fn sea_slopes_at(at: vec2f, vertex: SeaVertex) -> SeaSlopes {
     var squeeze = vertex.squeeze;
     var seen = vertex.seen.xyz;
     var mapped = vertex.seen.w;
-    for (var i = vertex.band.x; i < vertex.band.y; i++) {
+    for (var i = vertex.band.x; i < min(vertex.band.y, MOST_SEA_WAVES); i++) {
         let wave = sea_waves[i];
         let share = (1.0 - mesh_share(wave.turns_per_m, distance)) * seen_share(wave, footprint, last);
         if share > 0.0 {

@@ -72,11 +72,8 @@ enum State {
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
-/// Largest step of the share while tables fade in along a change of the air that goes on: it spreads what a long build
-/// has missed.
+/// Largest step of the weight per call while the air changes: it spreads what a build has missed.
 const ALONG: f32 = 1.0 / 64.0;
-/// Share of a call's work that a build for a known change does.
-const AHEAD_SHARE: f32 = 0.5;
 /// Share of a build from which it is never given up, and change of a share that is too small to draw.
 const KEPT_FROM: f64 = 0.5;
 const UNSEEN_SHARE: f32 = 1e-4;
@@ -178,9 +175,9 @@ impl SkyTables {
         self.update_along(encoder, AirChange { now: planet, ahead: planet }, fraction)
     }
 
-    /// Follows a change whose end is known, as [`SkyTables::update`] follows a planet. The tables of the end are built
-    /// while the change goes on, once, and are then mixed with the shown ones by the place of the present air between
-    /// both. So nothing is left to build when the change ends.
+    /// Follows a change whose end is known, as [`SkyTables::update`] follows a planet. A draft of the end is built once
+    /// and mixed with the shown tables by the place of the present air between both. The whole tables follow when the
+    /// change has ended.
     ///
     /// # Errors
     /// As [`SkyTables::update`].
@@ -248,7 +245,7 @@ impl SkyTables {
             return Ok(());
         }
         target.check()?;
-        let detail = if is_far(&shown.planet, change.now) { Detail::Draft } else { Detail::Whole };
+        let detail = if is_far(&shown.planet, target) { Detail::Draft } else { Detail::Whole };
         self.state = match self.kit.claim(target, detail)? {
             Claim::Finished(set) => State::Built(set),
             Claim::Building(ticket) => State::Building(ticket, 0),
@@ -265,8 +262,6 @@ impl SkyTables {
                 if calls.is_multiple_of(REST) {
                     return Ok(0.0);
                 }
-                // What is known ahead has time.
-                let share = if change.goes_on() { AHEAD_SHARE * share } else { share };
                 let (step, set) = self.kit.advance(ticket, f64::from(share))?;
                 self.busy = true;
                 if let Some(set) = set {
@@ -315,13 +310,12 @@ impl SkyTables {
         let place = place_on_way(&shown.planet, &set.planet, change.now);
         let follows = matches!(to, FadeTo::Air);
         let wanted = if follows { LightWay::new(&shown.planet, &set.planet).weight(place.share) as f32 } else { 1.0 };
-        let most = if follows && change.goes_on() { ALONG } else { share.max(FADE) };
+        let most = if change.goes_on() { ALONG } else { share.max(FADE) };
         let rests = (wanted - before).abs() <= UNSEEN_SHARE && wanted < 1.0 && !change.goes_on();
         if follows && (rests || !place.is_near || !change.leads_past(&shown, &set)) {
-            let are_whole = [&shown, &set].iter().all(|s| s.detail == Detail::Whole);
             if before <= UNSEEN_SHARE {
                 self.show(encoder, None);
-            } else if are_whole {
+            } else if shown.detail == set.detail {
                 let mixed = self.kit.mixed(encoder, [&shown, &set], before)?;
                 self.show(encoder, Some(mixed));
             } else {

@@ -71,7 +71,7 @@ fn mixed(from: f64, to: f64, share: f64) -> Planet {
 }
 
 #[test]
-fn a_change_that_is_known_ahead_is_built_once_and_leaves_nothing_to_build() {
+fn a_change_that_is_known_ahead_takes_a_draft_and_one_build_at_its_end() {
     let mut sky = Sky::new(wgpu::Backends::NOOP, &SkySettings::default(), 1.0 / 80.0, &hazy(CLEAR));
     let before = sky.tables.builds();
     let (frames, ahead) = (600, hazy(HAZE));
@@ -80,13 +80,11 @@ fn a_change_that_is_known_ahead_is_built_once_and_leaves_nothing_to_build() {
         let now = mixed(CLEAR, HAZE, f64::from(i) / f64::from(frames));
         worked += u32::from(sky.follow(&now, &ahead).0.work > 0.0);
     }
-    assert_eq!(sky.tables.builds(), before + 1);
-    assert!((150..180).contains(&worked), "{worked} frames build");
-    // The frame in which the air rests shows its tables, and observers draw theirs for the last time.
-    let after: Vec<_> = (0..40).map(|_| sky.follow(&ahead, &ahead)).collect();
-    assert!(after.iter().all(|(p, _)| p.work == 0.0 && p.done == 1.0), "{after:?}");
-    assert!(after.iter().skip(2).all(|(_, drawn)| !drawn), "{after:?}");
-    assert_eq!(sky.tables.builds(), before + 1);
+    assert!(worked < 16 && sky.tables.builds() == before, "{worked} frames build, and only the draft");
+    let after: Vec<_> = (0..120).map(|_| sky.follow(&ahead, &ahead)).collect();
+    let done = after.iter().position(|(p, _)| p.done == 1.0).expect("whole tables within two seconds");
+    assert!((100..120).contains(&done) && sky.tables.builds() == before + 1, "{done}");
+    assert!(after[done + 1..].iter().all(|(p, drawn)| p.work == 0.0 && !drawn));
 }
 
 #[test]
@@ -110,9 +108,8 @@ fn the_light_goes_evenly_from_one_air_to_the_other_and_arrives_where_a_fresh_bui
         sky.follow(&at(i), &at((i + 100).min(200)));
         lights.push(sky.light());
     }
-    // What the second build has missed is made up for while the air rests.
     let ahead = hazy(HAZE);
-    for _ in 0..8 {
+    for _ in 0..60 {
         sky.follow(&ahead, &ahead);
         lights.push(sky.light());
     }
@@ -122,7 +119,7 @@ fn the_light_goes_evenly_from_one_air_to_the_other_and_arrives_where_a_fresh_bui
     let jump = lights.windows(2).map(|w| (w[1] / w[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(jump < 0.03, "{jump}: {lights:?}");
     // In between, the mix is off by what light is not linear in depth, and the tables by what a build takes.
-    for (i, most) in [(50, 0.1), (150, 0.1)] {
+    for (i, most) in [(50, 0.25), (150, 0.25)] {
         let off = lights[i] / exact(at(i as u32).mie.extinction_per_m[0]) - 1.0;
         println!("at {} % of the change: {:.2} %", i / 2, 100.0 * off);
         assert!(off.abs() < most, "{i}: {off}");

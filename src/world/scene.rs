@@ -79,7 +79,7 @@ impl ZenithDepths {
 
 /// Times for which a change of the weather is looked ahead, s, and the largest change of the air's vertical optical
 /// depth for which the longer ones serve. The sky's tables at both ends of such a time, mixed, stand for the air
-/// between them, and the error of the mix grows with the depth. The last time is longer than a build at 60 frames/s.
+/// between them, and the error of the mix grows with the depth. The last time is far longer than a draft takes.
 const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
 const AHEAD_DEPTH: f64 = 0.15;
 

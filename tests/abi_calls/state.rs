@@ -291,11 +291,14 @@ const SETTERS: [(&str, Set); 25] = [
 ];
 
 /// Functions whose values a state does not contain, as the header says: images, which each channel has for itself; sky
-/// settings; and tiles, whose heights the host sets before it loads (their water: tests/ground/tiles.rs).
-const NOT_STATE: [&str; 4] = [
+/// settings; and tiles, whose heights the host sets before it loads (their water: tests/ground/tiles.rs, their soil:
+/// tests/soil), and how they are drawn.
+const NOT_STATE: [&str; 6] = [
     "wk_context_set_occluder_maps",
     "wk_context_set_sky_settings",
+    "wk_context_set_soil",
     "wk_context_set_terrain",
+    "wk_context_set_terrain_drawing",
     "wk_context_set_terrain_tile",
 ];
 

@@ -513,6 +513,109 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "wave_sinc(x) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half)",
         "the way inside is not empty, and rows have a length",
     ),
+    ("foam_share", "sqrt(sea.compression * shown.hidden)", "both are variances or sums of squares"),
+    (
+        "footprint_at",
+        "across / min(tilted, 1.0)",
+        "the range is the distance from an eye at least 0.1 m above the water, and tilted at least its height over the range",
+    ),
+    (
+        "footprint_at",
+        "sea.height * sea.height / (range * range)",
+        "the range is the distance from an eye at least 0.1 m above the water, and tilted at least its height over the range",
+    ),
+    (
+        "footprint_at",
+        "sqrt(sea.height * sea.height / (range * range) + 0.25 * sea.slopes.w)",
+        "the range is the distance from an eye at least 0.1 m above the water, and tilted at least its height over the range",
+    ),
+    (
+        "last_turns",
+        "0.39 / max(footprint.across, footprint.along / SEA_MOST_LENGTHENED)",
+        "a footprint is wider than 0: a pixel's angle times a range of at least 0.1 m",
+    ),
+    ("logarithmic", "1.0 / in.position.w", "w is 1 over a clip coordinate in front of the eye"),
+    (
+        "mesh_share",
+        "SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * turns_per_m * distance)",
+        "waves have lengths, and the mesh's distance is at least 0.1 m",
+    ),
+    ("rest_of", "mesh_distance(at) / (length * f32(SEA_CELLS))", "a block's cells have a length"),
+    (
+        "sea_facing",
+        "normalize(normal + toward * (facing_slope(sqrt(along), tangent) / max(length(toward), 1e-5)))",
+        "sums of unit vectors that point upwards, and a point that is not the eye",
+    ),
+    ("sea_facing", "normalize(point)", "sums of unit vectors that point upwards, and a point that is not the eye"),
+    (
+        "sea_facing",
+        "normalize(unit + to_eye * max(LEAST_COSINE - dot(unit, to_eye), 0.0))",
+        "sums of unit vectors that point upwards, and a point that is not the eye",
+    ),
+    ("sea_fresnel", "(c * (g + c) - 1.0) / (c * (g - c) + 1.0)", "the index is at least 1.3, so g is above c"),
+    ("sea_fresnel", "(g - c) / (g + c)", "the index is at least 1.3, so g is above c"),
+    ("sea_fresnel", "sqrt(sea.index * sea.index - 1.0 + c * c)", "the index is at least 1.3, so g is above c"),
+    (
+        "sea_glitter",
+        "(yy * off.x * off.x - 2.0 * both * off.x * off.y + xx * off.y * off.y) / determinant",
+        "variances have a floor, so the determinant is above 0, and facets point upwards",
+    ),
+    (
+        "sea_glitter",
+        "-facet.xy / facet.z",
+        "variances have a floor, so the determinant is above 0, and facets point upwards",
+    ),
+    (
+        "sea_glitter",
+        "density * open * sea_fresnel(dot(facet, to_eye)) / (4.0 * h2 * h2 * area)",
+        "variances have a floor, so the determinant is above 0, and facets point upwards",
+    ),
+    (
+        "sea_glitter",
+        "inverseSqrt(determinant)",
+        "variances have a floor, so the determinant is above 0, and facets point upwards",
+    ),
+    (
+        "sea_glitter",
+        "normalize(middle)",
+        "variances have a floor, so the determinant is above 0, and facets point upwards",
+    ),
+    ("sea_glitter", "sqrt(xx * yy)", "variances have a floor, so the determinant is above 0, and facets point upwards"),
+    (
+        "sea_slopes_at",
+        "log2(width * SEA_SIDE / sea.tiles[i].length)",
+        "tiles have lengths of at least some metres, and a cell's width is above 0",
+    ),
+    (
+        "sea_slopes_at",
+        "to_tile(turn, at) / sea.tiles[i].length",
+        "tiles have lengths of at least some metres, and a cell's width is above 0",
+    ),
+    (
+        "sea_slopes_at",
+        "width * SEA_SIDE / sea.tiles[i].length",
+        "tiles have lengths of at least some metres, and a cell's width is above 0",
+    ),
+    ("seen_share", "wave.turns_per_m / last", "last_turns is above 0"),
+    ("single_waves", "SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * distance)", "the mesh's distance is at least 0.1 m"),
+    (
+        "tile_shapes",
+        "SEA_TEXELS_TO_CELL * cell * SEA_SIDE / sea.tiles[i].length",
+        "tiles have lengths, and cells a size",
+    ),
+    (
+        "tile_shapes",
+        "log2(SEA_TEXELS_TO_CELL * cell * SEA_SIDE / sea.tiles[i].length)",
+        "tiles have lengths, and cells a size",
+    ),
+    ("tile_shapes", "to_tile(turn, at) / sea.tiles[i].length", "tiles have lengths, and cells a size"),
+    ("tile_spline", "(first + 1.5 + w3 / high) / side", "weights of a cubic spline: their sums are at least a sixth"),
+    ("tile_spline", "(first - 0.5 + w1 / low) / side", "weights of a cubic spline: their sums are at least a sixth"),
+    ("tile_spline", "w1 / low", "weights of a cubic spline: their sums are at least a sixth"),
+    ("tile_spline", "w3 / high", "weights of a cubic spline: their sums are at least a sixth"),
+    ("written_depth", "(e - u.turn_offset) / u.turn_scale", "constants of a logarithmic mapping"),
+    ("written_depth", "depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far", "constants of a logarithmic mapping"),
+    ("written_depth", "max(w, 0.0) / u.inverse_c", "constants of a logarithmic mapping"),
 ];
 
 /// Loops that end for another reason than a limit of their counter: function, first line, reason.
@@ -530,7 +633,4 @@ pub const LOOPS: &[(&str, &str, &str)] = &[
     ("order_blocks", "for (var i = first; i < end; i++) {", "a 128th of the list, by its own length"),
     ("thing_at", "for (left = min(left, 31u); left > 0u; left--) {", "begins at 31 at most"),
     ("thing_at", "while end - block > 1u {", "halves what is left"),
-    ("written_depth", "(e - u.turn_offset) / u.turn_scale", "constants of a logarithmic mapping"),
-    ("written_depth", "depth_ln_1p(max(w, 0.0) / u.inverse_c) / u.log_far", "constants of a logarithmic mapping"),
-    ("written_depth", "max(w, 0.0) / u.inverse_c", "constants of a logarithmic mapping"),
 ];

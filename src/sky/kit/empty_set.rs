@@ -57,7 +57,7 @@ impl Kit {
         })
     }
 
-    /// Returns whole tables that mix two whole sets, with the weight of the second. They stand for the air between
+    /// Returns tables that mix two sets of one detail, with the weight of the second. They stand for the air between
     /// both.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl Kit {
     ) -> Result<Arc<TableSet>> {
         let share = LightWay::new(&first.planet, &second.planet).share(f64::from(weight));
         let planet = between(&first.planet, &second.planet, share);
-        let mut set = self.empty_set(&planet, Detail::Whole)?;
+        let mut set = self.empty_set(&planet, first.detail)?;
         for name in Name::RESULTS {
             let group = |from: &TableSet| self.fades.group(&self.device, &from.result(name).view);
             self.fades.between(encoder, &set.result(name).view, [&group(first), &group(second)], weight);
