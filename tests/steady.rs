@@ -291,7 +291,7 @@ impl Host for RustHost {
     }
 }
 
-/// The same host through the C functions.
+/// Host that draws the same frames through the C functions.
 struct CHost {
     device: *mut wk_device,
     context: *mut wk_context,
@@ -407,8 +407,8 @@ fn count(frames: std::ops::Range<u64>, mut frame: impl FnMut(u64) -> bool) -> Co
     Count { calls: calls as f64 / (number - rebuilt) as f64, kept: LIVE.load(Relaxed) - live, rebuilt }
 }
 
-/// The same host behind a windscreen with a wiper, where Welkin may not allocate either. The number of passes depends
-/// on the time between frames, so wgpu's allocations are not compared.
+/// Host behind a windscreen with a wiper, where Welkin may not allocate either. The number of passes depends on the
+/// time between frames, so wgpu's allocations are not compared.
 struct Behind(RustHost);
 
 impl Host for Behind {

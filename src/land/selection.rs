@@ -3,8 +3,8 @@
 //! A level is used up to a distance, its reach, at which the error of the next coarser level is as small as the host
 //! asks. Distances are horizontal, with the height of the eye above one reference height, so that they depend on the
 //! place alone and not on its height. The vertices of a level move onto those of the next coarser one before its reach
-//! ends (Strugar 2010). Where two levels meet, the finer one is wholly in the coarser one's form, and the coarser one
-//! has not begun to change: both have the same vertices, and there is no crack.
+//! ends (Strugar 2010). Where two levels meet, the vertices of the finer one have all moved onto the coarser one's, and
+//! those of the coarser one have not begun to move. Both levels then have the same vertices there, without a crack.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 

@@ -26,7 +26,8 @@ pub(super) struct PlaceOnWay {
     pub is_near: bool,
 }
 
-/// Returns the place of `now` on the way from `start` to `end`. The three are planets of one body.
+/// Returns the place of the air of `now` on the way between the airs of `start` and `end`, which are one body under
+/// three weathers.
 pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceOnWay {
     if now == end {
         return PlaceOnWay { share: 1.0, is_near: true };
@@ -46,7 +47,7 @@ pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceO
     PlaceOnWay { share, is_near: sum(&beside, &beside) <= allowed }
 }
 
-/// Way from one planet's air to another's, as its light takes it.
+/// Weights of the tables at the two ends of a way from one air to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightWay {
     /// Change of the vertical optical depth over the way, times [`SLANT`]; held to ±40, where the light has long

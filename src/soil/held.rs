@@ -81,7 +81,7 @@ impl UndugGround for Terrain {
 }
 
 /// Writes the change of the soil into the heights of the tiles. `is_known` says that the host has changed no tile since
-/// the last time. Adds the patches whose heights are others now to `changed`, with the rectangle of these cells.
+/// the last call. Adds each patch whose heights have changed to `changed`, with the rectangle of the changed cells.
 fn show(terrain: &mut Terrain, site: &SoilSite, is_known: bool, changed: &mut Vec<([i32; 2], CellRect)>) {
     let (shown, revision) = (terrain.soil_revision, terrain.revision + 1);
     let mut heights = [(0, 0.0); CELLS];

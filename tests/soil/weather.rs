@@ -62,7 +62,7 @@ fn a_wall_stands_moist_and_falls_dry_or_after_hours_of_rain() {
     assert!(fallen_m(&bone_dry) > 0.05, "{}", fallen_m(&bone_dry));
 }
 
-/// What a bucket reports halfway through the ground at a depth, from now on.
+/// Returns the report of a bucket halfway through the ground at a depth, which it begins to cross now.
 fn cut(context: &mut Context, tool: SoilToolId, depth_m: f64) -> SoilToolReport {
     let now_s = context.time_s();
     for (after_s, x, depth_m) in [(0.5, -2.0, -0.5), (1.0, -2.0, depth_m), (2.0, 0.0, depth_m)] {
