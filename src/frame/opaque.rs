@@ -7,8 +7,8 @@ use crate::{
     error::{Error, Result},
     gpu::Layer,
     stage::{
-        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, OpaqueDraw, OpaqueTarget, PlannedShares,
-        Recording, SkyLookup, Stages, check_written, uniform,
+        CostItem, DepthAccess, DrawContext, DrawTarget, Frame, FrameContext, LightLookup, OpaqueDraw, OpaqueTarget,
+        PlannedShares, Recording, Stages, check_written, uniform,
     },
 };
 
@@ -88,7 +88,7 @@ impl View {
         };
         let target = OpaqueTarget::of(frame, color.texture, depth.texture);
         let (tables_layout, tables_group, constants) = self.effects.light_tables();
-        let tables = SkyLookup { layout: &tables_layout, group: &tables_group, constants };
+        let tables = LightLookup { layout: &tables_layout, group: &tables_group, constants };
         let opaque = OpaqueDraw { target, layout: &layout, tables, clip: OpaqueDraw::clip_of(&context) };
         for effect in self.effects.each().into_iter().filter(|effect| effect.has_opaque()) {
             effect.draw_opaque(&context, &opaque, &mut pass)?;

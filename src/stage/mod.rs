@@ -25,7 +25,7 @@ pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares, T
 pub use diagnostic::Diagnostic;
 pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
 pub use frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers};
-pub(crate) use opaque::{OpaqueDraw, OpaqueTarget, SkyLookup};
+pub(crate) use opaque::{LightLookup, OpaqueDraw, OpaqueTarget};
 pub(crate) use outputs::{Exchange, NO_OUTPUTS, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};

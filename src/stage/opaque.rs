@@ -46,7 +46,7 @@ impl OpaqueTarget {
 }
 
 /// Look-up tables of sky and air (group 1), for opaque things that mirror the sky.
-pub(crate) struct SkyLookup<'a> {
+pub(crate) struct LightLookup<'a> {
     pub layout: &'a wgpu::BindGroupLayout,
     pub group: &'a wgpu::BindGroup,
     /// Values of the `override` constants of `shaders/sky/lookup.wgsl`.
@@ -59,7 +59,7 @@ pub(crate) struct OpaqueDraw<'a> {
     pub target: OpaqueTarget,
     /// Layout of group 0.
     pub layout: &'a wgpu::BindGroupLayout,
-    pub tables: SkyLookup<'a>,
+    pub tables: LightLookup<'a>,
     /// Matrix from camera-relative (east, north, up) to wgpu's clip space for these images.
     pub clip: DMat4,
 }
