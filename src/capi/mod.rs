@@ -111,6 +111,7 @@ mod boundary;
 mod host;
 mod occluder_map;
 mod opengl_structs;
+mod sea_structs;
 mod soil_structs;
 mod vulkan_structs;
 mod weather_convert;
