@@ -245,7 +245,7 @@ impl View {
             world: &context.world,
             held: HeldEffects(&context.held.all()),
             asked,
-            planet_ahead: context.world.planet_ahead(frame.camera.position),
+            planet_ahead: context.world.planet_ahead(frame.camera.position, &now.scene.planet),
             table_share: if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() },
             keeps_tables: self.rehearses(),
         };

@@ -57,19 +57,16 @@ fn everything() -> LandFrustum {
 }
 
 fn uniform_of(detail: &LevelDistances, eye: LandEye, top: u8) -> LandUniform {
-    let light = LandLight::default();
     LandPicture {
         eye,
-        detail,
+        detail: *detail,
         cell_m: 1.0,
-        top,
         to_local: DMat3::IDENTITY,
-        clip: DMat4::IDENTITY,
         curvature: 0.0,
         altitude_m: 0.0,
-        light: &light,
+        light: LandLight::default(),
     }
-    .uniform()
+    .uniform(DMat4::IDENTITY, top)
 }
 
 /// Vertices on the rims of all patches of a picture, as the shader places them.

@@ -46,22 +46,18 @@ pub(super) struct PatchInstance {
     pub kind: u32,
 }
 
-/// Inputs of [`LandUniform`].
-pub(super) struct LandPicture<'a> {
+/// Picture for which patches and pages are ready.
+pub(super) struct LandPicture {
     pub eye: LandEye,
-    pub detail: &'a LevelDistances,
+    pub detail: LevelDistances,
     pub cell_m: f64,
-    /// Level of the largest nodes.
-    pub top: u8,
     /// Rotation from the lattice's axes to east, north, up at the camera.
     pub to_local: DMat3,
-    /// Matrix from camera-relative east, north, up to clip space.
-    pub clip: DMat4,
     /// Curvature of the planet, 1/m; 0 in a flat world.
     pub curvature: f64,
     /// Altitude of the terrain's origin above the sea, m.
     pub altitude_m: f64,
-    pub light: &'a LandLight,
+    pub light: LandLight,
 }
 
 fn four(v: DVec3) -> [f32; 4] {
@@ -72,11 +68,13 @@ fn lux(v: [f64; 3]) -> [f32; 4] {
     [v[0] as f32, v[1] as f32, v[2] as f32, 0.0]
 }
 
-impl LandPicture<'_> {
-    pub fn uniform(&self) -> LandUniform {
+impl LandPicture {
+    /// Returns the constants for a draw. `clip` is the matrix from camera-relative east, north, up to clip space, `top`
+    /// the level of the largest nodes.
+    pub fn uniform(&self, clip: DMat4, top: u8) -> LandUniform {
         let metres = DVec3::new(self.place_m(0), self.place_m(1), self.eye.place.z);
         LandUniform {
-            clip: (self.clip * DMat4::from_mat3(self.to_local)).as_mat4().to_cols_array(),
+            clip: (clip * DMat4::from_mat3(self.to_local)).as_mat4().to_cols_array(),
             to_local: [0, 1, 2].map(|i| four(self.to_local.col(i))),
             eye: self.eye.uniform(),
             cell_m: self.cell_m as f32,
@@ -85,7 +83,7 @@ impl LandPicture<'_> {
             altitude: self.altitude_m as f32,
             curvature: self.curvature as f32,
             pad: [0.0; 3],
-            levels: std::array::from_fn(|level| self.level(level)),
+            levels: std::array::from_fn(|level| self.level(level, top)),
             sun: four(self.light.sun),
             sun_lux: lux(self.light.sun_lux),
             moon: four(self.light.moon),
@@ -99,9 +97,9 @@ impl LandPicture<'_> {
 
     /// Distance at which the vertices of a level begin to move, and 1 over the distance on which they move, which is 0
     /// for the largest nodes.
-    fn level(&self, level: usize) -> [f32; 4] {
+    fn level(&self, level: usize, top: u8) -> [f32; 4] {
         let [start, end] = self.detail.morph(level);
-        let moves = level < usize::from(self.top);
+        let moves = level < usize::from(top);
         [start as f32, if moves { (1.0 / (end - start)) as f32 } else { 0.0 }, 0.0, 0.0]
     }
 

@@ -10,7 +10,7 @@ use super::{
     passes::LandPass,
     relief::Relief,
     selection::{LandFrustum, LandPatch, LevelDistances, select},
-    uniforms::{LandPicture, LandUniform, PatchInstance},
+    uniforms::{LandPicture, PatchInstance},
 };
 use crate::{
     error::Result,
@@ -32,20 +32,9 @@ pub(crate) struct LandView {
     instances: Vec<PatchInstance>,
     /// Whether the host has asked for terrain, and there is some.
     is_there: bool,
-    /// Block of the picture, but for its matrix, which is that of the draw.
-    picture: Option<PreparedPicture>,
+    /// Picture of this frame, if terrain is drawn into it.
+    picture: Option<LandPicture>,
     pass: Option<LandPass>,
-}
-
-/// Picture for which patches and pages are ready.
-struct PreparedPicture {
-    eye: LandEye,
-    detail: LevelDistances,
-    cell_m: f64,
-    to_local: glam::DMat3,
-    curvature: f64,
-    altitude_m: f64,
-    light: LandLight,
 }
 
 impl LandView {
@@ -96,7 +85,7 @@ impl LandView {
             WorldKind::Flat => 0.0,
             WorldKind::Tangent | WorldKind::Ecef => 1.0 / (now.planet_radius_m + now.scene.place.altitude_m),
         };
-        self.picture = Some(PreparedPicture {
+        self.picture = Some(LandPicture {
             eye,
             detail,
             cell_m,
@@ -156,29 +145,12 @@ impl DrawnEffect for LandView {
         if self.instances.is_empty() {
             return Ok(());
         }
-        let block: LandUniform = picture.uniform(opaque.clip, self.relief.top());
+        let block = picture.uniform(opaque.clip, self.relief.top());
         let own = self.pass.get_or_insert_with(|| LandPass::new(context.device, &self.blocks));
         own.draw(context.device, opaque, pages, (&block, &self.instances), pass)
     }
 
     fn bytes(&self) -> u64 {
         self.pages.bytes() + self.pass.as_ref().map_or(0, LandPass::bytes)
-    }
-}
-
-impl PreparedPicture {
-    fn uniform(&self, clip: DMat4, top: u8) -> LandUniform {
-        LandPicture {
-            eye: self.eye,
-            detail: &self.detail,
-            cell_m: self.cell_m,
-            top,
-            to_local: self.to_local,
-            clip,
-            curvature: self.curvature,
-            altitude_m: self.altitude_m,
-            light: &self.light,
-        }
-        .uniform()
     }
 }

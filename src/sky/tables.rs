@@ -60,8 +60,8 @@ enum State {
     Idle,
     /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
-    /// Tables to show next. Their weight is 0 in the call in which observers draw them
-    /// for the first time, and while the air has not yet left that of the shown tables.
+    /// Fade to the tables to show next. Their weight is 0 in the call in which observers draw them for the first time,
+    /// and while the air has not yet left that of the shown tables.
     Fading(TablesFade),
     /// Tables that the last call has finished.
     Built(Arc<TableSet>),
@@ -74,8 +74,9 @@ const REST: u32 = 8;
 const FADE: f32 = 1.0 / 16.0;
 /// Largest step of the weight per call while the air changes: it spreads what a build has missed.
 const ALONG: f32 = 1.0 / 64.0;
-/// Share of a build from which it is never given up, and change of a share that is too small to draw.
+/// Share of a build from which it is never given up.
 const KEPT_FROM: f64 = 0.5;
+/// Change of the weight that is too small to draw.
 const UNSEEN_SHARE: f32 = 1e-4;
 
 /// Progress made by [`SkyTables::update`].
@@ -286,15 +287,12 @@ impl SkyTables {
     fn begin_fade(&mut self, set: Arc<TableSet>, change: AirChange<'_>) {
         let Some(shown) = &self.shown else { return };
         let place = place_on_way(&shown.planet, &set.planet, change.now);
-        self.state = if !change.goes_on() {
-            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::End })
-        } else if change.leads_past(shown, &set) && place.is_near {
-            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::Air })
-        } else if place.share >= 0.5 {
-            State::Fading(TablesFade { set, weight: 0.0, to: FadeTo::End })
+        let to = if change.goes_on() && place.is_near && change.leads_past(shown, &set) {
+            Some(FadeTo::Air)
         } else {
-            State::Idle
+            (!change.goes_on() || place.share >= 0.5).then_some(FadeTo::End)
         };
+        self.state = to.map_or(State::Idle, |to| State::Fading(TablesFade { set, weight: 0.0, to }));
     }
 
     /// Continues a fade. One that follows the air ends where the air turns away, and the mix is shown from then on.
@@ -306,30 +304,31 @@ impl SkyTables {
         share: f32,
     ) -> Result<()> {
         let Some(shown) = self.shown.clone() else { return Ok(()) };
-        let TablesFade { set, weight: before, to } = fade;
+        let TablesFade { set, weight: before, to } = &fade;
+        let before = *before;
         let place = place_on_way(&shown.planet, &set.planet, change.now);
         let follows = matches!(to, FadeTo::Air);
         let wanted = if follows { LightWay::new(&shown.planet, &set.planet).weight(place.share) as f32 } else { 1.0 };
         let most = if change.goes_on() { ALONG } else { share.max(FADE) };
         let rests = (wanted - before).abs() <= UNSEEN_SHARE && wanted < 1.0 && !change.goes_on();
-        if follows && (rests || !place.is_near || !change.leads_past(&shown, &set)) {
+        if follows && (rests || !place.is_near || !change.leads_past(&shown, set)) {
             if before <= UNSEEN_SHARE {
                 self.show(encoder, None);
             } else if shown.detail == set.detail {
-                let mixed = self.kit.mixed(encoder, [&shown, &set], before)?;
+                let mixed = self.kit.mixed(encoder, [&shown, set], before)?;
                 self.show(encoder, Some(mixed));
             } else {
-                self.state = State::Fading(TablesFade { set, weight: before, to: FadeTo::End });
+                self.state = State::Fading(TablesFade { to: FadeTo::End, ..fade });
             }
             return Ok(());
         }
         let t = before + (wanted - before).clamp(-most, most);
         if t >= 1.0 - UNSEEN_SHARE {
             self.busy = true;
-            self.show(encoder, Some(set));
+            self.show(encoder, Some(fade.set));
         } else if (t - before).abs() > UNSEEN_SHARE {
             self.busy = true;
-            self.state = State::Fading(TablesFade { set, weight: t, to });
+            self.state = State::Fading(TablesFade { weight: t, ..fade });
             self.revision += 1;
             self.draw_light(encoder);
         }

@@ -220,17 +220,17 @@ impl World {
     }
 
     /// Returns the planet under the weather to which the weather at `position` is changing, as it will be after one of
-    /// [`AHEAD_S`]. Both the timeline and regions that move change it. `None` while the weather rests.
-    pub fn planet_ahead(&self, position: DVec3) -> Option<Planet> {
+    /// [`AHEAD_S`]. Both the timeline and regions that move change it. `now` is the planet under the present weather.
+    /// `None` while the weather rests.
+    pub fn planet_ahead(&self, position: DVec3, now: &Planet) -> Option<Planet> {
         let now_s = self.time_s;
         if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {
             return None;
         }
         let after = |ahead_s: &f64| Some(self.planet_under(&self.weather_at(position, now_s + ahead_s).ok()?));
         let depth = |planet: &Planet| zenith_depth(planet, 0.0)[1];
-        let now = depth(&after(&0.0)?);
         let [all @ .., last] = &AHEAD_S;
-        let serves = |planet: &Planet| (depth(planet) - now).abs() <= AHEAD_DEPTH;
+        let serves = |planet: &Planet| (depth(planet) - depth(now)).abs() <= AHEAD_DEPTH;
         all.iter().filter_map(after).find(serves).or_else(|| after(last))
     }
 
