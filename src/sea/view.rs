@@ -64,9 +64,9 @@ impl SidePlanes {
         Self([w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length()))
     }
 
-    /// Whether any of a sphere may be in the picture.
-    fn shows(&self, middle: DVec3, radius_m: f64) -> bool {
-        self.0.iter().all(|plane| plane.dot(middle.extend(1.0)) > -radius_m)
+    /// Whether any of a box along the axes may be in the picture.
+    fn shows(&self, middle: DVec3, half_m: DVec3) -> bool {
+        self.0.iter().all(|plane| plane.dot(middle.extend(1.0)) > -plane.truncate().abs().dot(half_m))
     }
 }
 
@@ -78,7 +78,8 @@ impl SeaView {
         let planes = SidePlanes::new(&(camera.projection * DMat4::from_mat3(turned)));
         self.blocks.reserve_exact(MOST_BLOCKS);
         let displaced_m = DISPLACED_TO_CREST * self.crest_m;
-        let shows = |middle: DVec2, half: f64| planes.shows(chart.at(middle), 1.5 * half + displaced_m);
+        let shows =
+            |middle: DVec2, half: f64| planes.shows(chart.at(middle), chart.half_size_m(middle, half) + displaced_m);
         eye.blocks(shows, &mut self.blocks);
     }
 
