@@ -140,7 +140,9 @@ fn whole_or<T>(t: f64, other: T, blend: impl FnOnce() -> T) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Weather, Wind, derive};
+    use super::super::{
+        CloudKind, CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind, derive,
+    };
     use super::*;
 
     fn two() -> [Conditions; 2] {
@@ -154,6 +156,7 @@ mod tests {
             clouds: vec![CloudLayer::of(CloudKind::Stratus, 1.0, 300.0)],
             precipitation: Precipitation { thunderstorm: true, ..Precipitation::of(PrecipitationKind::Snow, 2.0) },
             wind: Wind::of(15.0, 180.0),
+            surface: Surface { snow_depth_m: 0.1, ..Surface::default() },
             ..Weather::default()
         };
         [day, storm].map(|w| derive(&w).unwrap())
