@@ -6108,7 +6108,7 @@ typedef struct wk_cloud_shadows {
      * Weight of the texture against mean_share, 0 to 1. It is 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and
      * with the light near the horizon: the texture is then meaningless.
      */
-    double told;
+    double map_weight;
     /**
      * Height above the plane, m, from which on mean_share replaces the texture: 100 m above the base of the lowest
      * clouds.
@@ -6128,7 +6128,7 @@ typedef struct wk_cloud_shadows {
     /* height_from_world */ { 0.0, 0.0, 0.0, 0.0 }, \
     /* camera_uv */ { 0.0, 0.0 }, \
     /* mean_share */ 0.0, \
-    /* told */ 0.0, \
+    /* map_weight */ 0.0, \
     /* top_m */ 0.0 \
 }
 

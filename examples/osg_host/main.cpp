@@ -82,14 +82,14 @@ struct TrainersRain : osg::Camera::DrawCallback {
     void operator()(osg::RenderInfo &) const override
     {
         wk_view *view = weather->get();
-        if (!view || view == told) return;
+        if (!view || view == configured) return;
         wk_rain rain = WK_RAIN_INIT;
         rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
         welkin_osg::check(wk_view_set_rain(view, &rain));
-        told = view;
+        configured = view;
     }
     osg::ref_ptr<welkin_osg::View> weather;
-    mutable wk_view *told = nullptr; /* read and written by the drawing thread only */
+    mutable wk_view *configured = nullptr; /* read and written by the drawing thread only */
 };
 
 struct Window {

@@ -1,6 +1,6 @@
 // Size of the image of the glow: the light that lamps and flashes give the clouds. The second of the sky's layers
-// (between/hung.wgsl) has this image in the rows below the picture of the clouds. The glow is drawn anew every frame,
-// and therefore apart from the clouds, which are kept from frame to frame.
+// (between/sky_sample.wgsl) has this image in the rows below the picture of the clouds. The glow is drawn anew every
+// frame, and therefore apart from the clouds, which are kept from frame to frame.
 
 // Largest number of rows of the glow's image.
 const GLOW_ROWS: f32 = 96.0;

@@ -1,8 +1,8 @@
 // Sky in a direction, without fog: behind everything in the picture, in mirrors, and in the cube map.
-//!include "between/hung.wgsl"
+//!include "between/sky_sample.wgsl"
 
-fn night_light(hung: Hung) -> vec3f {
-    return mix(frame.night_floor, hung.behind, behind_share);
+fn night_light(sky: SkySample) -> vec3f {
+    return mix(frame.night_floor, sky.behind, behind_share);
 }
 
 // Light of the air above the horizon, cd/m^2, without the discs of sun and moon.
@@ -15,18 +15,18 @@ fn clear_sky_above(d: vec3f) -> vec3f {
 
 // Sky above the horizon without the clouds in front of it. `clear` is the light of the air, with a disc that is visible
 // in it.
-fn open_sky(d: vec3f, clear: vec3f, hung: Hung) -> vec3f {
-    return mix(clear * drawn.z + night_light(hung), frame.deck * overcast_gradation(d.z), hung.deck);
+fn open_sky(d: vec3f, clear: vec3f, sky: SkySample) -> vec3f {
+    return mix(clear * drawn.z + night_light(sky), frame.deck * overcast_gradation(d.z), sky.deck);
 }
 
 // Lays the clouds in front of `behind`, with the light of flashes on them.
-fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
-    var light = with_clouds(Veil(behind, vec3f(0.0)), hung, RANGE_SKY).light;
+fn before_sky(behind: vec3f, d: vec3f, sky: SkySample) -> vec3f {
+    var light = with_clouds(Veil(behind, vec3f(0.0)), sky, RANGE_SKY).light;
     if FLASH {
-        let known = CLOUDS && hung.reach.y > 0.0;
-        let way = select(flash_way(d), exp2(0.5 * (hung.reach.x + hung.reach.y)), known);
+        let known = CLOUDS && sky.reach.y > 0.0;
+        let way = select(flash_way(d), exp2(0.5 * (sky.reach.x + sky.reach.y)), known);
         // The deck has no glow of its own.
-        let flat = select(cloud_cover(hung), hung.clouds.a * hung.deck, hung.has_glow);
+        let flat = select(cloud_cover(sky), sky.clouds.a * sky.deck, sky.has_glow);
         light += flash_on_clouds(d, way) * flat;
     }
     return light;
@@ -34,20 +34,20 @@ fn before_sky(behind: vec3f, d: vec3f, hung: Hung) -> vec3f {
 
 // Sky above the horizon, without fog and without the discs of sun and moon.
 fn sky_toward(d: vec3f) -> vec3f {
-    let hung = hung_toward(d);
-    return before_sky(open_sky(d, clear_sky_above(d), hung), d, hung);
+    let sky = sky_sample_toward(d);
+    return before_sky(open_sky(d, clear_sky_above(d), sky), d, sky);
 }
 
 // Light of flashes in the air in front of a surface at this range. Clouds hide the air behind them.
-fn flash_before(ray: ViewRay, range: f32, hung: Hung) -> vec3f {
+fn flash_before(ray: ViewRay, range: f32, sky: SkySample) -> vec3f {
     let all = flash_in_air(ray, range);
-    if !CLOUDS || hung.reach.y == 0.0 {
+    if !CLOUDS || sky.reach.y == 0.0 {
         return all;
     }
-    return mix(flash_in_air(ray, min(range, exp2(hung.reach.x))), all, hung.clouds.a);
+    return mix(flash_in_air(ray, min(range, exp2(sky.reach.x))), all, sky.clouds.a);
 }
 
 // Share of the background that clouds hide.
-fn cloud_cover(hung: Hung) -> f32 {
-    return select(frame.flash_cover, 1.0 - hung.clouds.a * (1.0 - hung.deck), CLOUDS);
+fn cloud_cover(sky: SkySample) -> f32 {
+    return select(frame.flash_cover, 1.0 - sky.clouds.a * (1.0 - sky.deck), CLOUDS);
 }

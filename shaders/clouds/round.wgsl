@@ -1,7 +1,7 @@
 // Draws the panorama: clouds in all directions from the camera, for mirrors and cube maps.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
-//!include "between/hung.wgsl"
+//!include "between/sky_sample.wgsl"
 //!include "clouds/march.wgsl"
 
 // Marches the ray of one texel of the panorama.

@@ -15,7 +15,7 @@ struct CloudShadows {
     // Mean share of the direct light over all places.
     mean: f32,
     // Weight of the map against that mean, 0 to 1.
-    told: f32,
+    map_weight: f32,
     // Height above the plane from which on the mean holds, m.
     top: f32,
     // Extinction of the air at the camera's height, 1/m.
@@ -31,6 +31,6 @@ fn cloud_shadow(shadows: CloudShadows, map: texture_2d<f32>, between: sampler, a
     let here = textureSampleLevel(map, between, shadows.camera + away, 0.0).r;
     // Far from the camera, and within clouds, the mean is used.
     let far = max(abs(away.x), abs(away.y));
-    let told = shadows.told * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((shadows.top - height) / 100.0, 0.0, 1.0);
-    return mix(shadows.mean, here, told);
+    let weight = shadows.map_weight * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((shadows.top - height) / 100.0, 0.0, 1.0);
+    return mix(shadows.mean, here, weight);
 }

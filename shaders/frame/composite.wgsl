@@ -4,7 +4,7 @@
 //!include "common/fullscreen.wgsl"
 //!include "frame/color_space.wgsl"
 //!include "frame/on_surfaces.wgsl"
-//!include "between/hung.wgsl"
+//!include "between/sky_sample.wgsl"
 //!include "between/shaft_light.wgsl"
 //!include "frame/weather_seen.wgsl"
 
@@ -17,11 +17,11 @@ override CLOUD_SHADOWS: bool = false;
 
 // Factor for the light on what the host drew, in the shadows of clouds: the light at the position, divided by the mean
 // over positions with which the host has lit it.
-fn under_clouds(hung: Hung, range: f32) -> vec3f {
+fn under_clouds(sky: SkySample, range: f32) -> vec3f {
     if !CLOUD_SHADOWS || range >= RANGE_SKY {
         return vec3f(1.0);
     }
-    return 1.0 + frame.cloud_shadow.rgb * (hung.reach.z - frame.cloud_shadow.w);
+    return 1.0 + frame.cloud_shadow.rgb * (sky.reach.z - frame.cloud_shadow.w);
 }
 
 // Display-linear value of a scene luminance.
@@ -46,13 +46,13 @@ fn compose(host: vec4f, seen: Seen) -> vec4f {
     drawn = frame.drawn;
     behind_share = frame.behind_drawn;
     let ray = view_ray(frame.depth, seen.ndc);
-    let hung = hung_in(seen.pixel, seen.range);
+    let sky = sky_sample_in(seen.pixel, seen.range);
     if CLOUD_SHAFTS {
-        air_lit = shaft_light(ray.direction, hung.shafts);
+        air_lit = shaft_light(ray.direction, sky.shafts);
     }
-    var veil = weather_seen(ray, seen, hung);
+    var veil = weather_seen(ray, seen, sky);
     veil = on_surface(veil, linear_host(host.rgb), ray, seen);
-    veil.transmittance *= under_clouds(hung, seen.range);
+    veil.transmittance *= under_clouds(sky, seen.range);
     if PARTICLES {
         veil = with_drops(veil, seen.pixel);
     }

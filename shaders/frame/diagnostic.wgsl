@@ -27,18 +27,18 @@ fn log10(x: f32) -> f32 {
 fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let air = Veil(vec3f(0.0), exp(-sky_path(ray.direction, seen.range).depth));
-    let through = veil_before(ray, seen.range, seen.plane, air, hung_in(seen.pixel, seen.range)).transmittance;
+    let through = veil_before(ray, seen.range, seen.plane, air, sky_sample_in(seen.pixel, seen.range)).transmittance;
     return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
 }
 
 // Error due to what the plan leaves out of air, fog and clear sky: |Y' - Y| / (Y + 0.01), in exposed luminance (1 =
 // white).
 fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
-    let hung = hung_in(seen.pixel, seen.range);
+    let sky = sky_sample_in(seen.pixel, seen.range);
     drawn = vec4f(1.0, 1.0, 1.0, frame.drawn.w);
-    let all = exposed(host, weather_over(ray, seen.range, seen.plane, hung));
+    let all = exposed(host, weather_over(ray, seen.range, seen.plane, sky));
     drawn = frame.drawn;
-    let planned = exposed(host, weather_over(ray, seen.range, seen.plane, hung));
+    let planned = exposed(host, weather_over(ray, seen.range, seen.plane, sky));
     return abs(planned - all) / (all + 0.01);
 }
 

@@ -31,7 +31,7 @@ fn environment(in: FullscreenVarying) -> EnvironmentTexel {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let at = in.uv * 2.0 - 1.0;
     let direction = normalize(face.forward + at.x * face.right + at.y * face.down);
-    let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY, hung_toward(direction)).light;
+    let light = weather_over(ViewRay(vec3f(0.0), direction, 1.0), RANGE_SKY, RANGE_SKY, sky_sample_toward(direction)).light;
     // The greatest half float is 65504.
     let texel = vec4f(capped(light * face.scale, 65504.0), 1.0);
     return EnvironmentTexel(texel, texel);

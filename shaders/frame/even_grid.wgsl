@@ -38,7 +38,7 @@ fn even_grid(in: FullscreenVarying) -> EvenTexel {
     behind_share = frame.behind_drawn;
     let ray = view_ray(frame.depth, ndc);
     // Clouds change from pixel to pixel; each pixel lays its own clouds over the interpolated value.
-    let veil = weather_over(ray, seen.range, seen.plane, hung_with(NO_CLOUDS));
+    let veil = weather_over(ray, seen.range, seen.plane, sky_sample_with(NO_CLOUDS));
     let disc = BACKGROUND && DISCS && is_near_disc(ray.direction, 2.0 * f32(EVEN_PIXELS) * frame.pixel_angle);
     let light = min(veil.light * (EVEN_WHITE * frame.even_scale), vec3f(EVEN_MOST));
     return EvenTexel(vec4f(light, log2(max(seen.range, 1e-3))), vec4f(veil.transmittance, f32(disc)));

@@ -45,8 +45,8 @@ fn picture_pixel(ndc: vec2f) -> vec2i {
 fn froxel_veil(at: FroxelPlace) -> Veil {
     drawn = frame.drawn;
     let ray = view_ray(frame.depth, at.ndc);
-    let hung = hung_in(picture_pixel(at.ndc), at.distance);
-    return veil_between(ray, at.distance, at.distance / ray.slant * frame.depth.plane_scale, hung);
+    let sky = sky_sample_in(picture_pixel(at.ndc), at.distance);
+    return veil_between(ray, at.distance, at.distance / ray.slant * frame.depth.plane_scale, sky);
 }
 
 // Texel with the values of a veil.

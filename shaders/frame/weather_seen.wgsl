@@ -4,6 +4,6 @@
 //!include "frame/host_picture.wgsl"
 
 // Weather in front of the surface in a pixel, or the sky.
-fn weather_seen(ray: ViewRay, seen: Seen, hung: Hung) -> Veil {
-    return weather_over(ray, seen.range, seen.plane, hung);
+fn weather_seen(ray: ViewRay, seen: Seen, sky: SkySample) -> Veil {
+    return weather_over(ray, seen.range, seen.plane, sky);
 }

@@ -1,7 +1,7 @@
 // Version of weather_seen.wgsl for interpolated pixels: reads the weather from the coarse grid, and lays the pixel's
 // clouds, which the grid does not have, over it.
 //!include "between/air.wgsl"
-//!include "between/hung.wgsl"
+//!include "between/sky_sample.wgsl"
 //!include "frame/even.wgsl"
 //!include "frame/host_picture.wgsl"
 
@@ -12,7 +12,7 @@
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 
-fn weather_seen(ray: ViewRay, seen: Seen, hung: Hung) -> Veil {
+fn weather_seen(ray: ViewRay, seen: Seen, sky: SkySample) -> Veil {
     let at = vec2f(seen.pixel) / f32(EVEN_PIXELS) + 1.5;
     let uv = at / vec2f(textureDimensions(even_weather));
     let light = textureSampleLevel(even_weather, even_sampler, uv, 0, 0.0).rgb;
@@ -20,5 +20,5 @@ fn weather_seen(ray: ViewRay, seen: Seen, hung: Hung) -> Veil {
     if !select(MEDIUM, BACKGROUND, seen.range >= RANGE_SKY) {
         return veil;
     }
-    return with_clouds(veil, hung, seen.range);
+    return with_clouds(veil, sky, seen.range);
 }

@@ -147,8 +147,8 @@ fn channel_fragment(in: ChannelVarying) -> @location(0) vec4f {
     drawn = frame.drawn;
     let share = select(0.0, line_share(in), is_open(in));
     let ray = ViewRay(vec3f(0.0), in.middle.xyz, 1.0);
-    let hung = hung_in(vec2i(in.position.xy), in.middle.w);
-    let through = veil_between(ray, in.middle.w, in.light.y, hung).transmittance;
+    let sky = sky_sample_in(vec2i(in.position.xy), in.middle.w);
+    let through = veil_between(ray, in.middle.w, in.light.y, sky).transmittance;
     // Half of the largest half float, because two parts may fall on one pixel.
     return vec4f(capped(channel.color * through * (in.light.x * share), 3e4), 0.0);
 }

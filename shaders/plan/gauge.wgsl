@@ -16,7 +16,7 @@ struct Looked {
     plane: f32,
     ndc: vec2f,
     mask: f32,
-    hung: Hung,
+    sky: SkySample,
 }
 
 // Packs the upper halves of two numbers, rounded: eight bits of mantissa are enough.
@@ -33,19 +33,19 @@ const IN_GAP: u32 = 7u;
 
 // Sky objects in a composition. Clouds are at most a deck, so that the contributions of other parts do not depend on
 // the rung at which clouds are drawn now.
-fn hung_for(k: u32, ray: ViewRay, seen: Hung) -> Hung {
-    var hung = hung_bare();
-    hung.behind = seen.behind;
+fn sky_sample_for(k: u32, ray: ViewRay, seen: SkySample) -> SkySample {
+    var sky = bare_sky_sample();
+    sky.behind = seen.behind;
     if k > WITH_DECK {
-        hung.deck = 0.0;
-        hung.disc = 1.0;
+        sky.deck = 0.0;
+        sky.disc = 1.0;
     }
     let way = frame.clouds_over / select(ray.direction.z, 1e-4, abs(ray.direction.z) < 1e-4);
     if k == IN_CLOUD && way > 0.0 {
-        hung.clouds = vec4f(frame.mean_cloud.rgb * frame.exposure, 0.0);
-        hung.reach = vec3f(vec2f(log2(max(way, 1.0))), 1.0);
+        sky.clouds = vec4f(frame.mean_cloud.rgb * frame.exposure, 0.0);
+        sky.reach = vec3f(vec2f(log2(max(way, 1.0))), 1.0);
     }
-    return hung;
+    return sky;
 }
 
 // Share of clouds along a slant ray through their layer, from their cover of the sky.
@@ -63,7 +63,7 @@ fn gauged(p: Looked) -> vec4u {
     for (var k = 0u; k < (count & 15u); k++) {
         drawn = select(vec4f(1.0), vec4f(0.0), vec4u(k) == vec4u(1u, 2u, 3u, 4u));
         behind_share = frame.behind.y * drawn.z;
-        shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, hung_for(k, ray, p.hung)));
+        shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, sky_sample_for(k, ray, p.sky)));
     }
     // Error measure of the whole library, (Y' - Y) / (Y + 0.01) in exposed luminance (1 = white).
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));

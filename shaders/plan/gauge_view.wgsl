@@ -9,13 +9,13 @@ fn gauge(in: FullscreenVarying) -> @location(0) vec4u {
     let pixel = vec2i(place);
     let uv = (place + 0.5) / size;
     let ndc = frame_ndc(uv);
-    var p = Looked(textureLoad(host_color, pixel, 0).rgb, RANGE_SKY, RANGE_SKY, ndc, 0.0, hung_in(pixel, RANGE_SKY));
+    var p = Looked(textureLoad(host_color, pixel, 0).rgb, RANGE_SKY, RANGE_SKY, ndc, 0.0, sky_sample_in(pixel, RANGE_SKY));
     if HAS_DEPTH {
         let depth = textureLoad(host_depth, pixel, 0).r;
         p.range = view_range(frame.depth, depth, ndc);
         p.plane = view_plane(frame.depth, depth, ndc);
     }
-    p.hung = hung_in(pixel, p.range);
+    p.sky = sky_sample_in(pixel, p.range);
     if HAS_MASK {
         p.mask = textureLoad(host_mask, pixel, 0).r;
     }

@@ -230,7 +230,7 @@ fn shaft_veil(i: u32, pixel: vec2i, ndc: vec2f, range: f32) -> vec4f {
     let through = exp(-met.depth);
     let far = met.first + (met.last - met.first) * mean_place(met.depth);
     let at = max(far, 1.0);
-    let before = veil_between(ray, at, at / ray.slant * frame.depth.plane_scale, hung_in(pixel, at));
+    let before = veil_between(ray, at, at / ray.slant * frame.depth.plane_scale, sky_sample_in(pixel, at));
     let own = column_light(i, ray.origin + ray.direction * at, ray.direction) * mix(1.0, met.front, FRONT_SHARE);
     let taken = select(0.0, 1.0 - through, met.last > met.first);
     return vec4f((before.light + before.transmittance * own) * (taken * frame.exposure), taken);

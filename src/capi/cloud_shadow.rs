@@ -60,7 +60,7 @@ pub struct wk_cloud_shadows {
     pub mean_share: f64,
     /// Weight of the texture against mean_share, 0 to 1. It is 0 without broken clouds, with WK_CLOUD_MODEL_DECK, and
     /// with the light near the horizon: the texture is then meaningless.
-    pub told: f64,
+    pub map_weight: f64,
     /// Height above the plane, m, from which on mean_share replaces the texture: 100 m above the base of the lowest
     /// clouds.
     pub top_m: f64,
@@ -78,7 +78,7 @@ impl wk_cloud_shadows {
         height_from_world: [0.0, 0.0, 0.0, 0.0],
         camera_uv: [0.0, 0.0],
         mean_share: 0.0,
-        told: 0.0,
+        map_weight: 0.0,
         top_m: 0.0,
     };
 }
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn wk_view_get_cloud_shadows(
             height_from_world: shadows.height_from_world.to_array(),
             camera_uv: shadows.camera_uv,
             mean_share: shadows.mean_share,
-            told: shadows.told,
+            map_weight: shadows.map_weight,
             top_m: shadows.top_m,
             ..wk_cloud_shadows::INIT
         });

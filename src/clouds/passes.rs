@@ -65,7 +65,7 @@ pub(super) struct CloudPasses {
 /// Inputs of the pass that applies shadows: the shadow map's placement, and the depth of the surfaces.
 pub(super) struct Shaded<'a> {
     /// Placement of the shadow map.
-    pub lie: ShadowProjection,
+    pub projection: ShadowProjection,
     /// The host's depth.
     pub depth: Layer<'a>,
 }
@@ -292,7 +292,7 @@ impl CloudPasses {
         (shaded, past): (Option<&Shaded<'_>>, HistoryUse),
     ) -> Result<(wgpu::BindGroup, u32)> {
         let passes = match (shaded, &mut self.shadows) {
-            (Some(of), Some(shadows)) => shadows.draw(encoder, &of.lie, past),
+            (Some(of), Some(shadows)) => shadows.draw(encoder, &of.projection, past),
             _ => 0,
         };
         let key = shaded.map(|of| (of.depth.texture.clone(), of.depth.index));
@@ -328,7 +328,7 @@ impl CloudPasses {
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         clouds: &CloudsUniform,
-        lie: &ShadowProjection,
+        projection: &ShadowProjection,
         past: HistoryUse,
         texture: &wgpu::Texture,
     ) -> Result<()> {
@@ -337,7 +337,7 @@ impl CloudPasses {
             self.shadows = Some(self.shadow_map(device, texture)?);
         }
         let Some(map) = &mut self.shadows else { return Ok(()) };
-        map.draw(encoder, lie, past);
+        map.draw(encoder, projection, past);
         Ok(())
     }
 

@@ -166,9 +166,9 @@ impl CloudsView {
     }
 
     /// Places the host's shadow map for this frame; `None` if no clouds cast shadows.
-    fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
+    fn lay(&mut self, now: &SceneMoment<'_>, projection: Option<&ShadowProjection>) {
         if let Some(handed) = &mut self.handed {
-            handed.lay(now, lie);
+            handed.lay(now, projection);
         }
     }
 
@@ -242,14 +242,14 @@ impl DrawnEffect for CloudsView {
         passes.tables.update(recording.device, recording.encoder, cosine, overhead.liquid_um);
         passes.place(recording.device, overhead)?;
         let has_shadows = cosine > LOWEST && overhead.is_broken();
-        let lie = has_shadows.then(|| ShadowProjection::new(context.now, overhead));
-        if let (Some(lie), Some(handed)) = (&lie, &self.handed) {
+        let projection = has_shadows.then(|| ShadowProjection::new(context.now, overhead));
+        if let (Some(projection), Some(handed)) = (&projection, &self.handed) {
             // Shadows do not depend on the exposure.
             let clouds = overhead.uniform(context.now, 1.0, &passes.tables.light.media);
             let (past, texture) = (HistoryUse::of(context.frame), &handed.shadows.texture);
-            passes.draw_shadows(recording.device, recording.encoder, &clouds, lie, past, texture)?;
+            passes.draw_shadows(recording.device, recording.encoder, &clouds, projection, past, texture)?;
         }
-        self.lay(context.now, lie.as_ref());
+        self.lay(context.now, projection.as_ref());
         Ok(())
     }
 
@@ -322,14 +322,14 @@ impl DrawnEffect for CloudsView {
         else {
             return Ok(());
         };
-        let lie = ShadowProjection::new(context.now, overhead);
+        let projection = ShadowProjection::new(context.now, overhead);
         let pixel = context.target.rays.pixel_angle(context.picture().height());
         let around = PanoramaInputs {
-            standing: lie.standing,
+            inputs: projection.inputs,
             altitude_m: context.now.scene.place.altitude_m,
             exposure: context.target.exposure,
         };
-        let shaded = context.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { lie, depth });
+        let shaded = context.frame.depth_layer().filter(|_| casts_shadows).map(|depth| Shaded { projection, depth });
         let sampling = Sampling::of(context.picture(), context.frame.depth);
         let inputs = CloudFrame {
             wanted,

@@ -271,7 +271,7 @@ pub(super) struct Live {
     /// Hashes of the terrain and boxes in the field at its last step, as [`Scenery::hash`] returns them.
     pub stood: [u64; 2],
     /// Obstacles as last evaluated, of which the next step evaluates only the changes; `None` if it must evaluate all.
-    standing: Option<SolidBodies>,
+    bodies: Option<SolidBodies>,
     /// Wind for which a steady field was solved: mean at 10 m east and north, m/s, and roughness length, m.
     pub solved_for: [f64; 3],
     /// Time for which a steady field has not rested, s.
@@ -338,7 +338,7 @@ impl Live {
             start: None,
             parts: (0, 0.0),
             stood: [0; 2],
-            standing: None,
+            bodies: None,
             solved_for: [f64::INFINITY; 3],
             awake_s: 0.0,
             rests: false,
@@ -406,7 +406,7 @@ impl Live {
             self.start_at(world, start.level - 1, true)?;
             return Ok(false);
         }
-        (self.standing, self.stood, self.rests, self.awake_s) = (None, [0; 2], false, 0.0);
+        (self.bodies, self.stood, self.rests, self.awake_s) = (None, [0; 2], false, 0.0);
         self.solved_for = [f64::INFINITY; 3];
         Ok(true)
     }
@@ -446,7 +446,7 @@ impl Live {
         let inflow = Inflow::new(world, self.time_s, desc.mode);
         let scenery = Scenery::new(world, self, self.time_s);
         self.field.shift(by, |p| inflow.at(p.z - scenery.ground_m(p.truncate())))?;
-        self.standing = None;
+        self.bodies = None;
         Ok(false)
     }
 
@@ -465,12 +465,12 @@ impl Live {
             }
         }
         let ground = |p: DVec2| scenery.ground_m(p);
-        if stands != self.stood || self.standing.is_none() {
+        if stands != self.stood || self.bodies.is_none() {
             let boxes: Vec<FlowBox> = scenery.boxes().collect();
             let moving: Vec<FlowBox> = boxes.iter().filter(|b| b.velocity_m_s != DVec3::ZERO).copied().collect();
-            let before = self.standing.take().filter(|_| stands[0] == self.stood[0]);
+            let before = self.bodies.take().filter(|_| stands[0] == self.stood[0]);
             let obstacles = FlowObstacles { terrain: Some(&ground), boxes: &boxes };
-            self.standing = Some(self.field.follow_obstacles(&obstacles, &moving, before)?);
+            self.bodies = Some(self.field.follow_obstacles(&obstacles, &moving, before)?);
             self.stood = stands;
         }
         if self.desc.walls == WindWalls::Rough {

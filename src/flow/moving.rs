@@ -100,7 +100,7 @@ impl FlowField {
         Ok(())
     }
 
-    /// Replaces the obstacles without making the air free of divergence, which the next step does. `standing` is the
+    /// Replaces the obstacles without making the air free of divergence, which the next step does. `bodies` is the
     /// result of the last call, if terrain and fixed obstacles are the same.
     ///
     /// # Errors
@@ -109,10 +109,10 @@ impl FlowField {
         &mut self,
         obstacles: &FlowObstacles,
         moving: &[super::FlowBox],
-        standing: Option<SolidBodies>,
+        bodies: Option<SolidBodies>,
     ) -> Result<SolidBodies> {
         let now = columns_of(&self.lattice, moving);
-        let standing = match standing {
+        let bodies = match bodies {
             None => SolidBodies { shares: obstacles.shares(&self.lattice)?, moving: now },
             Some(mut before) => {
                 let both = [before.moving, now].into_iter().flatten();
@@ -123,8 +123,8 @@ impl FlowField {
                 SolidBodies { moving: now, ..before }
             }
         };
-        self.take_shares(standing.shares.clone());
-        Ok(standing)
+        self.take_shares(bodies.shares.clone());
+        Ok(bodies)
     }
 
     /// Calls `f` for every corner of a cell with its indices and the velocity there, m/s.

@@ -28,7 +28,7 @@ impl Context {
     }
 
     /// Returns how much of the state's time was simulated by fast-forward, s; 0 if every step was an ordinary one.
-    pub fn snow_laid_fast_s(&self) -> f64 {
+    pub fn snow_fast_forwarded_s(&self) -> f64 {
         self.held.snowpack.coarse_s()
     }
 
@@ -65,8 +65,8 @@ impl Context {
 
     /// Advances time by `hours`, (0, 720], with the snow in steps of ten minutes, for a scene that begins after a
     /// night's snowfall. The laws are those of ordinary steps. The state differs from that of ordinary steps by up to
-    /// some percent, and records the time simulated this way ([`Context::snow_laid_fast_s`]). Everything else advances
-    /// as by [`Context::update`].
+    /// some percent, and records the time simulated this way ([`Context::snow_fast_forwarded_s`]). Everything else
+    /// advances as by [`Context::update`].
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if `hours` or the new time is out of range; [`Status::WrongOrder`] while steps of an

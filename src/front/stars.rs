@@ -8,7 +8,7 @@ use crate::{
     context::Context,
     error::Result,
     light::luminance,
-    stars::{HeldStars, LAND_ALBEDO, StarSettings, limits::limiting_magnitude},
+    stars::{HeldStars, StarSettings, limits::limiting_magnitude},
     world::zenith_depth,
 };
 
@@ -37,7 +37,7 @@ impl Context {
         let altitude_m = scene.place.altitude_m;
         let fog = scene.fog_model(self.fog_law(), self.world.seed, self.world.set.planet.bottom_radius_m)?;
         let depth = zenith_depth(&scene.planet, altitude_m.max(0.0))[1] + fog.depth_above(altitude_m);
-        let clouds = scene.conditions.cloud_light_at(1.0, LAND_ALBEDO, altitude_m.max(0.0));
+        let clouds = scene.conditions.zenith_light_over_land(altitude_m.max(0.0));
         let through = clouds.direct.clamp(0.0, 1.0) * (-depth).exp();
         let at_eye = limiting_magnitude(luminance(&scene.above_fog.sky_lux) / PI);
         Ok(at_eye + 2.5 * through.log10())

@@ -44,7 +44,7 @@ pub(super) struct MapReach {
 /// Maps of a frame, and the pane below them.
 pub(crate) struct Mapped<'a> {
     /// Occluder maps of the host, without boxes and lamps.
-    pub told: HostSurroundings<'a>,
+    pub around: HostSurroundings<'a>,
     pub pane: PaneUniform,
 }
 
@@ -95,7 +95,7 @@ impl MapReach {
         mapped: &Mapped<'_>,
         target: &wgpu::TextureView,
     ) {
-        self.surroundings.update(device, &mapped.told);
+        self.surroundings.update(device, &mapped.around);
         device.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&mapped.pane));
         let groups = [&self.groups[0], &self.groups[1], self.surroundings.bind_group()];
         pass::draw(encoder, "glass below maps", &kit.reach, &groups, target);

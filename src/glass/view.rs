@@ -95,8 +95,8 @@ fn reached<'a>(now: &'a SceneMoment<'_>, frame: &Frame<'_>, plane: &Plane, scree
     let pane = PaneAt::new(&frame.camera, plane, screen);
     let drops = pane.drops(now, &sizes);
     let mapped = now.has_maps().then(|| {
-        let told = HostSurroundings { shelters: &[], lights: &[], ..now.host_surroundings(ShelterReach::NONE, 1.0)? };
-        Ok(Mapped { told, pane: pane.uniform(&drops, (now.eye, now.scene.world_to_enu)) })
+        let around = HostSurroundings { shelters: &[], lights: &[], ..now.host_surroundings(ShelterReach::NONE, 1.0)? };
+        Ok(Mapped { around, pane: pane.uniform(&drops, (now.eye, now.scene.world_to_enu)) })
     });
     Ok((pane.reach(now.shelters, &drops), mapped.transpose()?))
 }

@@ -13,9 +13,9 @@ use super::{
 use crate::error::Result;
 
 /// Pipelines of a pass, each created when it is first needed and found by its key.
-pub(crate) struct Made<K, P>(Vec<(K, P)>);
+pub(crate) struct PassPipelines<K, P>(Vec<(K, P)>);
 
-impl<K: PartialEq, P> Made<K, P> {
+impl<K: PartialEq, P> PassPipelines<K, P> {
     pub const NONE: Self = Self(Vec::new());
 
     pub fn get(&self, key: &K) -> Option<&P> {

@@ -128,11 +128,11 @@ impl ChannelPass {
     /// Creates the bind group, unless the last one fits.
     fn bind(&mut self, device: &Device, merged: &MergedFrame<'_>, depth: Option<Layer<'_>>, multi: bool) {
         let Some(between) = merged.composition.own_block(Block::Between) else { return };
-        let hung = merged.composition.texture(Texture::Behind);
+        let sky_layers = merged.composition.texture(Texture::Behind);
         if self
             .bound
             .as_ref()
-            .is_some_and(|(d, h, b, _)| is_kept(depth, d.as_ref()) && h.as_ref() == hung && b == between)
+            .is_some_and(|(d, h, b, _)| is_kept(depth, d.as_ref()) && h.as_ref() == sky_layers && b == between)
         {
             return;
         }
@@ -145,10 +145,10 @@ impl ChannelPass {
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
                 between.entry(4),
                 self.block.entry(7),
-                bind::view(11, hung.unwrap_or(&self.no_layers)),
+                bind::view(11, sky_layers.unwrap_or(&self.no_layers)),
             ],
         });
-        self.bound = Some((depth.map(Layer::kept), hung.cloned(), between.clone(), group));
+        self.bound = Some((depth.map(Layer::kept), sky_layers.cloned(), between.clone(), group));
     }
 
     /// Returns the pipeline for these constants, compiled at its first use.

@@ -15,7 +15,7 @@ const CERTAINTY: f64 = 0.9;
 
 /// Demands on a picture.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Asked {
+pub(super) struct PlanDemands {
     /// Largest error, (0, 1].
     pub tolerance: Option<f64>,
     /// Longest time of the weather in a frame, ms.
@@ -60,8 +60,8 @@ impl Choices {
     }
 
     /// Takes a picture that the estimator has seen: its work with everything (`all`), the steps of the parts that are
-    /// present (`there`), the host's demands (`asked`), and the steps taken now (`previous`).
-    pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, asked: &Asked, previous: Set) {
+    /// present (`there`), the host's demands (`demands`), and the steps taken now (`previous`).
+    pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, demands: &PlanDemands, previous: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;
         for part in 0..ladder.parts.len() {
@@ -69,8 +69,8 @@ impl Choices {
                 worth[step] = estimator.estimate(ladder, ladder.set(part, rung + 1));
             }
         }
-        let free = Free { ladder, steps: there & !asked.pinned.0, pinned: asked.pinned.1 };
-        self.cheapest = match asked.tolerance {
+        let free = Free { ladder, steps: there & !demands.pinned.0, pinned: demands.pinned.1 };
+        self.cheapest = match demands.tolerance {
             None => Some(free.pinned),
             Some(tolerance) => search.cheapest(
                 free,
@@ -84,23 +84,23 @@ impl Choices {
     }
 
     /// Chooses the steps to take; `previous` are those taken now.
-    pub fn choose(&self, governor: &Governor, asked: &Asked, previous: Set) -> (Set, GaveWay) {
+    pub fn choose(&self, governor: &Governor, demands: &PlanDemands, previous: Set) -> (Set, GaveWay) {
         let now = self.all.without(previous);
-        let fits = |set: Set| governor.fits(&self.all.without(set), asked.milliseconds, &now);
+        let fits = |set: Set| governor.fits(&self.all.without(set), demands.milliseconds, &now);
         if let Some(set) = self.cheapest.filter(|s| fits(*s)) {
             return (set, GaveWay::Nothing);
         }
-        let free = Free { ladder: &self.ladder, steps: self.there & !asked.pinned.0, pinned: asked.pinned.1 };
+        let free = Free { ladder: &self.ladder, steps: self.there & !demands.pinned.0, pinned: demands.pinned.1 };
         let work = |set: Set| governor.work(&self.all.without(set));
-        let (set, fits) = least_missed(free, work, |set| self.loss(set, asked), fits);
+        let (set, fits) = least_missed(free, work, |set| self.loss(set, demands), fits);
         (set, if fits { GaveWay::Tolerance } else { GaveWay::Time })
     }
 
     /// Returns the loss of a picture: the sum over parts of their error at their rung, times their importance.
-    fn loss(&self, set: Set, asked: &Asked) -> f64 {
+    fn loss(&self, set: Set, demands: &PlanDemands) -> f64 {
         let of = |part: usize| match self.ladder.rung(set, part) {
             0 => 0.0,
-            rung => asked.importance[part] * self.worth[self.ladder.steps(part).start + rung - 1].p95,
+            rung => demands.importance[part] * self.worth[self.ladder.steps(part).start + rung - 1].p95,
         };
         (0..self.ladder.parts.len()).map(of).sum()
     }

@@ -196,7 +196,7 @@ impl Governor {
 #[cfg(test)]
 mod tests {
     use super::super::{
-        choice::{Asked, Choices},
+        choice::{Choices, PlanDemands},
         parts::{Part, Worth},
     };
     use super::*;
@@ -230,10 +230,10 @@ mod tests {
         fn choose(&mut self, governor: &Governor, tolerance: Option<f64>, ms: f64, previous: Set) -> (Set, GaveWay) {
             self.choices.estimator.clear();
             self.choices.estimator.see(steps(self.worth).map(|v| v as f32));
-            let mut asked = Asked { tolerance, milliseconds: Some(ms), ..Asked::default() };
-            asked.importance[..3].copy_from_slice(&PARTS.map(|p| p.importance));
-            self.choices.take(self.all, 0b111, governor, &asked, previous);
-            self.choices.choose(governor, &asked, previous)
+            let mut demands = PlanDemands { tolerance, milliseconds: Some(ms), ..PlanDemands::default() };
+            demands.importance[..3].copy_from_slice(&PARTS.map(|p| p.importance));
+            self.choices.take(self.all, 0b111, governor, &demands, previous);
+            self.choices.choose(governor, &demands, previous)
         }
     }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     budget::Budget,
-    choice::{Asked, Choices},
+    choice::{Choices, PlanDemands},
     estimate::Estimate,
     gauge::{EVERY, GRID, Gauge, GaugeSample},
     governor::{GaveWay, Governor, WorkAmount},
@@ -210,7 +210,7 @@ pub(crate) struct Planner<U> {
     /// Limits and wishes of the host.
     budget: Budget,
     /// Demands on a picture that follow from `budget`.
-    asked: Asked,
+    demands: PlanDemands,
     /// Work of building the sky's default tables, in units of the work of a pixel in which no part is drawn.
     pub rebuild: f64,
     /// Work of the last picture with everything, in the same units; 0 before the first.
@@ -245,7 +245,7 @@ impl<U: Unseen> Planner<U> {
             rebuild,
             work: 0.0,
             budget: Budget::default(),
-            asked: Asked::default(),
+            demands: PlanDemands::default(),
             gauge: None,
             choices: Choices::new(parts),
             governor: Governor::default(),
@@ -257,7 +257,7 @@ impl<U: Unseen> Planner<U> {
             plan: Plan::of(parts),
             prediction: Prediction::default(),
         };
-        planner.asked = planner.asked_by(&planner.budget);
+        planner.demands = planner.demands_of(&planner.budget);
         planner
     }
 
@@ -270,26 +270,26 @@ impl<U: Unseen> Planner<U> {
         }
         if budget != self.budget {
             self.forget();
-            self.asked = self.asked_by(&budget);
+            self.demands = self.demands_of(&budget);
             self.budget = budget;
         }
         Ok(())
     }
 
     /// Returns the demands on a picture by a budget.
-    fn asked_by(&self, budget: &Budget) -> Asked {
+    fn demands_of(&self, budget: &Budget) -> PlanDemands {
         let Budget { tolerance, milliseconds, .. } = *budget;
-        let mut asked = Asked { tolerance, milliseconds, ..Asked::default() };
+        let mut demands = PlanDemands { tolerance, milliseconds, ..PlanDemands::default() };
         let ladder = &self.choices.ladder;
         for (i, part) in ladder.parts.iter().enumerate() {
             let wish = budget.wishes.get(i).copied().unwrap_or_default();
-            asked.importance[i] = wish.importance.unwrap_or(part.importance);
+            demands.importance[i] = wish.importance.unwrap_or(part.importance);
             if let Some(rung) = wish.rung {
-                asked.pinned.0 |= ladder.whole(i);
-                asked.pinned.1 |= ladder.set(i, rung);
+                demands.pinned.0 |= ladder.whole(i);
+                demands.pinned.1 |= ladder.set(i, rung);
             }
         }
-        asked
+        demands
     }
 
     /// Returns the limits and wishes of the host.
@@ -369,7 +369,7 @@ impl<U: Unseen> Planner<U> {
         let choices = &mut self.choices;
         choices.see(samples, gauging.unseen.as_ref());
         let (all, there) = choices.weigh(samples, present, &mut self.plan);
-        choices.take(all, there, &self.governor, &self.asked, self.left_out);
+        choices.take(all, there, &self.governor, &self.demands, self.left_out);
         for (i, part) in self.plan.parts.iter_mut().enumerate() {
             for (rung, step) in choices.ladder.steps(i).enumerate() {
                 part.worth[rung + 1] = choices.worth[step];
@@ -382,7 +382,7 @@ impl<U: Unseen> Planner<U> {
 
     /// Moves pinned parts to their rungs at once, without a fade.
     fn pin(&mut self) {
-        let (whole, set) = self.asked.pinned;
+        let (whole, set) = self.demands.pinned;
         self.left_out = self.left_out & !whole | set;
         let ladder = &self.choices.ladder;
         for (i, part) in self.plan.parts.iter_mut().enumerate().filter(|(i, _)| whole & ladder.whole(*i) != 0) {
@@ -395,7 +395,7 @@ impl<U: Unseen> Planner<U> {
     /// Moves each part that is not pinned one frame further to its rung; `pure` shows all of it at once.
     fn fade(&mut self, present: &Presence, pure: bool) {
         let ladder = &self.choices.ladder;
-        let planned = |i: &usize| self.asked.pinned.0 & ladder.whole(*i) == 0;
+        let planned = |i: &usize| self.demands.pinned.0 & ladder.whole(*i) == 0;
         for (i, part) in self.plan.parts.iter_mut().enumerate().filter(|(i, _)| planned(i)) {
             let wanted = if present.parts[i].is_there { ladder.rung(self.left_out, i) as f32 } else { 0.0 };
             if pure {
@@ -417,12 +417,12 @@ impl<U: Unseen> Planner<U> {
 
     /// Chooses again from the last gauge's findings: a newly reported time may require another set in any frame.
     fn choose(&mut self, present: &Presence) {
-        let (set, gave_way) = self.choices.choose(&self.governor, &self.asked, self.left_out);
+        let (set, gave_way) = self.choices.choose(&self.governor, &self.demands, self.left_out);
         self.left_out = set;
         let choices = &mut self.choices;
         let amount = choices.all.without(set);
         self.plan.error = choices.estimator.estimate(&choices.ladder, set);
-        let tolerance = self.asked.tolerance;
+        let tolerance = self.demands.tolerance;
         let within = tolerance.is_some_and(|t| self.plan.error.keeps(t));
         for (i, part) in self.plan.parts.iter_mut().enumerate() {
             part.rung = choices.ladder.rung(set, i);

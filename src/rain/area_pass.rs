@@ -243,8 +243,8 @@ impl AreaPass {
 
     fn bind(&mut self, device: &Device, merged: &MergedFrame<'_>, depth: Option<Layer<'_>>, multi: bool) {
         let Some(between) = merged.composition.own_block(Block::Between) else { return };
-        let hung = merged.composition.texture(Texture::Behind);
-        if self.bound.as_ref().is_some_and(|(d, h, _)| is_kept(depth, d.as_ref()) && h.as_ref() == hung) {
+        let sky_layers = merged.composition.texture(Texture::Behind);
+        if self.bound.as_ref().is_some_and(|(d, h, _)| is_kept(depth, d.as_ref()) && h.as_ref() == sky_layers) {
             return;
         }
         let view = depth.map(Layer::view);
@@ -255,12 +255,12 @@ impl AreaPass {
                 merged.block.entry(0),
                 bind::view(1, view.as_ref().unwrap_or(&self.none)),
                 between.entry(4),
-                bind::view(11, hung.unwrap_or(&self.no_layers)),
+                bind::view(11, sky_layers.unwrap_or(&self.no_layers)),
                 self.blocks.part(7, 0, size_of::<ColumnsUniform>()),
                 self.blocks.part(8, SHAFT_AT, size_of::<ShaftUniform>()),
             ],
         });
-        self.bound = Some((depth.map(Layer::kept), hung.cloned(), group));
+        self.bound = Some((depth.map(Layer::kept), sky_layers.cloned(), group));
     }
 
     /// Returns the pipeline of a kind, compiled at its first use.

@@ -12,7 +12,7 @@ use crate::{
         Device,
         bind::{self, Slot},
         blocks::{BlockView, Blocks, UniformBlock},
-        pass::{FullscreenDesc, Made, fullscreen},
+        pass::{FullscreenDesc, PassPipelines, fullscreen},
     },
     particles::{DepthRead, LAYER_FORMAT},
     stage::Recording,
@@ -33,7 +33,7 @@ pub(super) struct ConePass {
     open: Option<OpenPass>,
     /// Bytes of the texture of streaks.
     bytes: u64,
-    pipelines: Made<ConeKind, wgpu::RenderPipeline>,
+    pipelines: PassPipelines<ConeKind, wgpu::RenderPipeline>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
@@ -59,7 +59,7 @@ impl ConePass {
         let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: STRETCHES as u32 };
         let none = open_pass::grid(&device.device, one);
         let group = group(&device.device, &layout, &block, &streaks, &samplers, &none);
-        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: Made::NONE, counts }
+        Self { block, layout, streaks, samplers, group, open: None, bytes, pipelines: PassPipelines::NONE, counts }
     }
 
     /// Returns the bytes of GPU memory held.

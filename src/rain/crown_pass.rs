@@ -7,7 +7,7 @@ use crate::{
     error::Result,
     gpu::{
         Device,
-        pass::{self, ComputeDesc, Made},
+        pass::{self, ComputeDesc, PassPipelines},
     },
     particles::{DepthRead, listing::Listing},
 };
@@ -19,11 +19,11 @@ const CROWN_BYTES: u64 = 64;
 pub(super) struct CrownPass {
     listing: Listing,
     /// Pipelines of `mark` and `order`, by whether rims of areas are near and whether depth is multisampled.
-    marks: Made<[bool; 2], [wgpu::ComputePipeline; 2]>,
+    marks: PassPipelines<[bool; 2], [wgpu::ComputePipeline; 2]>,
     /// Pipelines of `make_crowns`.
-    makes: Made<CrownKind, wgpu::ComputePipeline>,
+    makes: PassPipelines<CrownKind, wgpu::ComputePipeline>,
     /// Pipelines of the draw, by how depth is read.
-    draws: Made<DepthRead, wgpu::RenderPipeline>,
+    draws: PassPipelines<DepthRead, wgpu::RenderPipeline>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
@@ -40,7 +40,7 @@ pub(super) struct CrownKind {
 impl CrownPass {
     pub fn new(device: &wgpu::Device, counts: bool) -> Self {
         let listing = Listing::new(device, CROWN_BYTES);
-        Self { listing, marks: Made::NONE, makes: Made::NONE, draws: Made::NONE, counts }
+        Self { listing, marks: PassPipelines::NONE, makes: PassPipelines::NONE, draws: PassPipelines::NONE, counts }
     }
 
     /// Returns the bytes of GPU memory held.

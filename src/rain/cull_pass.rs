@@ -12,7 +12,7 @@ use crate::{
         Device,
         bind::{self, Slot},
         blocks::BlockView,
-        pass::{self, ComputeDesc, Made, QuadsDesc},
+        pass::{self, ComputeDesc, PassPipelines, QuadsDesc},
     },
     particles::{
         DepthRead, LAYER_FORMAT,
@@ -34,13 +34,13 @@ pub(super) struct CullPass {
     unstepped: wgpu::BindGroup,
     listing: Listing,
     /// Pipelines of `mark`, by whether drops are stepped.
-    marks: Made<bool, wgpu::ComputePipeline>,
+    marks: PassPipelines<bool, wgpu::ComputePipeline>,
     /// Pipeline of `order`.
     order: Option<wgpu::ComputePipeline>,
     /// Pipelines of `make_streaks`, by whether drops are stepped, and whether area rims and occluder maps are in use.
-    makes: Made<[bool; 3], wgpu::ComputePipeline>,
+    makes: PassPipelines<[bool; 3], wgpu::ComputePipeline>,
     /// Pipelines of the draw, by how depth is read.
-    draws: Made<DepthRead, wgpu::RenderPipeline>,
+    draws: PassPipelines<DepthRead, wgpu::RenderPipeline>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
@@ -96,10 +96,10 @@ impl CullPass {
             unstepped: group(&source, &[bind::buffer(0, &eyes), bind::buffer(1, &states)]),
             layouts: [frame, source],
             listing: Listing::new(device, STREAK_BYTES),
-            marks: Made::NONE,
+            marks: PassPipelines::NONE,
             order: None,
-            makes: Made::NONE,
-            draws: Made::NONE,
+            makes: PassPipelines::NONE,
+            draws: PassPipelines::NONE,
             counts,
         }
     }

@@ -20,7 +20,7 @@ use crate::{
         bind::{self, Slot},
         blocks::{Blocks, UniformBlock},
         is_kept,
-        pass::{self, Made, QuadsDesc},
+        pass::{self, PassPipelines, QuadsDesc},
     },
     particles::{
         DepthRead, FallingTexture, LAYER_FORMAT, layer_pass,
@@ -42,7 +42,7 @@ pub(crate) struct RainLayer {
     /// Layout of the group of shelters, occluder maps and lamps.
     surroundings: wgpu::BindGroupLayout,
     /// Pipelines of drops and of splashes, for devices that cannot draw by lists.
-    pipelines: Made<CrownKind, [wgpu::RenderPipeline; 2]>,
+    pipelines: PassPipelines<CrownKind, [wgpu::RenderPipeline; 2]>,
     /// Passes that list drops and crowns, on devices with compute shaders.
     listed: Option<Box<(CullPass, CrownPass)>>,
     cones: Option<ConePass>,
@@ -112,7 +112,7 @@ impl RainLayer {
             local: bind::block(&device.device, "rain areas near", LOCAL.end),
             layouts: [layout(&device.device, false), layout(&device.device, true)],
             surroundings: surroundings::layout(&device.device),
-            pipelines: Made::NONE,
+            pipelines: PassPipelines::NONE,
             listed: None,
             cones: None,
             stepped: None,

@@ -7,7 +7,7 @@ use crate::{
         Device,
         bind::{self, Slot},
         blocks::{Blocks, UniformBlock},
-        pass::{self, Made, QuadsDesc},
+        pass::{self, PassPipelines, QuadsDesc},
     },
     particles::DepthRead,
 };
@@ -35,7 +35,7 @@ pub(super) struct StonePass {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     /// Pipelines of stones in the air and of stones that hop on the ground.
-    pipelines: Made<StoneKind, [wgpu::RenderPipeline; 2]>,
+    pipelines: PassPipelines<StoneKind, [wgpu::RenderPipeline; 2]>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
 }
@@ -58,7 +58,7 @@ impl StonePass {
             layout: &layout,
             entries: &[block.entry(0)],
         });
-        Self { block, layout, group, pipelines: Made::NONE, counts }
+        Self { block, layout, group, pipelines: PassPipelines::NONE, counts }
     }
 
     /// Uploads the block, and compiles the pipelines for `kind` if they do not exist yet. `rain` is the layout of group

@@ -275,7 +275,7 @@ impl SkyVolume {
                         && d.over.is_some_and(|(id, _)| id == shown.id)
                         && self.is_ready(i, &d, shown) =>
                 {
-                    self.lay_over(encoder, i, 1.0);
+                    self.mix_in(encoder, i, 1.0);
                     self.drawn[i] = Some(DrawnFor { set: shown.id, over: None, ..d });
                     drawn = true;
                 }
@@ -297,7 +297,7 @@ impl SkyVolume {
                 if let (None, Some(fade)) = (d.over, &self.fade) {
                     self.tables.copy(encoder, i, &fade.first);
                 }
-                self.lay_over(encoder, i, share);
+                self.mix_in(encoder, i, share);
                 drawn = true;
                 self.drawn[i] = Some(DrawnFor { over: Some((next.id, share)), ..d });
             }
@@ -312,7 +312,7 @@ impl SkyVolume {
     }
 
     /// Mixes the tables that fade in, with their share, into lamp `i`'s tables.
-    fn lay_over(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
+    fn mix_in(&self, encoder: &mut wgpu::CommandEncoder, i: usize, share: f32) {
         let Some(fade) = &self.fade else { return };
         let [first, next] = &fade.groups;
         for k in layers_of(i) {

@@ -9,7 +9,7 @@ use crate::{
         bind::{self, Slot},
         blocks::{BlockView, Blocks, UniformBlock},
         is_kept,
-        pass::{self, ComputeDesc, Made, QuadsDesc},
+        pass::{self, ComputeDesc, PassPipelines, QuadsDesc},
     },
     particles::{
         DepthRead, LAYER_FORMAT, layer_pass,
@@ -49,7 +49,7 @@ pub(super) struct SnowPass {
     layouts: [wgpu::BindGroupLayout; 2],
     /// Layout of the group of shelters, occluder maps and lamps.
     surroundings: wgpu::BindGroupLayout,
-    pipelines: Made<FlakeVariant, wgpu::RenderPipeline>,
+    pipelines: PassPipelines<FlakeVariant, wgpu::RenderPipeline>,
     /// List of the flakes in the picture, on devices with compute shaders while flakes are not stepped.
     listed: Option<Box<ListedFlakes>>,
     /// Pass that steps flakes, while they are stepped.
@@ -73,7 +73,7 @@ impl SnowPass {
             block: blocks.block(device, size_of::<FlakesUniform>()),
             layouts: [layout(false), layout(true)],
             surroundings: surroundings::layout(own),
-            pipelines: Made::NONE,
+            pipelines: PassPipelines::NONE,
             listed: None,
             step: None,
             none: bind::nothing(own, wgpu::TextureFormat::Rgba8Unorm),
@@ -215,7 +215,7 @@ struct ListedFlakes {
     /// Pipelines of `mark` and `order`.
     mark: Option<[wgpu::ComputePipeline; 2]>,
     /// Pipelines of `make_spots`, by whether there are occluder maps.
-    makes: Made<bool, wgpu::ComputePipeline>,
+    makes: PassPipelines<bool, wgpu::ComputePipeline>,
 }
 
 impl ListedFlakes {
@@ -227,7 +227,7 @@ impl ListedFlakes {
             layout: &layout,
             entries: &[block.entry(0)],
         });
-        Self { layout, group, listing: Listing::new(device, SPOT_BYTES), mark: None, makes: Made::NONE }
+        Self { layout, group, listing: Listing::new(device, SPOT_BYTES), mark: None, makes: PassPipelines::NONE }
     }
 
     /// Records the passes that find the flakes in the picture. The flakes' block is already uploaded.

@@ -74,9 +74,9 @@ pub(crate) enum Texture {
     /// Slopes, heights, classes and snow of the host's terrain, one texel for each cell
     /// (`shaders/ground/binding.wgsl`).
     Terrain = 2,
-    /// Layers of the sky (`shaders/between/hung.wgsl`). The last one stands behind the sky's own light; its texels
-    /// times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two layers of clouds may come before it: exposed
-    /// light with transmittance, and distances.
+    /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last one stands behind the sky's own light; its
+    /// texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two layers of clouds may come before it:
+    /// exposed light with transmittance, and distances.
     Behind = 3,
 }
 

@@ -111,4 +111,4 @@ pub(crate) use uniforms::StarView;
 #[cfg(feature = "lab")]
 #[doc(hidden)]
 pub use uniforms::StarView;
-pub(crate) use view::{LAND_ALBEDO, StarsView};
+pub(crate) use view::StarsView;

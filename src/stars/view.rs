@@ -29,13 +29,11 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(super) const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
 /// Smallest share of the night's light that clouds and fog must let through for the layer to be drawn.
 pub(super) const LEAST_THROUGH: f64 = 1e-3;
-/// Reflectance of the land under the clouds, for light that is reflected between them. It does not affect direct light.
-pub(crate) const LAND_ALBEDO: f64 = 0.2;
 /// Smallest brightness of a drawn star's brightest pixel, as a share of a display step.
 const SHARE_OF_STEP: f64 = 0.25;
 
 /// The night sky over a camera.
-struct Tonight {
+struct NightOverCamera {
     heavens: Heavens,
     sky: NightSky,
     zenith_depth: [f64; 3],
@@ -52,7 +50,7 @@ struct Tonight {
 #[derive(Default)]
 pub(crate) struct StarsView {
     settings: StarSettings,
-    tonight: Option<Tonight>,
+    night: Option<NightOverCamera>,
     passes: Option<Box<(StarPass, GlowPass)>>,
     layer: Option<(wgpu::Texture, wgpu::TextureView, wgpu::TextureView)>,
     /// Whether the layer contains the night sky that was prepared last.
@@ -61,7 +59,7 @@ pub(crate) struct StarsView {
 
 impl StarsView {
     fn is_there(&self, stages: Stages) -> bool {
-        self.tonight.is_some() && stages.has(Stages::BACKGROUND)
+        self.night.is_some() && stages.has(Stages::BACKGROUND)
     }
 
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> &wgpu::TextureView {
@@ -93,13 +91,13 @@ impl StarsView {
     }
 }
 
-impl Tonight {
+impl NightOverCamera {
     fn new(scene: &Scene, utc: Utc, settings: &StarSettings, sun_deg: f64) -> Result<Self> {
         let (place, air) = (&scene.place, &scene.conditions.air);
         let altitude_m = place.altitude_m.max(0.0);
         let heavens = Heavens::at(utc, place, settings)?;
         let zenith_depth = zenith_depth(&scene.planet, altitude_m).map(|depth| depth.min(MOST_ZENITH_DEPTH));
-        let clouds = scene.conditions.cloud_light_at(1.0, LAND_ALBEDO, altitude_m);
+        let clouds = scene.conditions.zenith_light_over_land(altitude_m);
         let radius = scene.planet.bottom_radius_m;
         let thinner = (-altitude_m / air.rayleigh_scale_height_m).exp();
         Ok(Self {
@@ -161,7 +159,7 @@ impl DrawnEffect for StarsView {
     }
 
     fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
-        self.tonight = None;
+        self.night = None;
         let scene = &context.now.scene;
         let open = (1.0 - scene.deck_cover) * (-given.fog_depth).exp();
         let elevation = scene.sun.direction.z.clamp(-1.0, 1.0).asin().to_degrees();
@@ -169,16 +167,16 @@ impl DrawnEffect for StarsView {
             return Ok(());
         }
         let (settings, utc) = (&context.held.of::<HeldStars>()?.settings, context.world.utc_at(context.now.time_s));
-        let tonight = Tonight::new(scene, utc, settings, elevation)?;
-        if tonight.dusk.share > 0.0 || tonight.brightest_lux(settings) > tonight.threshold_lux {
+        let night = NightOverCamera::new(scene, utc, settings, elevation)?;
+        if night.dusk.share > 0.0 || night.brightest_lux(settings) > night.threshold_lux {
             self.settings = settings.clone();
-            self.tonight = Some(tonight);
+            self.night = Some(night);
         }
         Ok(())
     }
 
     fn stages(&self) -> Stages {
-        if self.tonight.is_some() { Stages::BACKGROUND } else { Stages(0) }
+        if self.night.is_some() { Stages::BACKGROUND } else { Stages(0) }
     }
 
     fn hold(&mut self, device: &Device, color: &wgpu::Texture, stages: Stages) {
@@ -195,10 +193,10 @@ impl DrawnEffect for StarsView {
         let mut contribution = Contribution::none();
         let (is_there, share) = (self.is_there(context.stages), context.share(&STARS, 0));
         contribution.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
-        if let Some(tonight) = self.tonight.as_ref().filter(|_| is_there) {
+        if let Some(night) = self.night.as_ref().filter(|_| is_there) {
             let traits = Traits { is_fine: true, ..Traits::default() };
             contribution.set_traits(traits, traits);
-            let behind = [(1.0 / tonight.seen(context, 0.0).scale) as f32, share];
+            let behind = [(1.0 / night.seen(context, 0.0).scale) as f32, share];
             contribution.set_frame_block(FrameBlock::Stars { behind });
             let layer = self.layer(context.device, context.picture()).clone();
             contribution.set_texture(Texture::Behind, Some(layer));
@@ -218,16 +216,16 @@ impl DrawnEffect for StarsView {
         if !self.is_there(merged.composition.stages()) || block.behind[1] == 0.0 {
             return Ok(());
         }
-        let (Some(tonight), Some((_, target, _))) = (&self.tonight, &self.layer) else { return Ok(()) };
+        let (Some(night), Some((_, target, _))) = (&self.night, &self.layer) else { return Ok(()) };
         let passes = match &mut self.passes {
             Some(passes) => passes,
             none => none.insert(Box::new((StarPass::new(recording.device), GlowPass::new(recording.device, FORMAT)?))),
         };
         let (points, glow) = &mut **passes;
         // The dark end of the sRGB curve is linear with a slope of 12.92.
-        let view = tonight.seen(context, f64::from(block.dither_step) / 12.92);
+        let view = night.seen(context, f64::from(block.dither_step) / 12.92);
         points.prepare(recording.device, &self.settings, &view, FORMAT, None)?;
-        let has_changed = glow.prepare(recording.device, &tonight.sky, &view, &tonight.dusk) || points.has_changed();
+        let has_changed = glow.prepare(recording.device, &night.sky, &view, &night.dusk) || points.has_changed();
         if self.is_layer_drawn && !has_changed {
             return Ok(());
         }

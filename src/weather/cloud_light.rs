@@ -19,6 +19,8 @@ use super::conditions::{CloudSlab, Conditions};
 const HIDING: f64 = 0.25;
 /// Weight of the value for a clear sky in [`over_layers`], as a share of the sky.
 const LEAST_COVER: f64 = 1e-6;
+/// Reflectance of open land below clouds, for light that is reflected to and fro between them.
+pub(crate) const LAND_ALBEDO: f64 = 0.2;
 /// Greatest height above a cloud's base at which its precipitation begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
 /// Depth over which precipitation sets in, m: half of it above the height where it begins, half below. Its extinction
@@ -146,6 +148,11 @@ impl Conditions {
             diffuse: host((fluxes.beam + fluxes.diffuse - fluxes.direct).max(0.0), o.diffuse),
             sky: host(fluxes.sky, o.diffuse),
         }
+    }
+
+    /// Returns the light under the zenith over open land, which reflects [`LAND_ALBEDO`].
+    pub(crate) fn zenith_light_over_land(&self, altitude_m: f64) -> CloudLight {
+        self.cloud_light_at(1.0, LAND_ALBEDO, altitude_m)
     }
 
     /// Returns the light that goes up at an altitude from everything below, as shares of the sun's horizontal

@@ -30,7 +30,7 @@ pub mod timeline;
 mod validate;
 
 pub use cloud_light::CloudLight;
-pub(crate) use cloud_light::ONSET_M;
+pub(crate) use cloud_light::{LAND_ALBEDO, ONSET_M};
 pub use cloud_map::{CloudMap, MAX_CLOUD_MAP_CELLS};
 pub use cloud_part::{slab_diffuse_reflectance, slab_reflectance};
 pub use cloud_slabs::{cloud_optical_depth, water_path_for_rate_kg_m2};

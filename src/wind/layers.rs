@@ -157,7 +157,7 @@ mod tests {
     }
 
     /// Changes one after another and overlapping, a cut, a calm, and layers that come and go.
-    fn told() -> Timeline {
+    fn changes() -> Timeline {
         let own = LayerWind { speed_m_s: 20.0, from_deg: 180.0 };
         let high = CloudLayer::of(CloudKind::Cirrus, 0.3, 9000.0);
         let mut timeline = Timeline::new(of(&[low(None, None)], 4.0, 270.0));
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn ways_and_lives_are_the_integrals_of_their_rates_and_no_change_throws_them() {
-        let timeline = told();
+        let timeline = changes();
         let at = |t: f64| LayerDrifts::ZERO.until(&timeline, t);
         let step_s = 0.25;
         for i in -400..4000 {
@@ -199,8 +199,8 @@ mod tests {
 
     #[test]
     fn forgetting_on_the_way_changes_no_bit() {
-        let whole = LayerDrifts::ZERO.until(&told(), 1500.0);
-        let (mut timeline, mut kept) = (told(), LayerDrifts::ZERO);
+        let whole = LayerDrifts::ZERO.until(&changes(), 1500.0);
+        let (mut timeline, mut kept) = (changes(), LayerDrifts::ZERO);
         for now_s in [-10.0, 5.0, 100.0, 365.0, 640.0, 650.0, 900.0] {
             kept = kept.kept(&timeline, now_s);
             timeline.advance(now_s);

@@ -19,7 +19,7 @@ fn varying(speed: f64, from_deg: f64, range: (f64, f64)) -> Conditions {
 
 /// Creates a timeline with the first `count` of ten changes: overlapping transitions, cuts, calms, turns and variable
 /// directions.
-fn told(count: usize) -> Timeline {
+fn changes(count: usize) -> Timeline {
     let mut t = Timeline::new(of(4.0, 270.0));
     let changes = [
         (of(12.0, 180.0), -40.0, 20.0),
@@ -49,7 +49,7 @@ fn displacement(wind: &Wind, timeline: &Timeline, t: f64) -> DVec2 {
 
 #[test]
 fn displacement_is_the_integral_of_velocity_through_every_change() {
-    let (wind, timeline) = (Wind::new(5), told(99));
+    let (wind, timeline) = (Wind::new(5), changes(99));
     assert_eq!(displacement(&wind, &Timeline::new(of(4.0, 270.0)), 0.0), DVec2::ZERO);
     // Intervals of the midpoint rule that end at the cuts, so that no step contains one.
     for (from, to) in [(-60.0, 0.0), (0.0, 100.0), (100.0, 140.0), (140.0, 320.0), (320.0, 600.0)] {
@@ -91,7 +91,7 @@ fn nothing_is_thrown_by_a_gust_or_a_storm_at_any_time() {
 
 #[test]
 fn only_a_cut_makes_the_wind_jump() {
-    let (wind, timeline) = (Wind::new(6), told(99));
+    let (wind, timeline) = (Wind::new(6), changes(99));
     let step = 1e-5;
     for event in [-40.0, -20.0, 100.0, 130.0, 200.0, 210.0, 215.0, 225.0, 300.0, 350.0, 375.0, 400.0, 410.0] {
         let jump = velocity(&wind, &timeline, event + step) - velocity(&wind, &timeline, event - step);
@@ -104,10 +104,10 @@ fn only_a_cut_makes_the_wind_jump() {
 #[test]
 fn steps_saves_and_forgetting_change_no_bit() {
     let wind = Wind::new(77);
-    let whole = told(99);
+    let whole = changes(99);
     for times in [vec![1000.0], (0..2000).map(|i| f64::from(i) * 0.5).collect(), vec![33.0, 131.0, 222.0, 222.0, 407.5]]
     {
-        let (mut timeline, mut kept) = (told(99), Drift::ZERO);
+        let (mut timeline, mut kept) = (changes(99), Drift::ZERO);
         for &now in &times {
             kept = kept.kept(&wind, &timeline, now);
             timeline.advance(now);
@@ -119,7 +119,7 @@ fn steps_saves_and_forgetting_change_no_bit() {
         assert!(kept.time_s > 370.0 && kept.path_m > 1000.0);
     }
     // A later change leaves the displacement before it unchanged.
-    let (few, more) = (told(4), told(5));
+    let (few, more) = (changes(4), changes(5));
     assert_eq!(displacement(&wind, &few, 139.0), displacement(&wind, &more, 139.0));
 }
 
@@ -235,7 +235,7 @@ fn a_varying_wind_turns_within_its_range_and_goes_less_far() {
 
 #[test]
 fn seeds_differ_and_a_seed_is_the_same_everywhere() {
-    let timeline = told(99);
+    let timeline = changes(99);
     assert_ne!(displacement(&Wind::new(1), &timeline, 500.0), displacement(&Wind::new(2), &timeline, 500.0));
     let d = displacement(&Wind::new(1), &timeline, 500.0);
     let expected = [0xc09a_c9f4_1046_fbf9, 0xc08a_dd25_c1c8_773c];

@@ -30,7 +30,7 @@ pub fn planet_under(planet: &Planet, c: &Conditions) -> Planet {
         scale_height_m: c.aerosol.scale_height_m,
         asymmetry_g: c.aerosol.asymmetry,
     };
-    p.mie = held(match planet.own_haze() {
+    p.mie = capped(match planet.own_haze() {
         Some(own) => both(&own, &weathers),
         None => weathers,
     });
@@ -41,7 +41,7 @@ pub fn planet_under(planet: &Planet, c: &Conditions) -> Planet {
 }
 
 /// Limits haze to [`MAX_EXTINCTION_PER_M`], which hides everything within half a metre; more would look the same.
-fn held(haze: Mie) -> Mie {
+fn capped(haze: Mie) -> Mie {
     let extinction = haze.extinction_per_m;
     let extinction_per_m = extinction.map(|v| v.min(MAX_EXTINCTION_PER_M));
     let share =

@@ -12,7 +12,7 @@ use crate::{
     moment::Light,
     planet::Planet,
     scene::{Place, angle_between},
-    weather::{CloudLight, Conditions, snow_cover},
+    weather::{CloudLight, Conditions, LAND_ALBEDO, snow_cover},
 };
 
 /// Illuminance of the sun at 1 au above the air, lux (Darula, Kittler & Gueymard 2005).
@@ -24,8 +24,6 @@ const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 /// Elevation of the sun above which moonlight is ignored, degrees: it adds less than a hundredth to such a twilight.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
-/// Reflectance of the land below clouds, for light that goes back and forth between them.
-const LAND_ALBEDO: f64 = 0.2;
 /// Reflectance of snow of which only the depth is known.
 const SNOW_ALBEDO: f64 = 0.82;
 

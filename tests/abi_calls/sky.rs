@@ -18,15 +18,15 @@ unsafe extern "C" fn on_log(_: *mut c_void, _: wk_log_level, text: *const c_char
 
 /// Values that a host's progress callback has received, and the call at which it aborts.
 struct Bar {
-    told: Vec<f64>,
+    shares: Vec<f64>,
     most: usize,
 }
 
 unsafe extern "C" fn on_progress(user: *mut c_void, share: f64) -> i32 {
     // SAFETY: `build` gave a live bar.
     let bar = unsafe { &mut *user.cast::<Bar>() };
-    bar.told.push(share);
-    i32::from(bar.told.len() >= bar.most)
+    bar.shares.push(share);
+    i32::from(bar.shares.len() >= bar.most)
 }
 
 /// Returns the path of a directory that cannot exist, because its parent is a file.
@@ -75,11 +75,11 @@ impl Drop for Simulator {
 }
 
 fn build(context: *mut wk_context, most: usize) -> (wk_status, Vec<f64>) {
-    let mut bar = Bar { told: Vec::new(), most };
+    let mut bar = Bar { shares: Vec::new(), most };
     // SAFETY: the bar lives through the call.
     let status = unsafe { wk_context_build_sky(context, Some(on_progress), (&raw mut bar).cast()) };
-    assert!(bar.told.windows(2).all(|w| w[0] < w[1]) && bar.told.iter().all(|s| (0.0..=1.0).contains(s)));
-    (status, bar.told)
+    assert!(bar.shares.windows(2).all(|w| w[0] < w[1]) && bar.shares.iter().all(|s| (0.0..=1.0).contains(s)));
+    (status, bar.shares)
 }
 
 /// Returns the number of tables that the first frame of a new view builds.
@@ -113,12 +113,12 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
     let cache = directory("build-sky");
     {
         let host = Simulator::new(&cache);
-        let (status, told) = build(host.context, 3);
-        assert_eq!((status, told.len()), (WK_ERROR_ABORTED, 3));
+        let (status, shares) = build(host.context, 3);
+        assert_eq!((status, shares.len()), (WK_ERROR_ABORTED, 3));
         assert!(message().contains("aborted") && files(&cache).is_empty(), "{}", message());
-        let (status, told) = build(host.context, usize::MAX);
-        assert_eq!((status, told.last()), (WK_OK, Some(&1.0)), "{}", message());
-        assert!(told.len() >= 14 && files(&cache).len() == 1, "{told:?}");
+        let (status, shares) = build(host.context, usize::MAX);
+        assert_eq!((status, shares.last()), (WK_OK, Some(&1.0)), "{}", message());
+        assert!(shares.len() >= 14 && files(&cache).len() == 1, "{shares:?}");
         // This context, or another one of the device, already shows the tables. Frames then draw only an observer's
         // tables.
         assert_eq!(build(host.context, usize::MAX), (WK_OK, vec![1.0]));
@@ -138,8 +138,8 @@ fn tables_are_built_ahead_with_progress_and_come_back_from_a_file() {
     let whole = std::fs::read(&file).unwrap();
     std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
     let host = Simulator::new(&cache);
-    let (status, told) = build(host.context, usize::MAX);
-    assert!(status == WK_OK && told.len() >= 14 && said("damaged"), "{told:?}");
+    let (status, shares) = build(host.context, usize::MAX);
+    assert!(status == WK_OK && shares.len() >= 14 && said("damaged"), "{shares:?}");
     assert_eq!(std::fs::read(&file).unwrap(), whole, "mended, bit for bit");
     drop(host);
     std::fs::remove_dir_all(&cache).unwrap();

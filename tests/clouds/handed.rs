@@ -25,8 +25,9 @@ fn share(map: &CloudShadows, texels: &[u8], place: DVec3) -> f64 {
     let row = |y: i64| at(i as i64, y) + (at(i as i64 + 1, y) - at(i as i64, y)) * (x - i);
     let here = row(j as i64) + (row(j as i64 + 1) - row(j as i64)) * (y - j);
     let far = (u - map.camera_uv[0]).abs().max((v - map.camera_uv[1]).abs());
-    let told = map.told * ((0.46 - far) / 0.06).clamp(0.0, 1.0) * ((map.top_m - height) / 100.0).clamp(0.0, 1.0);
-    map.mean_share + (here - map.mean_share) * told
+    let weight =
+        map.map_weight * ((0.46 - far) / 0.06).clamp(0.0, 1.0) * ((map.top_m - height) / 100.0).clamp(0.0, 1.0);
+    map.mean_share + (here - map.mean_share) * weight
 }
 
 fn record(sky: &mut Sky, position: DVec3, stages: Stages, flags: FrameFlags) {
@@ -57,7 +58,7 @@ fn a_host_reads_the_shadow_of_any_place_from_the_map() {
     let mut sky = Sky::new(SCATTERED, CloudModel::Volume);
     let weather = Weather { wind: Wind::of(8.0, 250.0), ..Weather::from_metar(SCATTERED).unwrap().weather };
     sky.context.set_weather(&weather, 0.0, 0.0).unwrap();
-    assert_eq!(sky.view.cloud_shadows().unwrap().told, 0.0, "no frame yet");
+    assert_eq!(sky.view.cloud_shadows().unwrap().map_weight, 0.0, "no frame yet");
     for (eye, time_s, flags) in [
         (DVec3::new(0.0, 0.0, 2.0), 0.0, FrameFlags::NO_HISTORY),
         (DVec3::new(3210.0, -15_400.0, 120.0), 400.0, FrameFlags::NO_HISTORY),
@@ -80,7 +81,7 @@ fn a_host_reads_the_shadow_of_any_place_from_the_map() {
 }
 
 #[test]
-fn shadows_are_laid_once_and_the_mean_counts_where_none_are_told_apart() {
+fn shadows_are_laid_once_and_the_mean_counts_without_broken_clouds() {
     let mut sky = Sky::new(SCATTERED, CloudModel::Volume);
     let spread = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(*x)) / v.iter().fold(f64::MAX, |m: f64, x| m.min(*x));
     let laid = over_ground(&mut sky, 1e6, FrameFlags::NO_HISTORY);
@@ -94,10 +95,10 @@ fn shadows_are_laid_once_and_the_mean_counts_where_none_are_told_apart() {
     assert!(spread(&laid) > 2.0 && spread(&left) < 1.2, "{} {}", spread(&laid), spread(&left));
     // The texture stays the same as long as the view lives.
     assert_eq!(sky.view.cloud_shadows().unwrap().texture, map.texture);
-    let told = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
+    let mean = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
     sky.context.set_cloud_model(CloudModel::Deck);
     record(&mut sky, DVec3::Z * 2.0, Stages::PREPARE, FrameFlags::NO_HISTORY);
     let even = sky.view.cloud_shadows().unwrap();
-    assert_eq!((even.told, even.texture.clone()), (0.0, map.texture.clone()));
-    assert!((share(&even, &[128; 512 * 512], DVec3::ZERO) - told).abs() < 1e-6, "the mean");
+    assert_eq!((even.map_weight, even.texture.clone()), (0.0, map.texture.clone()));
+    assert!((share(&even, &[128; 512 * 512], DVec3::ZERO) - mean).abs() < 1e-6, "the mean");
 }

@@ -73,7 +73,7 @@ fn drawn(host: &Host, api: Api, map: &wk_cloud_shadows) -> Vec<f64> {
         let rows: Vec<f32> = [u, v, map.height_from_world].iter().flatten().map(|x| *x as f32).collect();
         gl.uniform_4_f32_slice(at("rows").as_ref(), &rows);
         gl.uniform_2_f32(at("camera_uv").as_ref(), map.camera_uv[0] as f32, map.camera_uv[1] as f32);
-        gl.uniform_3_f32(at("even").as_ref(), map.mean_share as f32, map.told as f32, map.top_m as f32);
+        gl.uniform_3_f32(at("even").as_ref(), map.mean_share as f32, map.map_weight as f32, map.top_m as f32);
         gl.uniform_2_f32(at("square").as_ref(), SIDE as f32, APART_M as f32);
         gl.viewport(0, 0, side, side);
         gl.draw_arrays(glow::TRIANGLES, 0, 3);

@@ -117,7 +117,7 @@ fn a_night_laid_fast_is_the_night_within_five_percent_and_says_so() {
         context
     };
     let (slow, fast) = (night(false), night(true));
-    assert_eq!((slow.snow_laid_fast_s(), fast.snow_laid_fast_s()), (0.0, 8.0 * 3600.0));
+    assert_eq!((slow.snow_fast_forwarded_s(), fast.snow_fast_forwarded_s()), (0.0, 8.0 * 3600.0));
     assert_ne!(slow.state_hash().unwrap(), fast.state_hash().unwrap());
     let far = DVec3::new(1e4, 1e4, 0.0);
     for place in [far, at(-15.0, 20.0), at(0.0, 10.0), at(12.0, 12.0)] {

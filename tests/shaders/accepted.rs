@@ -253,7 +253,7 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "the way inside is not empty, and rows have a length",
     ),
     ("detoured", "sum * 2.0 * h / (last - first)", "the way inside is not empty, and rows have a length"),
-    ("disc_light", "pow(hung.clouds.a, CLOUD_STRAIGHT - 1.0)", "a transmittance"),
+    ("disc_light", "pow(sky.clouds.a, CLOUD_STRAIGHT - 1.0)", "a transmittance"),
     ("distance_at", "(at + 0.5) / map.size", "maps have texels"),
     ("drop_at", "smoothstep(shell.y, shell.w, d)", "shells lie one within the other"),
     ("drop_at", "smoothstep(shell.z, 0.5 * shell.x, d)", "shells lie one within the other"),

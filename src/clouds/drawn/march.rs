@@ -101,7 +101,7 @@ enum LightWithin<'a> {
     /// Tables of the only medium.
     Given(Arc<Sources>),
     /// Tables computed when a ray first meets cloud of a medium; most rays meet none.
-    Asked {
+    Lazy {
         /// Noise of the clouds, which caches the tables of the last query.
         grown: &'a CloudNoise,
         /// Media: droplets (0) and ice (1).
@@ -118,7 +118,7 @@ impl LightWithin<'_> {
     fn of(&self, medium: usize) -> &Sources {
         match self {
             Self::Given(sources) => sources,
-            Self::Asked { grown, media, to_sun, made } => {
+            Self::Lazy { grown, media, to_sun, made } => {
                 made[medium].get_or_init(|| grown.sources(medium, &media[medium], *to_sun))
             }
         }
@@ -167,7 +167,7 @@ impl<'a> CloudRays<'a> {
             place_m: overhead.place_m.extend(scene.place.altitude_m),
             radius_m,
             has_deck: overhead.has_deck,
-            light: LightWithin::Asked { grown, media, to_sun, made: Default::default() },
+            light: LightWithin::Lazy { grown, media, to_sun, made: Default::default() },
             longer: [1.0; 2],
         }
     }

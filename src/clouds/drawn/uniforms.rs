@@ -147,7 +147,7 @@ pub(crate) struct ShadowUniform {
     /// Mean share of the direct light over all places.
     pub mean: f32,
     /// Weight of the map against that mean, 0 to 1.
-    pub told: f32,
+    pub map_weight: f32,
     /// Height above the plane from which on the mean holds, m.
     pub top: f32,
     /// Extinction of the air at the camera's height, 1/m.
@@ -290,7 +290,7 @@ mod tests {
             "clouds/shadow_map.wgsl",
             "CloudShadows",
             ShadowUniform,
-            [to_light, plane, camera, period, eye, mean, told, top, haze, haze_height]
+            [to_light, plane, camera, period, eye, mean, map_weight, top, haze, haze_height]
         );
     }
 }

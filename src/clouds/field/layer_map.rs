@@ -185,23 +185,23 @@ mod tests {
         let cover: Vec<f32> = (0..30 * 20).map(|i| if (i % 30) < 7 || i / 30 > 16 { 1.0 } else { 0.0 }).collect();
         let map = CloudMap { first_m: [0.0; 2], cell_m: 1000.0, cells: [30, 20], base_m: [0.0, 2e4], cover };
         let layer = LayerMap::new(&typical(CloudKind::Cumulus, 1.0).unwrap(), &Arc::new(map));
-        let mut told = 0.0f64;
+        let mut longest_m = 0.0f64;
         for i in 0..4000 {
             let at = DVec2::new(
                 (f64::from(i) * 0.754_877).fract() * 34e3 - 2e3,
                 (f64::from(i) * 0.569_84).fract() * 24e3 - 2e3,
             );
             let (here, steady_m) = layer.at(at);
-            told = told.max(steady_m);
+            longest_m = longest_m.max(steady_m);
             for k in 0..24 {
                 let away = DVec2::from_angle(f64::from(k)) * steady_m * f64::from(k % 3 + 1) / 3.0;
                 let there = layer.at(at + away).0.threshold;
                 assert!((there - here.threshold).abs() < 1e-2, "{at}: {steady_m} m, {away}");
                 let step = DVec2::from_angle(f64::from(k)) * 20.0;
                 let change = (layer.at(at + step).0.threshold - here.threshold).abs() / 20.0;
-                assert!(change < 1.01 * layer.slope_per_m, "{at}: {change} a metre, told {}", layer.slope_per_m);
+                assert!(change < 1.01 * layer.slope_per_m, "{at}: {change} a metre, bound {}", layer.slope_per_m);
             }
         }
-        assert!(told >= 4000.0, "{told}");
+        assert!(longest_m >= 4000.0, "{longest_m}");
     }
 }

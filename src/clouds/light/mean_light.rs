@@ -51,11 +51,13 @@ fn off(c: &Conditions, grown: &[(Map, Solid)], heights_m: &[f64]) -> (f64, (f64,
     let (mut squares, mut most) = (0.0, (0.0, String::new()));
     for height_m in heights_m {
         for mu in LIGHTS {
-            let (told, mean) = (c.cloud_light_at(mu, 0.2, *height_m).direct, mean(c, grown, *height_m, mu));
-            squares += (told - mean) * (told - mean) / (heights_m.len() * LIGHTS.len()) as f64;
-            if (told - mean).abs() > most.0 {
-                most =
-                    ((told - mean).abs(), format!("{told:.2} for {mean:.2} at {height_m:.0} m under a sine of {mu}"));
+            let (reported, mean) = (c.cloud_light_at(mu, 0.2, *height_m).direct, mean(c, grown, *height_m, mu));
+            squares += (reported - mean) * (reported - mean) / (heights_m.len() * LIGHTS.len()) as f64;
+            if (reported - mean).abs() > most.0 {
+                most = (
+                    (reported - mean).abs(),
+                    format!("{reported:.2} for {mean:.2} at {height_m:.0} m under a sine of {mu}"),
+                );
             }
         }
     }

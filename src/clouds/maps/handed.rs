@@ -28,7 +28,7 @@ pub struct CloudShadows {
     pub mean_share: f64,
     /// Weight of the map against `mean_share`, 0 to 1. It is 0 without broken clouds, with the deck, and under a light
     /// near the horizon.
-    pub told: f64,
+    pub map_weight: f64,
     /// Height above the plane, m, from which on `mean_share` holds instead of the map: 100 m above the base of the
     /// lowest clouds.
     pub top_m: f64,
@@ -55,31 +55,34 @@ impl HostShadowTexture {
             height_from_world: DVec4::ZERO,
             camera_uv: [0.0; 2],
             mean_share: 1.0,
-            told: 0.0,
+            map_weight: 0.0,
             top_m: 0.0,
         };
         Self { shadows }
     }
 
     /// Takes over the mapping of a frame; `None` if no clouds cast shadows that the map shows.
-    pub fn lay(&mut self, now: &SceneMoment<'_>, lie: Option<&ShadowProjection>) {
+    pub fn lay(&mut self, now: &SceneMoment<'_>, projection: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;
-        let Some(lie) = lie else {
-            shadows.told = 0.0;
+        let Some(projection) = projection else {
+            shadows.map_weight = 0.0;
             return;
         };
         let rows = now.scene.world_to_enu.transpose();
-        let slant = lie.to_light.truncate() / lie.to_light.z;
+        let slant = projection.to_light.truncate() / projection.to_light.z;
         let row = |v: DVec3, offset: f64| v.extend(offset - v.dot(now.eye));
-        shadows.height_from_world = row(rows.z_axis, lie.eye_m);
+        shadows.height_from_world = row(rows.z_axis, projection.eye_m);
         let one = |axis: DVec3, slant: f64, camera: f64| {
-            row((axis - rows.z_axis * slant) / lie.period_m, camera - slant * lie.eye_m / lie.period_m)
+            row(
+                (axis - rows.z_axis * slant) / projection.period_m,
+                camera - slant * projection.eye_m / projection.period_m,
+            )
         };
-        let camera: DVec2 = lie.camera;
+        let camera: DVec2 = projection.camera;
         shadows.uv_from_world = [one(rows.x_axis, slant.x, camera.x), one(rows.y_axis, slant.y, camera.y)];
         shadows.camera_uv = camera.to_array();
-        (shadows.told, shadows.top_m) = (lie.told, lie.top_m);
+        (shadows.map_weight, shadows.top_m) = (projection.map_weight, projection.top_m);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Panorama: the clouds in all directions from the camera, for mirrors on the ground and for the cube map, which show
-//! more than the picture. A frame refreshes some of its rows. `shaders/between/hung.wgsl` reads it from the first layer
-//! of the picture's texture, below the picture.
+//! more than the picture. A frame refreshes some of its rows. `shaders/between/sky_sample.wgsl` reads it from the first
+//! layer of the picture's texture, below the picture.
 
 use super::shadow_projection::{HistoryUse, ShadowInputs};
 use crate::{
@@ -29,7 +29,7 @@ const LEAPS: (f64, f64) = (100.0, 0.05);
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct PanoramaInputs {
     /// Inputs that the panorama has in common with the shadow map.
-    pub standing: ShadowInputs,
+    pub inputs: ShadowInputs,
     /// Altitude of the camera, m.
     pub altitude_m: f64,
     /// Factor from radiance to display values.
@@ -114,8 +114,8 @@ impl PanoramaInputs {
     /// Whether a panorama drawn from `earlier` is wholly out of date.
     fn leaps_from(&self, earlier: &Self) -> bool {
         let (way_m, exposed) = LEAPS;
-        self.standing.leaps_from(&earlier.standing)
-            || self.standing.camera_m.distance(earlier.standing.camera_m) > way_m
+        self.inputs.leaps_from(&earlier.inputs)
+            || self.inputs.camera_m.distance(earlier.inputs.camera_m) > way_m
             || (self.altitude_m - earlier.altitude_m).abs() > way_m
             || (self.exposure / earlier.exposure).ln().abs() > exposed
     }
@@ -123,7 +123,7 @@ impl PanoramaInputs {
     /// Returns the share of the panorama's rows that the change since `earlier` makes old.
     fn aged_since(&self, earlier: &Self) -> f64 {
         let (way_m, times, exposed) = AGES;
-        let (here, there) = (&self.standing, &earlier.standing);
+        let (here, there) = (&self.inputs, &earlier.inputs);
         let shares = [
             times * here.aged_since(there),
             here.camera_m.distance(there.camera_m) / way_m,
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn the_shader_knows_the_side() {
-        let text = crate::gpu::shader::assemble("between/hung.wgsl").unwrap();
+        let text = crate::gpu::shader::assemble("between/sky_sample.wgsl").unwrap();
         assert!(text.contains(&format!("const ROUND_SIDE: f32 = {PANORAMA_SIDE}.0;")));
     }
 }

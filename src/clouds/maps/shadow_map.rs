@@ -38,7 +38,7 @@ pub(crate) struct ShadowMap {
     /// Coarse map, drawn first.
     coarse: Coarse,
     /// Inputs of the last frame.
-    standing: Option<ShadowInputs>,
+    inputs: Option<ShadowInputs>,
     /// Progress of the refresh.
     rows: MapRows,
     /// Number of rows that still come from the coarse map.
@@ -159,7 +159,7 @@ impl ShadowMap {
             coarse: Coarse::new(device, (&layout, is_placed), &tables.repeating)?,
             clouds: group,
             block,
-            standing: None,
+            inputs: None,
             rows: MapRows::default(),
             coarse_rows: 0,
         })
@@ -171,10 +171,10 @@ impl ShadowMap {
     /// Refreshes some rows once enough of them are old. If the whole map is out of date, or the host cuts to another
     /// picture, the whole map is first drawn coarsely. A frame that is a pure function of view and time draws all rows.
     /// Returns the number of passes.
-    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, lie: &ShadowProjection, past: HistoryUse) -> u32 {
-        let here = lie.standing;
-        self.block.write(bytemuck::bytes_of(&lie.uniform()));
-        let before = self.standing.replace(here);
+    pub fn draw(&mut self, encoder: &mut wgpu::CommandEncoder, projection: &ShadowProjection, past: HistoryUse) -> u32 {
+        let here = projection.inputs;
+        self.block.write(bytemuck::bytes_of(&projection.uniform()));
+        let before = self.inputs.replace(here);
         let begins = past == HistoryUse::Cut || past == HistoryUse::Kept && before.is_none_or(|b| here.leaps_from(&b));
         if begins {
             self.coarse_rows = TEXELS;

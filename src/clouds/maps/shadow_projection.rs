@@ -77,7 +77,7 @@ pub(crate) struct ShadowInputs {
 #[derive(Clone, Copy)]
 pub(crate) struct ShadowProjection {
     /// Inputs from which the projection was created.
-    pub standing: ShadowInputs,
+    pub inputs: ShadowInputs,
     /// Unit vector towards the light, never level.
     pub to_light: DVec3,
     /// Altitude of the map's plane, m.
@@ -91,7 +91,7 @@ pub(crate) struct ShadowProjection {
     /// Mean share of the direct light over all places, 0 to 1.
     mean: f64,
     /// Weight of the map against the mean share, 0 to 1.
-    pub told: f64,
+    pub map_weight: f64,
     /// Height above the plane from which on the mean share holds, m.
     pub top_m: f64,
     /// Extinction of the air at the camera's height, 1/m, and its scale height, m.
@@ -122,7 +122,7 @@ impl ShadowProjection {
         let camera = (DVec2::from_array(scene.map_m) - drift_m) / period_m;
         let lowest_m = shapes.clone().map(|s| s.base_m).fold(f64::INFINITY, f64::min);
         Self {
-            standing: ShadowInputs {
+            inputs: ShadowInputs {
                 time_s: now.time_s,
                 to_light: light.direction,
                 threshold_sum: shapes.map(|s| s.threshold + s.base_m / 1000.0).sum(),
@@ -136,7 +136,7 @@ impl ShadowProjection {
             eye_m: scene.place.altitude_m - plane_m,
             period_m,
             mean: light.direct_share,
-            told: smoothstep(FADE_SINES[0], FADE_SINES[1], light.direction.z),
+            map_weight: smoothstep(FADE_SINES[0], FADE_SINES[1], light.direction.z),
             top_m: (lowest_m - plane_m).max(0.0) + ENDS_M,
             haze: haze(scene),
         }
@@ -151,7 +151,7 @@ impl ShadowProjection {
             period: self.period_m as f32,
             eye: self.eye_m as f32,
             mean: self.mean as f32,
-            told: self.told as f32,
+            map_weight: self.map_weight as f32,
             top: self.top_m as f32,
             haze: self.haze[0] as f32,
             haze_height: self.haze[1] as f32,

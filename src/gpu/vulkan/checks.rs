@@ -161,7 +161,7 @@ pub(super) unsafe fn queue_family(desc: &VulkanHostDesc<'_>, loaded: &LoadedInst
 /// Checks for everything that the backend needs beyond Vulkan 1.0, and for features that the host claims but cannot
 /// have. Reports all faults at once.
 pub(super) fn extensions(
-    told: u32,
+    claimed_version: u32,
     api_version: u32,
     enabled: &[&'static CStr],
     features: &EnabledFeatures,
@@ -171,7 +171,7 @@ pub(super) fn extensions(
     let needed = [ash::khr::maintenance1::NAME, ash::khr::storage_buffer_storage_class::NAME];
     let missing: Vec<_> = needed.into_iter().filter(|name| !has(name)).map(CStr::to_string_lossy).collect();
     if api_version < vk::API_VERSION_1_1 && !missing.is_empty() {
-        let (field, version) = match told {
+        let (field, version) = match claimed_version {
             0 => (
                 "instance_api_version",
                 "0 means Vulkan 1.0: say there what the instance's VkApplicationInfo::apiVersion is, raise both to 1.1 or \

@@ -34,12 +34,12 @@ pub fn shadows(scene: &Scene) -> wk_cloud_shadows {
 /// The complete map after a first frame, which draws nothing.
 pub fn whole(scene: &Scene, size: (u32, u32)) -> wk_cloud_shadows {
     let first = shadows(scene);
-    assert_eq!(first.told, 0.0, "no frame yet");
+    assert_eq!(first.map_weight, 0.0, "no frame yet");
     let frame = wk_frame { flags: WK_FRAME_DEPTH_REVERSED | WK_FRAME_NO_HISTORY, ..super::frame_of(1, size) };
     // SAFETY: live handles.
     ok(unsafe { wk_view_record(scene.view, &frame, WK_STAGE_PREPARE) });
     let map = shadows(scene);
-    assert!(map.texture == first.texture && map.told == 1.0 && map.top_m > 1000.0);
+    assert!(map.texture == first.texture && map.map_weight == 1.0 && map.top_m > 1000.0);
     map
 }
 

@@ -4,7 +4,7 @@
 // Share of the light behind the sky's own (stars) that replaces the night floor.
 var<private> behind_share: f32;
 
-struct Hung {
+struct SkySample {
     // Clouds: radiance times exposure, and transmittance.
     clouds: vec4f,
     // log2 of the distances between which they stand, m, or 0; share of direct light at the surface that the host drew.
@@ -23,12 +23,12 @@ struct Hung {
 }
 
 // Sky without clouds other than a deck.
-fn hung_bare() -> Hung {
-    var hung: Hung;
-    hung.clouds = vec4f(0.0, 0.0, 0.0, 1.0);
-    hung.reach = vec3f(0.0, 0.0, 1.0);
-    hung.behind = frame.night_floor;
-    hung.deck = frame.deck_cover;
-    hung.disc = frame.direct_share;
-    return hung;
+fn bare_sky_sample() -> SkySample {
+    var sky: SkySample;
+    sky.clouds = vec4f(0.0, 0.0, 0.0, 1.0);
+    sky.reach = vec3f(0.0, 0.0, 1.0);
+    sky.behind = frame.night_floor;
+    sky.deck = frame.deck_cover;
+    sky.disc = frame.direct_share;
+    return sky;
 }

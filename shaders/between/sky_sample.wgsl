@@ -1,6 +1,6 @@
 // Clouds in the sky, and stars behind the sky's own light: in a pixel of the picture, or in any direction from the
 // camera.
-//!include "between/hung_bare.wgsl"
+//!include "between/sky_sample_bare.wgsl"
 //!include "between/flash.wgsl"
 //!include "between/glow.wgsl"
 //!include "common/octahedron.wgsl"
@@ -32,14 +32,14 @@ const ROUND_SIDE: f32 = 96.0;
 const NO_CLOUDS: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
 // Replaces the deck with clouds drawn as a volume, by the share that is drawn.
-fn hung_with(clouds: vec4f) -> Hung {
-    var hung = hung_bare();
+fn sky_sample_with(clouds: vec4f) -> SkySample {
+    var sky = bare_sky_sample();
     if CLOUDS {
-        hung.clouds = mix(hung.clouds, clouds, frame.clouds_drawn);
-        hung.deck = mix(hung.deck, select(0.0, 1.0, DECK_BEHIND), frame.clouds_drawn);
-        hung.disc = mix(hung.disc, 1.0, frame.clouds_drawn);
+        sky.clouds = mix(sky.clouds, clouds, frame.clouds_drawn);
+        sky.deck = mix(sky.deck, select(0.0, 1.0, DECK_BEHIND), frame.clouds_drawn);
+        sky.disc = mix(sky.disc, 1.0, frame.clouds_drawn);
     }
-    return hung;
+    return sky;
 }
 
 // Glow of the clouds in a pixel. `reach` is log2 of their distance, m. Of the texels around the pixel, those whose
@@ -62,37 +62,37 @@ fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
 }
 
 // Sky in a pixel of the picture, or in one of its samples, in front of a surface at this range.
-fn hung_in(pixel: vec2i, range: f32) -> Hung {
+fn sky_sample_in(pixel: vec2i, range: f32) -> SkySample {
     var clouds = NO_CLOUDS;
     if CLOUDS {
         clouds = textureLoad(sky_layers, pixel, 0, 0);
     }
-    var hung = hung_with(clouds);
+    var sky = sky_sample_with(clouds);
     if CLOUDS && (FLASH || CLOUD_SHAFTS || CLOUD_GLOW || range < RANGE_SKY) {
         let reach = textureLoad(sky_layers, pixel, 1, 0);
-        hung.reach = reach.rgb;
-        hung.shafts = reach.a * frame.clouds_drawn;
-        hung.reach.z = mix(frame.cloud_shadow.w, hung.reach.z, frame.clouds_drawn);
+        sky.reach = reach.rgb;
+        sky.shafts = reach.a * frame.clouds_drawn;
+        sky.reach.z = mix(frame.cloud_shadow.w, sky.reach.z, frame.clouds_drawn);
     }
     if CLOUD_GLOW {
-        hung.glow = glow_in(pixel, 0.5 * (hung.reach.x + hung.reach.y));
-        hung.has_glow = true;
+        sky.glow = glow_in(pixel, 0.5 * (sky.reach.x + sky.reach.y));
+        sky.has_glow = true;
     }
     if STARS {
-        hung.behind = textureLoad(sky_layers, pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
+        sky.behind = textureLoad(sky_layers, pixel, select(0, 2, CLOUDS), 0).rgb * frame.behind.x;
     }
-    return hung;
+    return sky;
 }
 
 // Sky in a direction inside or outside the picture: clouds without their distance, and no stars.
-fn hung_toward(d: vec3f) -> Hung {
+fn sky_sample_toward(d: vec3f) -> SkySample {
     var clouds = NO_CLOUDS;
     if CLOUDS {
         let size = vec2f(textureDimensions(sky_layers));
         let at = vec2f(0.5, size.y - ROUND_SIDE + 0.5) + octahedron_place(d) * (ROUND_SIDE - 1.0);
         clouds = textureSampleLevel(sky_layers, sky_sampler, at / size, 0, 0.0);
     }
-    return hung_with(clouds);
+    return sky_sample_with(clouds);
 }
 
 // Whether a deck hides all that is behind it.
@@ -101,16 +101,16 @@ fn deck_hides_all() -> bool {
 }
 
 // Lays the clouds in front of `behind` at this range, by the share of them that is in front.
-fn with_clouds(behind: Veil, hung: Hung, range: f32) -> Veil {
+fn with_clouds(behind: Veil, sky: SkySample, range: f32) -> Veil {
     if !CLOUDS {
         return behind;
     }
-    var clouds = hung.clouds;
+    var clouds = sky.clouds;
     if CLOUD_GLOW {
-        clouds += vec4f(hung.glow * (1.0 - clouds.a), 0.0);
+        clouds += vec4f(sky.glow * (1.0 - clouds.a), 0.0);
     }
     if range < RANGE_SKY {
-        let reach = exp2(hung.reach.xy);
+        let reach = exp2(sky.reach.xy);
         let share = clamp((range - reach.x) / max(reach.y - reach.x, 1.0), 0.0, 1.0);
         clouds = mix(NO_CLOUDS, clouds, share);
     }
