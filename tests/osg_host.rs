@@ -198,10 +198,10 @@ fn scenes_without_units_are_lit_as_those_in_luminance() {
 #[test]
 fn a_picture_waits_for_the_simulated_ground() {
     let host = Host::new("leap");
-    let said = host.run("--leap 24 --msaa none --size 160 90 --frames 2", None);
+    let said = host.run("--leap 8 --msaa none --size 160 90 --frames 2", None);
     assert!(!said.contains("lagged"), "without a picture nothing waits: {said}");
     let path = host.folder.join("leap.png");
-    let said = host.run(&format!("--leap 24 --msaa none --size 160 90 --frames 2 --out {}", path.display()), None);
+    let said = host.run(&format!("--leap 8 --msaa none --size 160 90 --frames 2 --out {}", path.display()), None);
     let lagged = said.split("the ground lagged for ").nth(1).and_then(|s| s.split(' ').next()?.parse::<u32>().ok());
     assert!(lagged.is_some_and(|frames| frames > 0), "{said}");
 }
