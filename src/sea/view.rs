@@ -64,6 +64,17 @@ impl SidePlanes {
         Self([w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length()))
     }
 
+    /// Whether all lines of sight from the camera rise. Those of a parallel projection start at other places too.
+    fn look_up(&self) -> bool {
+        let normals = self.0.map(|plane| plane.truncate());
+        let rises = |[a, b, opposite]: [usize; 3]| {
+            let along = normals[a].cross(normals[b]);
+            along.z * along.dot(normals[opposite]).signum() > 0.0
+        };
+        let corners = [[0, 2, 1], [0, 3, 1], [1, 2, 0], [1, 3, 0]];
+        self.0.iter().all(|plane| plane.w.abs() < 1e-9) && corners.into_iter().all(rises)
+    }
+
     /// Whether any of a box along the axes may be in the picture.
     fn shows(&self, middle: DVec3, half_m: DVec3) -> bool {
         self.0.iter().all(|plane| plane.dot(middle.extend(1.0)) > -plane.truncate().abs().dot(half_m))
@@ -76,6 +87,9 @@ impl SeaView {
         let camera = &context.frame.camera;
         let turned = camera.rotation() * context.now.scene.world_to_enu.transpose();
         let planes = SidePlanes::new(&(camera.projection * DMat4::from_mat3(turned)));
+        if planes.look_up() && eye.height_m > self.crest_m {
+            return;
+        }
         self.blocks.reserve_exact(MOST_BLOCKS);
         let displaced_m = DISPLACED_TO_CREST * self.crest_m;
         let shows =
