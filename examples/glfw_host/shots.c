@@ -2,6 +2,7 @@
 #include "shots.h"
 
 #include "objects.h"
+#include "sea_shots.h"
 #include "snow_shots.h"
 
 static wk_weather weather_here(double visibility_m, double humidity)
@@ -428,6 +429,8 @@ static bool with_wipers(demo *d, double time_s)
 /* In the lee of the barn. */
 #define LEE 42.0, -8.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 78.0, -3.0, 50.0
 #define SKYWARD(elevation, fov_y) 0.0, -4.8, 9.0, SITE_VIEW_AZIMUTH_DEG + 4.0, elevation, fov_y
+/* Over the open sea. */
+#define AFLOAT(up, azimuth, elevation, fov_y) 0.0, 0.0, up, azimuth, elevation, fov_y
 #define HIGH(up, azimuth, elevation, fov_y) 0.0, -4.8, up, azimuth, elevation, fov_y
 
 const shot SHOTS[] = {
@@ -473,6 +476,12 @@ const shot SHOTS[] = {
     {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL, false},
     {"limb_with_clouds", "Clouds before the limb, 200 km up", HIGH(200e3, 8.0, -14.0, 30.0), limb_with_clouds, NO_WORLD, NULL, true},
     {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL, false},
+    {"sea_breeze", "The open sea, wind 5 m/s", AFLOAT(6.0, SITE_VIEW_AZIMUTH_DEG, -4.0, 50.0), sea_breeze, OPEN_SEA, NULL, false},
+    {"sea_storm", "A storm from 15 m up, wind 20 m/s", AFLOAT(15.0, SITE_VIEW_AZIMUTH_DEG, -5.0, 50.0), sea_storm, OPEN_SEA, NULL, false},
+    {"sea_glitter", "The glitter of a low sun", AFLOAT(20.0, SITE_VIEW_AZIMUTH_DEG, -4.0, 50.0), sea_glitter, OPEN_SEA, NULL, true},
+    {"sea_swell", "A swell of 3 m across the waves of the wind", AFLOAT(40.0, SITE_VIEW_AZIMUTH_DEG, -9.0, 50.0), sea_swell, OPEN_SEA, NULL, true},
+    {"moonlit_sea", "The glitter of the moon", AFLOAT(10.0, SITE_VIEW_AZIMUTH_DEG, 3.0, 50.0), moonlit_sea, OPEN_SEA, NULL, true},
+    {"sea_fog", "Fog over the water, visibility 400 m, with its fogbow", AFLOAT(5.0, SITE_VIEW_AZIMUTH_DEG, -3.0, 50.0), sea_fog, OPEN_SEA, NULL, true},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 
@@ -480,5 +489,6 @@ camera shot_camera(const shot *s, const ground *g)
 {
     double x, y;
     ground_road_point(s->along_m, s->right_m, &x, &y);
-    return (camera){vec(x, y, ground_z(g, x, y) + s->up_m), direction(s->azimuth_deg, s->elevation_deg), RAD(s->fov_y_deg)};
+    double level_m = s->world == OPEN_SEA ? 0.0 : ground_z(g, x, y);
+    return (camera){vec(x, y, level_m + s->up_m), direction(s->azimuth_deg, s->elevation_deg), RAD(s->fov_y_deg)};
 }

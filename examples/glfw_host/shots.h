@@ -5,11 +5,17 @@
 #include "demo.h"
 #include "objects.h"
 
-enum world { WORLD, WITH_BRIDGE, WITH_BARN, NO_WORLD /* seen from so high that the host's land would end */ };
+enum world {
+    WORLD,
+    WITH_BRIDGE,
+    WITH_BARN,
+    NO_WORLD, /* seen from so high that the host's land would end */
+    OPEN_SEA, /* nothing but Welkin's sea, whose level is 0 */
+};
 
 typedef struct shot {
     const char *name, *caption;
-    /* Camera position: metres down the road, to the right of it, and above the ground. */
+    /* Camera position: metres down the road, to the right of it, and above the ground or the sea. */
     double along_m, right_m, up_m;
     double azimuth_deg, elevation_deg, fov_y_deg;
     /* Sets sun, weather and everything else in the shot. */

@@ -125,6 +125,7 @@ static bool record(weather_link *w, const picture *p, const camera *c, double cd
     f.color_space = WK_COLOR_SCENE_LINEAR;
     f.cd_m2_per_unit = cd_m2_per_unit;
     f.diagnostic = w->diagnostic;
+    f.depth_access = WK_DEPTH_ACCESS_READ_WRITE; /* Welkin may draw a sea */
     f.target = &target;
     return weather_check(wk_view_record(w->view, &f, stages));
 }

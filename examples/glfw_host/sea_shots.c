@@ -1,0 +1,57 @@
+/* The gallery's pictures of the open sea. Welkin draws it into the host's depth, which a frame has to lend. */
+#include "sea_shots.h"
+
+#include "shots.h"
+
+/* Sets air, wind and a sea that the wind raises; `crossing`, which may be NULL, is a swell. */
+static bool sea_in(demo *d, double visibility_m, double wind_m_s, const wk_cloud_layer *cloud, const wk_sea_swell *crossing)
+{
+    wk_weather w = WK_WEATHER_INIT;
+    w.visibility_m = visibility_m;
+    w.relative_humidity = 0.7;
+    w.wind_speed_m_s = wind_m_s;
+    w.wind_from_deg = 250.0;
+    w.clouds = cloud;
+    w.cloud_count = cloud ? 1 : 0;
+    wk_sea sea = WK_SEA_INIT;
+    sea.swells = crossing;
+    sea.swell_count = crossing ? 1 : 0;
+    if (crossing)
+        sea.has |= WK_SEA_HAS_SWELLS;
+    return weather_clock(&d->weather, HOURS[0].utc_s) &&
+           weather_check(wk_context_set_weather(d->weather.context, &w, 0.0, 0.0)) &&
+           weather_check(wk_context_set_sea(d->weather.context, &sea));
+}
+
+bool sea_breeze(demo *d) { return sea_in(d, 40e3, 5.0, NULL, NULL) && sun_at(d, 60, 45); }
+
+bool sea_storm(demo *d)
+{
+    wk_cloud_layer deck = WK_CLOUD_LAYER_INIT;
+    deck.kind = WK_CLOUD_STRATOCUMULUS;
+    deck.cover = 1.0;
+    deck.base_m = 600.0;
+    return sea_in(d, 8e3, 20.0, &deck, NULL) && sun_at(d, 60, 30);
+}
+
+bool sea_glitter(demo *d) { return sea_in(d, 30e3, 6.0, NULL, NULL) && sun_at(d, SITE_VIEW_AZIMUTH_DEG, 12); }
+
+bool sea_swell(demo *d)
+{
+    wk_sea_swell across = WK_SEA_SWELL_INIT;
+    across.height_m = 3.0;
+    across.period_s = 13.0;
+    across.from_deg = 300.0;
+    return sea_in(d, 40e3, 4.0, NULL, &across) && sun_at(d, 160, 9);
+}
+
+bool moonlit_sea(demo *d)
+{
+    wk_given_direction moon = WK_GIVEN_DIRECTION_INIT;
+    moon.azimuth_deg = SITE_VIEW_AZIMUTH_DEG + 5.0;
+    moon.elevation_deg = 22.0;
+    return sea_in(d, 40e3, 5.0, NULL, NULL) && sun_at(d, 0, -30) &&
+           weather_check(wk_context_set_moon(d->weather.context, &moon));
+}
+
+bool sea_fog(demo *d) { return sea_in(d, 400.0, 4.0, NULL, NULL) && sun_at(d, 60, 25); }
