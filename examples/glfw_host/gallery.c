@@ -63,6 +63,7 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
     d->history = false;
     d->scene.extra = s->world == WITH_BRIDGE ? BRIDGE : s->world == WITH_BARN ? BARN : NO_EXTRA;
     d->scene.empty = s->world == NO_WORLD || s->world == OPEN_SEA;
+    d->scene.landless = s->world == LANDLESS;
     weather_close(&d->weather);
     bool ok = weather_open(&d->weather, d->platform, NULL) && s->prepare(d) &&
               (!s->windscreen || let_it_rain_on_the_glass(d, s)) && demo_draw(d);

@@ -151,7 +151,7 @@ static void draw(const scene *s, bool with_ground, bool objects)
 {
     if (s->empty)
         return;
-    if (with_ground)
+    if (with_ground && !s->landless)
         draw_from(0, s->ground_indices);
     if (objects) {
         draw_from(s->ground_indices, s->object_indices);

@@ -21,7 +21,8 @@ typedef struct scene {
     GLsizei ground_indices, object_indices;
     GLsizei extra_first[EXTRAS], extra_indices[EXTRAS];
     extra extra;
-    bool empty; /* draw nothing, as seen from space */
+    bool empty;    /* draw nothing, as seen from space */
+    bool landless; /* draw objects without ground */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;
