@@ -4,7 +4,7 @@
 
 programs="$work/programs"
 pictures="$work/pictures"
-linux="$target_dir/stage/release"
+linux="$target_dir/stage/dev"
 
 # Wine's own 64-bit loader: the script beside it asks for a 32-bit Wine.
 find_wine() {
@@ -78,9 +78,9 @@ gcc_linux() {
     gcc -std=c11 "${strict[@]}" "${sources[@]}" -o "$programs/$name" -L"$linux/lib" -lwelkin -Wl,-rpath,"$linux/lib" "$@"
 }
 
-# The Linux library of the same sources and profile, for its pictures.
+# The Linux library of the same sources, for its pictures. They are equal in all profiles; this one is built for the tests.
 build_linux() {
-    ${MAKE:-make} --no-print-directory stage PROFILE=release
+    ${MAKE:-make} --no-print-directory stage PROFILE=dev
 }
 
 # MinGW has an import library for all of Windows but Vulkan's loader: made from the DLL that Wine has. The headers are
