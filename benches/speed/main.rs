@@ -1,6 +1,6 @@
 //! Benchmarks that print ratios measured within one run: `make bench`. `cargo bench -- record` runs only the named ones
 //! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, run,
-//! sky, wind).
+//! sea, sky, wind).
 
 mod clouds;
 mod copies;
@@ -18,6 +18,7 @@ mod radiance;
 mod rain;
 mod record;
 mod run;
+mod sea;
 mod sky;
 mod wind;
 
@@ -59,6 +60,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("wind") {
         wind::run()?;
+    }
+    if wanted("sea") {
+        sea::run()?;
     }
     if wanted("sky") {
         sky::run()?;
