@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use glam::DVec2;
-use half::f16;
+use glam::{DVec2, Vec4};
+use half::{
+    f16,
+    slice::{HalfBitsSliceExt, HalfFloatSliceExt},
+};
 
 use super::{
     fft::SIDE,
     surface::{SeaSurface, TileFields, to_tile},
-    tiles::{TILES, VALUES},
+    tiles::TILES,
     turn::fraction,
 };
 
@@ -54,7 +57,9 @@ pub(super) struct DrawnTiles {
     /// Covariances of the slopes that a filtering look-up finds at each mip level, along the tile's axes: xx, xy, yy.
     covariances: [[[f64; 3]; MIPS]; TILES],
     /// One mip level of a tile, and the next.
-    work: [Vec<[f32; 4]>; 2],
+    work: [Vec<Vec4>; 2],
+    /// Slopes of a tile at its samples.
+    finest: Vec<Vec4>,
 }
 
 /// Sums over all waves that are drawn.
@@ -69,8 +74,9 @@ pub(super) struct DrawnSums {
 impl DrawnTiles {
     pub fn new() -> Self {
         let empty = || std::array::from_fn(|mip| vec![[0u16; 4]; TILES * (SIDE >> mip) * (SIDE >> mip)]);
-        let work = [vec![[0.0; 4]; SIDE * SIDE], vec![[0.0; 4]; SIDE * SIDE]];
-        Self { shapes: empty(), slopes: empty(), covariances: [[[0.0; 3]; MIPS]; TILES], work }
+        let texels = || vec![Vec4::ZERO; SIDE * SIDE];
+        let covariances = [[[0.0; 3]; MIPS]; TILES];
+        Self { shapes: empty(), slopes: empty(), covariances, work: [texels(), texels()], finest: texels() }
     }
 
     /// Takes over the tiles of a surface.
@@ -81,10 +87,11 @@ impl DrawnTiles {
                 continue;
             }
             for (to, from) in self.work[0].iter_mut().zip(&tile.fields) {
-                *to = [from[0] as f32, from[1] as f32, from[2] as f32, 0.0];
+                *to = Vec4::new(from[0] as f32, from[1] as f32, from[2] as f32, 0.0);
             }
+            fill_slopes(&self.work[0], tile.length_m, &mut self.finest);
             each_mip(&mut self.work, |mip, texels| store(&mut self.shapes[mip], t, texels));
-            fill_slopes(tile, &mut self.work[0]);
+            self.work[0].copy_from_slice(&self.finest);
             let covariances = &mut self.covariances[t];
             each_mip(&mut self.work, |mip, texels| {
                 covariances[mip] = filtered_covariances(texels, SIDE >> mip);
@@ -117,73 +124,73 @@ impl DrawnTiles {
 }
 
 /// Calls `act` with each mip level of the texels in `work[0]`: each texel is the mean of four of the level before.
-fn each_mip(work: &mut [Vec<[f32; 4]>; 2], mut act: impl FnMut(usize, &[[f32; 4]])) {
+fn each_mip(work: &mut [Vec<Vec4>; 2], mut act: impl FnMut(usize, &[Vec4])) {
     for mip in 0..MIPS {
         let side = SIDE >> mip;
         act(mip, &work[0][..side * side]);
-        let half = side / 2;
         let [from, to] = work;
-        for (i, texel) in to.iter_mut().enumerate().take(half * half) {
-            let at = 2 * (i / half) * side + 2 * (i % half);
-            let four = [from[at], from[at + 1], from[at + side], from[at + side + 1]];
-            *texel = std::array::from_fn(|n| 0.25 * ((four[0][n] + four[1][n]) + (four[2][n] + four[3][n])));
+        let rows = from[..side * side].chunks_exact(2 * side);
+        for (rows, to) in rows.zip(to.chunks_exact_mut((side / 2).max(1))) {
+            let (upper, lower) = rows.split_at(side);
+            for ((a, b), texel) in upper.chunks_exact(2).zip(lower.chunks_exact(2)).zip(to) {
+                *texel = 0.25 * ((a[0] + a[1]) + (b[0] + b[1]));
+            }
         }
         work.swap(0, 1);
     }
 }
 
 /// Stores the texels of a tile.
-fn store(level: &mut HalfTexels, t: usize, texels: &[[f32; 4]]) {
+fn store(level: &mut HalfTexels, t: usize, texels: &[Vec4]) {
     let to = &mut level[t * texels.len()..(t + 1) * texels.len()];
-    to.iter_mut().zip(texels).for_each(|(to, from)| *to = from.map(|v| f16::from_f32(v).to_bits()));
+    to.as_flattened_mut().reinterpret_cast_mut::<f16>().convert_from_f32_slice(bytemuck::cast_slice(texels));
 }
 
-/// Writes the slopes and the compression at a tile's samples: the derivatives of its B-splines there.
-fn fill_slopes(tile: &TileFields, texels: &mut [[f32; 4]]) {
-    let per_m = SIDE as f64 / tile.length_m;
-    let at = |x: usize, y: usize| -> &[f64; VALUES] { &tile.fields[(y % SIDE) * SIDE + x % SIDE] };
-    for y in 0..SIDE {
-        let (low, high) = (y + SIDE - 1, y + 1);
+/// Writes the slopes and the compression at a tile's samples: the derivatives of its B-splines there. Weights are 1/6,
+/// 2/3, 1/6 across, and half the difference along.
+fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
+    let factor = (SIDE as f64 / length_m / 12.0) as f32;
+    let row = |y: usize| &shapes[(y % SIDE) * SIDE..][..SIDE];
+    // Weighted sums and differences of three rows, with the last column before the first and the first after the last.
+    let (mut sums, mut differences) = ([Vec4::ZERO; SIDE + 2], [Vec4::ZERO; SIDE + 2]);
+    for (y, to) in slopes.chunks_exact_mut(SIDE).enumerate() {
+        let (low, middle, high) = (row(y + SIDE - 1), row(y), row(y + 1));
         for x in 0..SIDE {
-            let (left, right) = (x + SIDE - 1, x + 1);
-            // Weights 1/6, 2/3, 1/6 across, and half the difference along.
-            let along_x = |n: usize| {
-                let of = |row: usize| at(right, row)[n] - at(left, row)[n];
-                per_m * (of(low) + 4.0 * of(y) + of(high)) / 12.0
-            };
-            let along_y = |n: usize| {
-                let of = |column: usize| at(column, high)[n] - at(column, low)[n];
-                per_m * (of(left) + 4.0 * of(x) + of(right)) / 12.0
-            };
-            let compression = -(along_x(1) + along_y(2));
-            texels[y * SIDE + x] = [along_x(0) as f32, along_y(0) as f32, compression as f32, 0.0];
+            sums[x + 1] = low[x] + 4.0 * middle[x] + high[x];
+            differences[x + 1] = high[x] - low[x];
+        }
+        for list in [&mut sums, &mut differences] {
+            (list[0], list[SIDE + 1]) = (list[SIDE], list[1]);
+        }
+        for (x, texel) in to.iter_mut().enumerate() {
+            let along_x = factor * (sums[x + 2] - sums[x]);
+            let along_y = factor * (differences[x] + 4.0 * differences[x + 1] + differences[x + 2]);
+            *texel = Vec4::new(along_x.x, along_y.x, -(along_x.y + along_y.z), 0.0);
         }
     }
 }
 
 /// Returns the covariances of the first two values that a bilinear look-up finds, over all places. Its weights along an
 /// axis are 1 - a and a with a between 0 and 1. Their mean products over a are 1/3 for a texel with itself and 1/6 for
-/// two neighbours.
-fn filtered_covariances(texels: &[[f32; 4]], side: usize) -> [f64; 3] {
+/// two neighbours. Over a bilinear patch the product of two functions has the mean 1/9 of the products at the same
+/// corners, 1/18 of those at neighbours and 1/36 of those across; the sum over all patches has each pair of texels
+/// several times.
+fn filtered_covariances(texels: &[Vec4], side: usize) -> [f64; 3] {
     let mut sums = [0.0f64; 3];
     for y in 0..side {
-        let next_row = ((y + 1) % side) * side;
+        let (row, next_row) = (&texels[y * side..][..side], &texels[(y + 1) % side * side..][..side]);
+        let (mut squares, mut mixed) = (Vec4::ZERO, 0.0);
         for x in 0..side {
-            let next = (x + 1) % side;
-            let [a, b, c, d] = [y * side + x, y * side + next, next_row + x, next_row + next].map(|i| texels[i]);
-            // The mean over a bilinear patch of the product of two functions with these corners.
-            let product = |m: usize, n: usize| {
-                let [am, bm, cm, dm] = [a[m], b[m], c[m], d[m]];
-                let [an, bn, cn, dn] = [a[n], b[n], c[n], d[n]];
-                let own = am * an + bm * bn + cm * cn + dm * dn;
-                let beside = am * bn + bm * an + cm * dn + dm * cn + am * cn + cm * an + bm * dn + dm * bn;
-                let across = am * dn + dm * an + bm * cn + cm * bn;
-                f64::from(own / 9.0 + beside / 18.0 + across / 36.0)
-            };
-            sums[0] += product(0, 0);
-            sums[1] += product(0, 1);
-            sums[2] += product(1, 1);
+            let next = if x + 1 == side { 0 } else { x + 1 };
+            let [a, b, c, d] = [row[x], row[next], next_row[x], next_row[next]];
+            // What each texel is multiplied by: itself, and its neighbours to one side.
+            let near = 4.0 / 9.0 * a + 2.0 / 9.0 * (b + c) + 1.0 / 18.0 * d;
+            squares += a * near + 1.0 / 18.0 * (b * c);
+            let half = 1.0 / 9.0 * (b + c) + 1.0 / 36.0 * d;
+            mixed += 4.0 / 9.0 * a.x * a.y + a.x * half.y + a.y * half.x + 1.0 / 36.0 * (b.x * c.y + b.y * c.x);
         }
+        let row = [squares.x, mixed, squares.y];
+        sums.iter_mut().zip(row).for_each(|(sum, v)| *sum += f64::from(v));
     }
     sums.map(|sum| sum / (side * side) as f64)
 }

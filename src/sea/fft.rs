@@ -3,8 +3,8 @@
 /// Samples of a side.
 pub(super) const SIDE: usize = 128;
 
-/// Columns that are transformed together.
-const COLUMNS: usize = 4;
+/// Rows or columns that are transformed together.
+const LINES: usize = 8;
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,7 +31,7 @@ impl Complex {
         Self::new(self.re - other.re, self.im - other.im)
     }
 
-    #[inline(always)]
+    #[cfg(test)]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.re * other.re - self.im * other.im, self.re * other.im + self.im * other.re)
     }
@@ -58,6 +58,91 @@ impl Complex {
 pub(super) struct Transform {
     factors: [Complex; SIDE / 2],
     order: [usize; SIDE],
+    lines: Box<Lines>,
+}
+
+/// [`LINES`] rows or columns that are transformed together: sample after sample, real and imaginary parts apart, so
+/// that the compiler works on several lines at a time.
+#[derive(Clone, Debug)]
+struct Lines {
+    re: [[f64; LINES]; SIDE],
+    im: [[f64; LINES]; SIDE],
+}
+
+impl Lines {
+    /// Replaces samples `a` and `b` by `a + factor b` and `a - factor b`.
+    #[inline(always)]
+    fn cross(&mut self, a: usize, b: usize, factor: Complex) {
+        let ([re_a, re_b], [im_a, im_b]) = ([self.re[a], self.re[b]], [self.im[a], self.im[b]]);
+        for l in 0..LINES {
+            let re = re_b[l] * factor.re - im_b[l] * factor.im;
+            let im = re_b[l] * factor.im + im_b[l] * factor.re;
+            (self.re[a][l], self.im[a][l]) = (re_a[l] + re, im_a[l] + im);
+            (self.re[b][l], self.im[b][l]) = (re_a[l] - re, im_a[l] - im);
+        }
+    }
+
+    /// Transforms four samples at `at`, which need no products.
+    #[inline(always)]
+    fn first_four(&mut self, at: usize) {
+        for l in 0..LINES {
+            let of = |n: usize| (self.re[at + n][l], self.im[at + n][l]);
+            let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
+            let (low, high) = ((a.0 + b.0, a.1 + b.1), (c.0 + d.0, c.1 + d.1));
+            let (left, right) = ((a.0 - b.0, a.1 - b.1), (c.0 - d.0, c.1 - d.1));
+            // The last factor is i.
+            let four = [
+                (low.0 + high.0, low.1 + high.1),
+                (left.0 - right.1, left.1 + right.0),
+                (low.0 - high.0, low.1 - high.1),
+                (left.0 + right.1, left.1 - right.0),
+            ];
+            for (n, (re, im)) in four.into_iter().enumerate() {
+                (self.re[at + n][l], self.im[at + n][l]) = (re, im);
+            }
+        }
+    }
+
+    /// Does the work of two steps on four samples: crosses `a` with `b` and `c` with `d` by the first factor, then `a`
+    /// with `c` by the second and `b` with `d` by i times the second.
+    #[inline(always)]
+    fn cross_twice(&mut self, [a, b, c, d]: [usize; 4], [first, second]: [Complex; 2]) {
+        let Self { re, im } = self;
+        let (ra, rb, rc, rd) = (re[a], re[b], re[c], re[d]);
+        let (ia, ib, ic, id) = (im[a], im[b], im[c], im[d]);
+        for l in 0..LINES {
+            let (br, bi) = (rb[l] * first.re - ib[l] * first.im, rb[l] * first.im + ib[l] * first.re);
+            let (dr, di) = (rd[l] * first.re - id[l] * first.im, rd[l] * first.im + id[l] * first.re);
+            let (er, ei, fr, fi) = (ra[l] + br, ia[l] + bi, ra[l] - br, ia[l] - bi);
+            let (gr, gi, hr, hi) = (rc[l] + dr, ic[l] + di, rc[l] - dr, ic[l] - di);
+            let (xr, xi) = (gr * second.re - gi * second.im, gr * second.im + gi * second.re);
+            let (yr, yi) = (-(hr * second.im + hi * second.re), hr * second.re - hi * second.im);
+            (re[a][l], im[a][l]) = (er + xr, ei + xi);
+            (re[c][l], im[c][l]) = (er - xr, ei - xi);
+            (re[b][l], im[b][l]) = (fr + yr, fi + yi);
+            (re[d][l], im[d][l]) = (fr - yr, fi - yi);
+        }
+    }
+
+    /// Transforms samples that are in the order of their reversed bits: sum over n of sample\[n\] exp(2 pi i n x /
+    /// SIDE).
+    fn transform(&mut self, factors: &[Complex; SIDE / 2]) {
+        (0..SIDE).step_by(4).for_each(|at| self.first_four(at));
+        let mut side = 4;
+        while 4 * side <= SIDE {
+            for block in (0..SIDE).step_by(4 * side) {
+                for i in 0..side {
+                    let four = [0, 1, 2, 3].map(|n| block + i + n * side);
+                    self.cross_twice(four, [factors[i * (SIDE / (2 * side))], factors[i * (SIDE / (4 * side))]]);
+                }
+            }
+            side *= 4;
+        }
+        // SIDE is twice a power of four.
+        for (i, factor) in factors.iter().enumerate() {
+            self.cross(i, i + SIDE / 2, *factor);
+        }
+    }
 }
 
 impl Transform {
@@ -70,50 +155,41 @@ impl Transform {
         Self {
             factors: std::array::from_fn(factor),
             order: std::array::from_fn(|i| i.reverse_bits() >> (usize::BITS - bits)),
-        }
-    }
-
-    /// Transforms a row in place: sum over n of row\[n\] exp(2 pi i n x / SIDE).
-    fn row(&self, row: &mut [Complex; SIDE]) {
-        for (i, &j) in self.order.iter().enumerate() {
-            if i < j {
-                row.swap(i, j);
-            }
-        }
-        let mut half = 1;
-        while half < SIDE {
-            let stride = SIDE / (2 * half);
-            for block in row.chunks_exact_mut(2 * half) {
-                let (low, high) = block.split_at_mut(half);
-                for (i, (a, b)) in low.iter_mut().zip(high).enumerate() {
-                    let turned = b.times(self.factors[i * stride]);
-                    (*a, *b) = (a.plus(turned), a.minus(turned));
-                }
-            }
-            half *= 2;
+            lines: Box::new(Lines { re: [[0.0; LINES]; SIDE], im: [[0.0; LINES]; SIDE] }),
         }
     }
 
     /// Transforms a square in place, of which only rows within `filled` of row 0 (cyclically) are not zero. The first
     /// index is the row (y), the second the column (x).
-    pub fn square(&self, square: &mut [[Complex; SIDE]], filled: usize) {
-        for (y, row) in square.iter_mut().enumerate() {
-            if y <= filled || y + filled >= SIDE {
-                self.row(row);
+    pub fn square(&mut self, square: &mut [[Complex; SIDE]], filled: usize) {
+        let Self { factors, order, lines } = self;
+        for (n, rows) in square.chunks_exact_mut(LINES).enumerate() {
+            let first = n * LINES;
+            if first > filled && first + LINES - 1 + filled < SIDE {
+                continue;
             }
-        }
-        // A few columns at a time use all of the memory that a row's line brings.
-        let mut columns = [[Complex::ZERO; SIDE]; COLUMNS];
-        for first in (0..SIDE).step_by(COLUMNS) {
-            for (y, row) in square.iter().enumerate() {
-                for (column, sample) in columns.iter_mut().zip(&row[first..]) {
-                    column[y] = *sample;
+            for (l, row) in rows.iter().enumerate() {
+                for (x, &to) in order.iter().enumerate() {
+                    (lines.re[to][l], lines.im[to][l]) = (row[x].re, row[x].im);
                 }
             }
-            columns.iter_mut().for_each(|column| self.row(column));
+            lines.transform(factors);
+            for (l, row) in rows.iter_mut().enumerate() {
+                for (x, sample) in row.iter_mut().enumerate() {
+                    *sample = Complex::new(lines.re[x][l], lines.im[x][l]);
+                }
+            }
+        }
+        for first in (0..SIDE).step_by(LINES) {
+            for (row, &to) in square.iter().zip(order.iter()) {
+                for (l, sample) in row[first..first + LINES].iter().enumerate() {
+                    (lines.re[to][l], lines.im[to][l]) = (sample.re, sample.im);
+                }
+            }
+            lines.transform(factors);
             for (y, row) in square.iter_mut().enumerate() {
-                for (column, sample) in columns.iter().zip(&mut row[first..]) {
-                    *sample = column[y];
+                for (l, sample) in row[first..first + LINES].iter_mut().enumerate() {
+                    *sample = Complex::new(lines.re[y][l], lines.im[y][l]);
                 }
             }
         }

@@ -417,7 +417,7 @@ fn costs_are_printed_on_acceptance() {
     if !accepts() {
         return;
     }
-    let transform = Transform::new();
+    let mut transform = Transform::new();
     let mut square = vec![[Complex::new(1e-3, 2e-3); SIDE]; SIDE];
     let least = |run: &mut dyn FnMut()| {
         let time = |_: u32| {

@@ -253,7 +253,8 @@ impl WaveTile {
                 work.add(mode, ring, time_s);
             }
         }
-        work.squares.iter_mut().for_each(|square| work.transform.square(square, MOST_PERIODS as usize));
+        let TileWork { transform, squares, .. } = work;
+        squares.iter_mut().for_each(|square| transform.square(square, MOST_PERIODS as usize));
         // All fields of a sample in turn, since they lie side by side.
         for (y, row) in fields.chunks_exact_mut(SIDE).enumerate() {
             for (x, texel) in row.iter_mut().enumerate() {
