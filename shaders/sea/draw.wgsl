@@ -9,15 +9,13 @@ struct Varying {
     @location(1) point: vec3f,
     @location(2) slope: vec2f,
     @location(3) squeeze: vec3f,
-    @location(4) seen: vec4f,
-    @location(5) @interpolate(flat) band: vec2u,
 }
 
 @vertex fn vertex(@location(0) block: vec4i, @builtin(vertex_index) index: u32) -> Varying {
     let at = rest_of(block, index);
     let here = sea_vertex(at);
     let point = sea_point(at + here.shift, here.height);
-    return Varying(sea.clip * vec4f(point, 1.0), at, point, here.slope, here.squeeze, here.seen, here.band);
+    return Varying(sea.clip * vec4f(point, 1.0), at, point, here.slope, here.squeeze);
 }
 
 fn shown(in: Varying) -> vec4f {
@@ -25,8 +23,7 @@ fn shown(in: Varying) -> vec4f {
         discard;
     }
     drawn = vec4f(1.0);
-    let vertex = SeaVertex(vec2f(0.0), 0.0, in.slope, in.squeeze, in.seen, in.band);
-    let light = sea_light(in.point, sea_slopes_at(in.at, vertex));
+    let light = sea_light(in.point, sea_slopes_at(in.at, in.slope, in.squeeze));
     return vec4f(host_number(min(light, vec3f(sea.most))), 1.0);
 }
 

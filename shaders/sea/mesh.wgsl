@@ -3,7 +3,7 @@
 
 // Length of the finest cells, m, and cells along a block's side.
 const SEA_FINEST: f32 = 0.03125;
-const SEA_CELLS: u32 = 16u;
+const SEA_CELLS: u32 = 8u;
 // Distances, in sides of a level's blocks, between which vertices move onto those of the next level.
 const SEA_MORPH_FROM: f32 = 2.52;
 const SEA_MORPH_UNTIL: f32 = 2.98;

@@ -9,16 +9,17 @@ fn probed_place(position: vec4f) -> vec2f {
     return textureLoad(probed_places, vec2i(position.xy), 0).xy;
 }
 
-// Displacement and height of a vertex, m, and the variance of the slopes of single waves that a pixel shows.
+// Displacement and height of a vertex, m.
 @fragment fn shapes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let vertex = sea_vertex(probed_place(position));
-    return vec4f(vertex.shift, vertex.height, vertex.seen.x + vertex.seen.z);
+    return vec4f(vertex.shift, vertex.height, 0.0);
 }
 
 // Slope that a pixel shows, variance of the slopes that it does not show, and compression.
 @fragment fn slopes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
-    let shown = sea_slopes_at(at, sea_vertex(at));
+    let here = sea_vertex(at);
+    let shown = sea_slopes_at(at, here.slope, here.squeeze);
     return vec4f(shown.slope, shown.left.x + shown.left.z, shown.compression);
 }
 
@@ -26,7 +27,7 @@ fn probed_place(position: vec4f) -> vec2f {
 @fragment fn reflectances(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let here = sea_vertex(at);
-    let shown = sea_slopes_at(at, here);
+    let shown = sea_slopes_at(at, here.slope, here.squeeze);
     let point = sea_point(at, 0.0);
     return vec4f(sea_facing(point, shown).reflected, foam_share(shown), 0.0, 0.0);
 }

@@ -8,21 +8,21 @@
 
 const SEA_TAU: f32 = 6.28318531;
 // Cells of the mesh are at most this many times shorter than their distance.
-const SEA_CELLS_TO_DISTANCE: f32 = 23.8;
-// A wave is wholly in the mesh if its length is at least six cells, and not at all below three.
-const SEA_LEAST_CELLS: f32 = 3.0;
+const SEA_CELLS_TO_DISTANCE: f32 = 11.9;
+// A wave's height is wholly in the mesh if its length is at least three cells, and not at all below one and a half.
+const SEA_LEAST_CELLS: f32 = 1.5;
+// Its slope is wholly in the vertices at twice this length in cells, and not at all below it: between vertices that are
+// farther apart, slopes would be too small.
+const SEA_SMOOTH_CELLS: f32 = 3.0;
 // Length, in cells, of a texel of the mip level that the mesh has of a tile. The shortest waves there, three texels
 // long, are low.
-const SEA_TEXELS_TO_CELL: f32 = 0.5;
+const SEA_TEXELS_TO_CELL: f32 = 0.25;
 // Standard deviation of a pixel's filter as a share of the pixel's width.
 const SEA_PIXEL_DEVIATION: f32 = 0.4;
 // Largest ratio of the sides of a pixel on the surface up to which waves along the short side are told apart.
 const SEA_MOST_LENGTHENED: f32 = 2.0;
 // Compression that no sea has: without whitecaps foam begins beyond it.
 const SEA_NO_FOAM: f32 = 100.0;
-// Mip levels by which the compression of tiles is smoother than their slopes: foam is made by waves that are some times
-// longer than the shortest ripples.
-const SEA_FOAM_MIPS: f32 = 0.8;
 // Mip level at which a tile shows no waves.
 const SEA_FLAT_MIP: f32 = 5.0;
 
@@ -52,19 +52,13 @@ fn last_turns(footprint: Footprint) -> f32 {
 }
 
 // Share of a wave's amplitude that the pixel's filter lets through: (1 - x / 3)^2 with x half the square of wave number
-// times deviation, which is near exp(-x) and ends.
-fn seen_share(wave: SeaWave, footprint: Footprint, last: f32) -> f32 {
-    let along = dot(wave.turns, footprint.toward) * footprint.along;
-    let across = (wave.turns.x * footprint.toward.y - wave.turns.y * footprint.toward.x) * footprint.across;
-    let end = wave.turns_per_m / last;
-    let x = max(19.7392088 * (along * along + across * across), 3.0 * end * end);
-    let left = clamp(1.0 - x * 0.33333333, 0.0, 1.0);
+// times deviation, which is near exp(-x) and ends. `along` and `across` are the filter's deviations with their
+// directions.
+fn seen_share(turns: vec2f, along: vec2f, across: vec2f, end: f32) -> f32 {
+    let a = dot(turns, along);
+    let b = dot(turns, across);
+    let left = max(1.0 - max(6.57973627 * (a * a + b * b), end * end), 0.0);
     return left * left;
-}
-
-// Share of a wave's amplitude that is in the mesh at a distance.
-fn mesh_share(turns_per_m: f32, distance: f32) -> f32 {
-    return clamp(SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * turns_per_m * distance) - 1.0, 0.0, 1.0);
 }
 
 // Surface at a vertex.
@@ -72,14 +66,10 @@ struct SeaVertex {
     // Displacement and height above the level, m.
     shift: vec2f,
     height: f32,
-    // Slopes of the single waves, filtered by the pixel: of the height, and of the displacement (xx, xy, yy).
+    // Slopes of the single waves that are smooth on the mesh, filtered by the pixel: of the height, and of the
+    // displacement (xx, xy, yy).
     slope: vec2f,
     squeeze: vec3f,
-    // Covariances of the slopes of all single waves that a pixel shows, and half the variance of those that are not in
-    // the mesh.
-    seen: vec4f,
-    // First and last wave that a pixel has to add.
-    band: vec2u,
 }
 
 // Sine and cosine of a phase in turns.
@@ -88,34 +78,36 @@ fn wave_turn(turns: f32) -> vec2f {
     return vec2f(sin(angle), cos(angle));
 }
 
+// The same within 1.1e-3, for slopes: a parabola, and its square for the rest.
+fn near_turn(turns: f32) -> vec2f {
+    let both = vec2f(turns, turns + 0.25);
+    let part = both - floor(both + 0.5);
+    let curve = part * (8.0 - 16.0 * abs(part));
+    return curve * (0.775 + 0.225 * abs(curve));
+}
+
 fn single_waves(at: vec2f, distance: f32, footprint: Footprint) -> SeaVertex {
     var out: SeaVertex;
-    let last = last_turns(footprint);
-    let ends = max(SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * distance), last);
-    var first = sea.waves;
-    var i = 0u;
-    for (; i < min(sea.waves, MOST_SEA_WAVES); i++) {
+    let along = footprint.toward * footprint.along;
+    let across = vec2f(footprint.toward.y, -footprint.toward.x) * footprint.across;
+    let shortest = 1.0 / last_turns(footprint);
+    let per_cell = SEA_CELLS_TO_DISTANCE / distance;
+    for (var i = 0u; i < min(sea.waves, MOST_SEA_WAVES); i++) {
         let wave = sea_waves[i];
-        if wave.turns_per_m >= ends {
+        let cells = wave.length * per_cell;
+        if cells <= SEA_LEAST_CELLS {
             break;
         }
-        let share = mesh_share(wave.turns_per_m, distance);
-        let passed = seen_share(wave, footprint, last);
-        let rise = wave.turns * (SEA_TAU * wave.height);
-        let shown = rise * passed;
-        out.seen += 0.5 * vec4f(shown.x * shown.x, shown.x * shown.y, shown.y * shown.y, 0.5 * dot(shown, shown) * (1.0 - share));
-        if share < 1.0 {
-            first = min(first, i);
-        }
-        if share > 0.0 {
-            let turn = wave_turn(dot(wave.turns, at) + wave.phase);
-            out.height += share * (wave.height * turn.y + share * wave.lowering);
-            out.shift -= share * turn.x * wave.shift;
-            out.slope -= share * turn.x * shown;
-            out.squeeze -= (share * passed * SEA_TAU * turn.y) * vec3f(wave.shift.x * wave.turns.x, wave.shift.x * wave.turns.y, wave.shift.y * wave.turns.y);
-        }
+        let share = clamp(cells * (1.0 / SEA_LEAST_CELLS) - 1.0, 0.0, 1.0);
+        let smooth_share = clamp(cells * (1.0 / SEA_SMOOTH_CELLS) - 1.0, 0.0, 1.0);
+        let shown = SEA_TAU * smooth_share * seen_share(wave.turns, along, across, wave.turns_per_m * shortest);
+        let turn = wave_turn(dot(wave.turns, at) + wave.phase);
+        out.height += share * (wave.height * turn.y + share * wave.lowering);
+        out.shift -= (share * turn.x * wave.shift) * wave.turns;
+        out.slope -= (shown * turn.x * wave.height) * wave.turns;
+        let squeezed = (shown * turn.y * wave.shift) * wave.turns;
+        out.squeeze -= vec3f(squeezed.x * wave.turns.x, squeezed.x * wave.turns.y, squeezed.y * wave.turns.y);
     }
-    out.band = vec2u(first, i);
     return out;
 }
 
@@ -143,7 +135,7 @@ fn tile_spline(tile: u32, turns: vec2f, mip: f32) -> vec3f {
 
 // Displacement and height of the tiles, as far as the mesh resolves them.
 fn tile_shapes(at: vec2f, distance: f32) -> vec3f {
-    let cell = max(SEA_FINEST, distance / SEA_CELLS_TO_DISTANCE);
+    let cell = max(2.0 * SEA_FINEST, distance / SEA_CELLS_TO_DISTANCE);
     var sum = vec3f(0.0);
     for (var i = 0u; i < SEA_TILES; i++) {
         let mip = max(log2(SEA_TEXELS_TO_CELL * cell * SEA_SIDE / sea.tiles[i].length), 0.0);
@@ -191,60 +183,66 @@ struct SeaSlopes {
     mapped: f32,
 }
 
-// Covariances of a tile's slopes that are shown at a mip level: two levels are mixed, and the coarser one has what both
-// have.
-fn shown_slopes(tile: u32, mip: f32) -> vec3f {
-    let low = u32(mip);
-    let fine = sea.tiles[tile].slopes[min(low, SEA_MIPS - 1u)].xyz;
-    let coarse = sea.tiles[tile].slopes[min(low + 1u, SEA_MIPS - 1u)].xyz;
-    let part = 1.0 - fract(mip);
-    return coarse + (fine - coarse) * (part * part);
+// Nodes of the table of shown slopes.
+const SEA_SEEN: vec2f = vec2f(32.0, 16.0);
+
+// Row of the table of shown slopes, as a share of all, for a direction: opposite directions have the same.
+// src/sea/seen.rs has the directions of rows.
+fn seen_row(toward: vec2f) -> f32 {
+    let cosine = toward.x * toward.x - toward.y * toward.y;
+    let sine = 2.0 * toward.x * toward.y;
+    let quarter = 0.25 * sine / max(abs(cosine) + abs(sine), 1e-6);
+    return select(0.5 - quarter, quarter, cosine >= 0.0);
 }
 
-// Adds the single waves that the mesh has not, and the tiles, to what the vertices have of a pixel.
-fn sea_slopes_at(at: vec2f, vertex: SeaVertex) -> SeaSlopes {
-    let distance = mesh_distance(at);
+// Place in the table of shown slopes.
+fn seen_place(footprint: Footprint) -> vec2f {
+    let octaves = log2(footprint.across / (SEA_PIXEL_DEVIATION * sea.pixel * sea.height));
+    let column = clamp(octaves * sea.seen_per_octave, 0.0, 1.0) * (SEA_SEEN.x - 1.0);
+    return vec2f((column + 0.5) / SEA_SEEN.x, seen_row(footprint.toward) + 0.5 / SEA_SEEN.y);
+}
+
+// Adds the single waves that the vertices have not, and the tiles, to what the vertices have of a pixel.
+fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f) -> SeaSlopes {
     let footprint = footprint_at(at);
+    let along = footprint.toward * footprint.along;
+    let across = vec2f(footprint.toward.y, -footprint.toward.x) * footprint.across;
     let last = last_turns(footprint);
-    var slope = vertex.slope;
-    var squeeze = vertex.squeeze;
-    var seen = vertex.seen.xyz;
-    var mapped = vertex.seen.w;
-    for (var i = vertex.band.x; i < min(vertex.band.y, MOST_SEA_WAVES); i++) {
+    let shortest = 1.0 / last;
+    let per_smooth = SEA_CELLS_TO_DISTANCE / (SEA_SMOOTH_CELLS * mesh_distance(at));
+    var slope = vec2f(0.0);
+    var squeeze = vec3f(0.0);
+    for (var i = sea_band.first; i < min(min(sea_band.last, sea.waves), MOST_SEA_WAVES); i++) {
         let wave = sea_waves[i];
-        let share = (1.0 - mesh_share(wave.turns_per_m, distance)) * seen_share(wave, footprint, last);
-        if share > 0.0 {
-            let turn = wave_turn(dot(wave.turns, at) + wave.phase);
-            slope -= (share * turn.x * SEA_TAU * wave.height) * wave.turns;
-            squeeze -= (share * turn.y * SEA_TAU) * vec3f(wave.shift.x * wave.turns.x, wave.shift.x * wave.turns.y, wave.shift.y * wave.turns.y);
-        }
+        let share = clamp(2.0 - wave.length * per_smooth, 0.0, 1.0) * seen_share(wave.turns, along, across, wave.turns_per_m * shortest);
+        let turn = near_turn(dot(wave.turns, at) + wave.phase);
+        slope += (share * turn.x * wave.height) * wave.turns;
+        let squeezed = (share * turn.y * wave.shift) * wave.turns;
+        squeeze += vec3f(squeezed.x * wave.turns.x, squeezed.x * wave.turns.y, squeezed.y * wave.turns.y);
     }
+    slope = vertex_slope - SEA_TAU * slope;
+    squeeze = vertex_squeeze - SEA_TAU * squeeze;
     // The slope over places at rest becomes that over fixed places.
     let stretch = 1.0 + vec2f(squeeze.x, squeeze.z);
     let inverse = 1.0 / max(stretch.x * stretch.y - squeeze.y * squeeze.y, 0.1);
     slope = vec2f(stretch.y * slope.x - squeeze.y * slope.y, stretch.x * slope.y - squeeze.y * slope.x) * inverse;
     var compression = -(squeeze.x + squeeze.z);
-    var squeezed = seen.x + seen.z;
-    let has_foam = sea.foam_from < SEA_NO_FOAM;
-    let width = max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION;
+    let octaves = log2(max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION);
     for (var i = 0u; i < SEA_TILES; i++) {
-        let mip = max(log2(width * SEA_SIDE / sea.tiles[i].length), 0.0);
+        let mip = max(octaves + sea.tiles[i].octaves, 0.0);
         if sea.tiles[i].is_there == 0.0 || mip >= SEA_FLAT_MIP + 1.0 {
             continue;
         }
         let turn = sea.tiles[i].turn;
         let turns = sea.tiles[i].anchor + to_tile(turn, at) / sea.tiles[i].length;
-        slope += from_tile(turn, textureSampleLevel(sea_slopes, sea_repeating, turns, i, mip).xy);
-        let shown = shown_slopes(i, mip);
-        seen += shown;
-        mapped += 0.5 * (shown.x + shown.z);
-        if has_foam {
-            compression += textureSampleLevel(sea_slopes, sea_repeating, turns, i, mip + SEA_FOAM_MIPS).z;
-            let smooth_slopes = shown_slopes(i, mip + SEA_FOAM_MIPS);
-            squeezed += smooth_slopes.x + smooth_slopes.z;
-        }
+        let found = textureSampleLevel(sea_slopes, sea_repeating, turns, i, mip).xyz;
+        slope += from_tile(turn, found.xy);
+        compression += found.z;
     }
-    let left = max(sea.slopes.xyz - seen, vec3f(0.0, -1.0, 0.0));
+    let place = seen_place(footprint);
+    let seen = textureSampleLevel(sea_seen, sea_repeating, place, 0u, 0.0);
+    let squeezed = textureSampleLevel(sea_seen, sea_repeating, place, 1u, 0.0).x;
+    let left = max(sea.slopes.xyz - seen.xyz, vec3f(0.0, -1.0, 0.0));
     let hidden = clamp(1.0 - squeezed / max(sea.slopes.w, 1e-9), 0.0, 1.0);
-    return SeaSlopes(slope, compression, hidden, left, mapped);
+    return SeaSlopes(slope, compression, hidden, left, seen.w);
 }

@@ -2,7 +2,6 @@
 // writes them.
 
 const SEA_TILES: u32 = 3u;
-const SEA_MIPS: u32 = 8u;
 // Texels along a tile's side.
 const SEA_SIDE: f32 = 128.0;
 const MOST_SEA_WAVES: u32 = 512u;
@@ -18,9 +17,8 @@ struct SeaTile {
     lowering: f32,
     // 1 for a tile with waves, 0 for one without.
     is_there: f32,
-    pad: f32,
-    // Covariances of the slopes at each mip level: east east, east north, north north.
-    slopes: array<vec4f, 8>,
+    // Octaves between a texel and a metre.
+    octaves: f32,
 }
 
 struct SeaUniform {
@@ -57,7 +55,8 @@ struct SeaUniform {
     to_lamp: vec3f,
     index: f32,
     lamp_lux: vec3f,
-    pad_a: f32,
+    // 1 over the octaves between the camera's height and the farthest distance from it.
+    seen_per_octave: f32,
     // Light of the sky on level ground, lux.
     sky_lux: vec3f,
     pad_b: f32,
@@ -79,11 +78,13 @@ struct SeaWave {
     turns: vec2f,
     // Phase at the anchor, turns.
     phase: f32,
-    // Amplitudes of height and of displacement, m.
+    // Amplitude of the height, m.
     height: f32,
-    shift: vec2f,
-    // Length of the wave vector, turns per metre.
+    // Length of the wave vector, turns per metre, and of the wave, m.
     turns_per_m: f32,
+    length: f32,
+    // Amplitude of the displacement over the wave vector, m^2.
+    shift: f32,
     // Lowering of the mean level, m.
     lowering: f32,
 }
@@ -93,12 +94,26 @@ struct SeaWave {
 @group(2) @binding(1) var<uniform> sea_waves: array<SeaWave, 512>;
 // B-spline coefficients of height and displacement along a tile's axes, m.
 @group(2) @binding(2) var sea_shapes: texture_2d_array<f32>;
-// Slopes along a tile's axes, and compression.
+// Slopes along a tile's axes, and compression, which is smoother.
 @group(2) @binding(3) var sea_slopes: texture_2d_array<f32>;
 // Mean reflectance by the root of the cosine of the view's zenith angle, and by the root mean square slope.
 @group(2) @binding(4) var sea_reflectance: texture_2d<f32>;
 @group(2) @binding(5) var sea_repeating: sampler;
 @group(2) @binding(6) var sea_clamped: sampler;
+// By distance and direction from the eye: covariances of the slopes that a pixel shows (east east, east north, north
+// north), and half the variance of those that are not in the mesh. In the second layer the variance of the slopes that
+// make foam.
+@group(2) @binding(7) var sea_seen: texture_2d_array<f32>;
+
+// Waves of the pixels of a level of the mesh.
+struct SeaBand {
+    // The first that they sum, and the first that they need not.
+    first: u32,
+    last: u32,
+    pad: vec2u,
+}
+
+@group(3) @binding(0) var<uniform> sea_band: SeaBand;
 
 // Turns a vector (east, north) into a tile's axes.
 fn to_tile(turn: vec2f, v: vec2f) -> vec2f {

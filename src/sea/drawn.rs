@@ -27,8 +27,9 @@ pub(super) struct WaveUniform {
     pub turns: [f32; 2],
     pub phase: f32,
     pub height: f32,
-    pub shift: [f32; 2],
     pub turns_per_m: f32,
+    pub length: f32,
+    pub shift: f32,
     pub lowering: f32,
 }
 
@@ -41,9 +42,11 @@ pub(super) struct TileUniform {
     pub length: f32,
     pub lowering: f32,
     pub is_there: f32,
-    pub pad: f32,
-    pub slopes: [[f32; 4]; MIPS],
+    pub octaves: f32,
 }
+
+/// Covariances of a tile's slopes at each mip level: east east, east north, north north.
+pub(super) type TileSlopes = [[f32; 3]; MIPS];
 
 /// Texels of all tiles at one mip level, tile after tile, as the bits of half floats.
 type HalfTexels = Vec<[u16; 4]>;
@@ -52,7 +55,7 @@ type HalfTexels = Vec<[u16; 4]>;
 pub(super) struct DrawnTiles {
     /// B-spline coefficients of height and displacement along the tile's axes.
     pub shapes: [HalfTexels; MIPS],
-    /// Slopes along the tile's axes, and the compression.
+    /// Slopes along the tile's axes, and the compression, which is smoother.
     pub slopes: [HalfTexels; MIPS],
     /// Covariances of the slopes that a filtering look-up finds at each mip level, along the tile's axes: xx, xy, yy.
     covariances: [[[f64; 3]; MIPS]; TILES],
@@ -93,33 +96,44 @@ impl DrawnTiles {
             each_mip(&mut self.work, |mip, texels| store(&mut self.shapes[mip], t, texels));
             self.work[0].copy_from_slice(&self.finest);
             let covariances = &mut self.covariances[t];
+            let (levels, before) = (&mut self.slopes, &mut self.finest);
             each_mip(&mut self.work, |mip, texels| {
                 covariances[mip] = filtered_covariances(texels, SIDE >> mip);
-                store(&mut self.slopes[mip], t, texels);
+                if mip > 0 {
+                    smooth_compression(before, texels, SIDE >> mip);
+                    store(&mut levels[mip - 1], t, before);
+                    before.truncate(0);
+                    before.extend_from_slice(texels);
+                }
             });
+            store(&mut levels[MIPS - 1], t, before);
+            before.resize(SIDE * SIDE, Vec4::ZERO);
         }
     }
 
     /// Returns the uniforms of a tile around an anchor on the map.
-    pub fn uniform(&self, t: usize, tile: &TileFields, anchor_m: DVec2) -> TileUniform {
+    pub fn uniform(&self, tile: &TileFields, anchor_m: DVec2) -> TileUniform {
         // Texel i of a texture has its middle at i + 1/2; sample i of a tile lies at i.
         let place = to_tile(tile.turn, anchor_m) / tile.length_m + 0.5 / SIDE as f64;
-        let (c, s) = (tile.turn.x, tile.turn.y);
-        let turned = |[xx, xy, yy]: [f64; 3]| {
-            let east = c * c * xx - 2.0 * c * s * xy + s * s * yy;
-            let across = c * s * (xx - yy) + (c * c - s * s) * xy;
-            let north = s * s * xx + 2.0 * c * s * xy + c * c * yy;
-            [east as f32, across as f32, north as f32, 0.0]
-        };
         TileUniform {
             anchor: [place.x - place.x.floor(), place.y - place.y.floor()].map(|v| v as f32),
             turn: tile.turn.as_vec2().to_array(),
             length: tile.length_m as f32,
             lowering: tile.lowering_m as f32,
             is_there: if tile.variance_m2 > 0.0 { 1.0 } else { 0.0 },
-            pad: 0.0,
-            slopes: self.covariances[t].map(turned),
+            octaves: libm::log2(SIDE as f64 / tile.length_m) as f32,
         }
+    }
+
+    /// Returns the covariances of a tile's slopes at each mip level: east east, east north, north north.
+    pub fn slopes(&self, t: usize, tile: &TileFields) -> TileSlopes {
+        let (c, s) = (tile.turn.x, tile.turn.y);
+        self.covariances[t].map(|[xx, xy, yy]| {
+            let east = c * c * xx - 2.0 * c * s * xy + s * s * yy;
+            let across = c * s * (xx - yy) + (c * c - s * s) * xy;
+            let north = s * s * xx + 2.0 * c * s * xy + c * c * yy;
+            [east as f32, across as f32, north as f32]
+        })
     }
 }
 
@@ -170,6 +184,24 @@ fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
     }
 }
 
+/// Mip levels by which the compression of tiles is smoother than their slopes: foam is made by waves that are some times
+/// longer than the shortest ripples.
+pub(super) const FOAM_MIPS: f32 = 0.8;
+
+/// Makes the compression of texels smoother, by the next coarser level, which has `side` texels along a side.
+fn smooth_compression(texels: &mut [Vec4], coarser: &[Vec4], side: usize) {
+    let beside = |at: usize| (at / 2, if at % 2 == 0 { (at / 2 + side - 1) % side } else { (at / 2 + 1) % side });
+    for (y, row) in texels.chunks_exact_mut(2 * side).enumerate() {
+        let (near, far) = beside(y);
+        let (near, far) = (&coarser[near * side..][..side], &coarser[far * side..][..side]);
+        for (x, texel) in row.iter_mut().enumerate() {
+            let (a, b) = beside(x);
+            let between = 0.5625 * near[a].z + 0.1875 * (near[b].z + far[a].z) + 0.0625 * far[b].z;
+            texel.z += FOAM_MIPS * (between - texel.z);
+        }
+    }
+}
+
 /// Returns the covariances of the first two values that a bilinear look-up finds, over all places. Its weights along an
 /// axis are 1 - a and a with a between 0 and 1. Their mean products over a are 1/3 for a texel with itself and 1/6 for
 /// two neighbours. Over a bilinear patch the product of two functions has the mean 1/9 of the products at the same
@@ -198,7 +230,7 @@ fn filtered_covariances(texels: &[Vec4], side: usize) -> [f64; 3] {
 /// Writes the single waves of a surface around an anchor on the map, and returns the sums over all that is drawn.
 pub(super) fn fill_waves(
     surface: &SeaSurface,
-    tiles: &[TileUniform; TILES],
+    tiles: &[TileSlopes; TILES],
     anchor_m: DVec2,
     waves: &mut Vec<WaveUniform>,
 ) -> DrawnSums {
@@ -215,13 +247,15 @@ pub(super) fn fill_waves(
             turns: turns.as_vec2().to_array(),
             phase: fraction(wave.phase + fraction(turns.x * anchor_m.x) + fraction(turns.y * anchor_m.y)) as f32,
             height: wave.height_m as f32,
-            shift: wave.shift_m.as_vec2().to_array(),
             turns_per_m: turns.length() as f32,
+            length: (1.0 / turns.length()) as f32,
+            // Water moves along the wave vector.
+            shift: (wave.shift_m.dot(turns) / turns.length_squared()) as f32,
             lowering: wave.lowering_m as f32,
         });
     }
     for tile in tiles {
-        let own = tile.slopes[0].map(f64::from);
+        let own = tile[0].map(f64::from);
         sums.slopes.iter_mut().zip(own).for_each(|(sum, v)| *sum += v);
         sums.compression += own[0] + own[2];
     }

@@ -35,7 +35,7 @@ impl SeaPasses {
             &FullscreenDesc {
                 shader: "sea/probe.wgsl",
                 entry,
-                layouts: &[&own, &empty, &self.layout],
+                layouts: &[&own, &empty, &self.layout, &self.bands.layout],
                 targets: &[to.format().into()],
                 constants: &[],
                 samples: 1,
@@ -51,7 +51,8 @@ impl SeaPasses {
         let nothing = made.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &empty, entries: &[] });
         let mut encoder = made.create_command_encoder(&Default::default());
         let target = to.create_view(&Default::default());
-        pass::draw(&mut encoder, "probe", &pipeline, &[&group, &nothing, &self.group], &target);
+        let whole = self.bands.groups.last().expect("the group of all waves");
+        pass::draw(&mut encoder, "probe", &pipeline, &[&group, &nothing, &self.group, whole], &target);
         device.submit_and_wait(encoder).expect("a draw");
         let mut found = readback::rgba(device, &to).expect("a readback");
         found.truncate(places.len());

@@ -1,6 +1,6 @@
 //! Mesh of the drawn sea: square rings of blocks around the camera, on a lattice that is fixed in the world.
 //!
-//! A level has blocks of 16 by 16 cells. Its cells are twice as long as those of the level inside it. Around the camera
+//! A level has blocks of 8 by 8 cells. Its cells are twice as long as those of the level inside it. Around the camera
 //! a level is a square of 8 by 8 blocks with a hole where the finer level lies (geometry clipmaps, Losasso and Hoppe
 //! 2004). Towards its outer edge every second vertex moves onto its even neighbour, until the level has the vertices of
 //! the next one (continuous distance-dependent level of detail, Strugar 2010). The distance is the larger of the two
@@ -15,21 +15,20 @@ use glam::DVec2;
 /// Length of the finest cells, m. A power of two.
 pub(super) const FINEST_M: f64 = 1.0 / 32.0;
 /// Cells along a block's side.
-pub(super) const CELLS: u32 = 16;
+pub(super) const CELLS: u32 = 8;
 /// Blocks from the middle of a level to its edge.
 const HALF: i64 = 4;
 /// Distances from the camera, in sides of a level's blocks, between which its vertices move onto those of the next.
 /// The hole of a level ends nearer than the first (2.5), and the level ends beyond the second (3).
 pub(super) const MORPH: [f64; 2] = [2.52, 2.98];
-/// Levels, at most: the coarsest has cells of 16 km.
-const LEVELS: u32 = 20;
+/// Levels, at most: the coarsest has cells of 32 km.
+pub(super) const LEVELS: u32 = 21;
 /// Blocks of all levels, at most.
 pub(super) const MOST_BLOCKS: usize = 64 + 48 * (LEVELS as usize - 1);
 /// Places on the lattice count from an anchor near the camera, which is a multiple of this, m.
 const ANCHOR_M: f64 = 16.0;
 /// Least ratio of the distance of a cell to its length; the shaders' twin is `SEA_CELLS_TO_DISTANCE`.
-#[cfg(test)]
-pub(super) const CELLS_TO_DISTANCE: f64 = 23.8;
+pub(super) const CELLS_TO_DISTANCE: f64 = 11.9;
 
 /// A block of the mesh as the vertex stage reads it.
 #[repr(C)]
@@ -40,6 +39,15 @@ pub(super) struct MeshBlock {
     /// Level: the block's cells are 2^level finest cells long.
     pub level: i32,
     pub pad: i32,
+}
+
+impl MeshBlock {
+    /// Returns the corners with the least and the greatest coordinates, m from the anchor.
+    pub fn bounds_m(&self) -> [[f32; 2]; 2] {
+        let low = self.corner.map(|cells| cells as f32 * FINEST_M as f32);
+        let side = side_m(self.level as u32) as f32;
+        [low, low.map(|v| v + side)]
+    }
 }
 
 /// Camera over the lattice.

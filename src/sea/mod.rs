@@ -79,6 +79,7 @@ mod outline;
 mod passes;
 pub mod probe;
 mod regions;
+mod seen;
 mod settings;
 pub mod shore;
 mod single;

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use half::f16;
 
 use super::{
-    drawn::{DrawnTiles, MIPS, MOST_WAVES, WaveUniform},
+    drawn::{DrawnTiles, MIPS, MOST_WAVES, TileSlopes, WaveUniform},
     fft::SIDE,
-    mesh::{self, MOST_BLOCKS, MeshBlock},
+    mesh::{self, LEVELS, MOST_BLOCKS, MeshBlock},
+    seen::{SEEN_SIDES, SeaBand, band_of, fill_seen},
     tiles::TILES,
     uniform::SeaUniform,
     water::{TABLE_SIDES, reflectance_table},
@@ -46,6 +47,11 @@ pub(super) struct SeaPasses {
     shapes: wgpu::Texture,
     slopes: wgpu::Texture,
     reflectance: wgpu::Texture,
+    /// Slopes of single waves that pixels show, by place.
+    seen: wgpu::Texture,
+    /// Texels of `seen`.
+    seen_texels: Vec<[u16; 4]>,
+    pub(super) bands: SeaBands,
     /// Index that the table of reflectances is for.
     table_index: Option<f64>,
     pipeline: Option<SeaPipeline>,
@@ -55,9 +61,57 @@ pub(super) struct SeaPasses {
 pub(super) struct SeaDraw<'a> {
     pub block: &'a SeaUniform,
     pub waves: &'a [WaveUniform],
+    pub tiles: &'a [TileSlopes; TILES],
     pub blocks: &'a [MeshBlock],
     /// Refractive index of the water.
     pub index: f64,
+}
+
+impl SeaDraw<'_> {
+    /// Returns the blocks of each level in turn.
+    fn levels(&self) -> impl Iterator<Item = &[MeshBlock]> {
+        self.blocks.chunk_by(|a, b| a.level == b.level)
+    }
+}
+
+/// Distance between the blocks of two levels in the buffer, bytes: the largest that a device may ask for.
+const BAND_STRIDE: usize = 256;
+
+/// Waves that the pixels of each level sum, and of all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
+pub(super) struct SeaBands {
+    pub layout: wgpu::BindGroupLayout,
+    buffer: wgpu::Buffer,
+    /// A group for each level, and one with all waves.
+    pub groups: Vec<wgpu::BindGroup>,
+}
+
+impl SeaBands {
+    fn new(device: &Device) -> Self {
+        let made = &device.device;
+        let slots = [(0, Slot::Uniform(size_of::<SeaBand>()))];
+        let layout = bind::layout(made, "bands of the sea", wgpu::ShaderStages::FRAGMENT, &slots);
+        let buffer = bind::block(made, "bands of the sea", BAND_STRIDE * (LEVELS as usize + 1));
+        let whole = BAND_STRIDE * LEVELS as usize;
+        device.write_buffer(&buffer, whole as u64, bytemuck::bytes_of(&SeaBand::WHOLE));
+        let group = |level: u32| {
+            let from = BAND_STRIDE * level as usize;
+            made.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("band of the sea"),
+                layout: &layout,
+                entries: &[bind::part(0, &buffer, from..from + size_of::<SeaBand>())],
+            })
+        };
+        let groups = (0..=LEVELS).map(group).collect();
+        Self { layout, buffer, groups }
+    }
+
+    fn upload(&self, device: &Device, draw: &SeaDraw<'_>) {
+        for blocks in draw.levels() {
+            let band = band_of(draw.block, draw.waves, blocks);
+            let at = BAND_STRIDE as u64 * blocks[0].level as u64;
+            device.write_buffer(&self.buffer, at, bytemuck::bytes_of(&band));
+        }
+    }
 }
 
 /// Creates the bind group layout of `shaders/sea/uniform.wgsl`.
@@ -70,6 +124,7 @@ pub(super) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         (4, Slot::Filtered),
         (5, Slot::Sampler),
         (6, Slot::Sampler),
+        (7, Slot::FilteredArray),
     ];
     bind::layout(device, "sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -109,6 +164,17 @@ impl SeaPasses {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let format = wgpu::TextureFormat::R16Float;
         let reflectance = flat_texture(made, "reflectance of the sea", (size[0], size[1]), format, usage);
+        let size = SEEN_SIDES.map(|side| side as u32);
+        let seen = made.create_texture(&wgpu::TextureDescriptor {
+            label: Some("seen slopes"),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 2 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage,
+            view_formats: &[],
+        });
         let block = bind::block(made, "sea", size_of::<SeaUniform>());
         let waves = bind::block(made, "waves of the sea", MOST_WAVES * size_of::<WaveUniform>());
         let indices = mesh::indices();
@@ -134,6 +200,7 @@ impl SeaPasses {
                 bind::view(4, &reflectance.create_view(&Default::default())),
                 bind::sampler(5, &sampler(made, wgpu::AddressMode::Repeat)),
                 bind::sampler(6, &sampler(made, wgpu::AddressMode::ClampToEdge)),
+                bind::view(7, &bind::as_layers(&seen)),
             ],
         });
         let index_count = indices.len() as u32;
@@ -148,6 +215,9 @@ impl SeaPasses {
             shapes,
             slopes,
             reflectance,
+            seen,
+            seen_texels: Vec::with_capacity(2 * SEEN_SIDES[0] * SEEN_SIDES[1]),
+            bands: SeaBands::new(device),
             table_index: None,
             pipeline: None,
         }
@@ -157,7 +227,8 @@ impl SeaPasses {
     pub fn bytes(&self) -> u64 {
         let texels: usize = (0..MIPS).map(|mip| TILES * (SIDE >> mip) * (SIDE >> mip)).sum();
         let buffers = [&self.block, &self.waves, &self.blocks, &self.indices].map(wgpu::Buffer::size);
-        (2 * 8 * texels + 2 * TABLE_SIDES[0] * TABLE_SIDES[1]) as u64 + buffers.iter().sum::<u64>()
+        let tables = 2 * TABLE_SIDES[0] * TABLE_SIDES[1] + 2 * 8 * SEEN_SIDES[0] * SEEN_SIDES[1];
+        (2 * 8 * texels + tables) as u64 + buffers.iter().sum::<u64>() + self.bands.buffer.size()
     }
 
     /// Uploads the tiles of another time.
@@ -192,6 +263,17 @@ impl SeaPasses {
         self.table_index = Some(index);
     }
 
+    fn upload_seen(&mut self, device: &Device, draw: &SeaDraw<'_>) {
+        fill_seen(draw.block, draw.waves, draw.tiles, &mut self.seen_texels);
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(8 * SEEN_SIDES[0] as u32),
+            rows_per_image: Some(SEEN_SIDES[1] as u32),
+        };
+        let bytes = bytemuck::cast_slice(&self.seen_texels);
+        device.write_texture(self.seen.as_image_copy(), bytes, layout, self.seen.size());
+    }
+
     /// Draws the sea.
     ///
     /// # Errors
@@ -207,30 +289,42 @@ impl SeaPasses {
         device.write_buffer(&self.block, 0, bytemuck::bytes_of(draw.block));
         device.write_buffer(&self.waves, 0, bytemuck::cast_slice(draw.waves));
         device.write_buffer(&self.blocks, 0, bytemuck::cast_slice(draw.blocks));
+        self.upload_seen(device, draw);
+        self.bands.upload(device, draw);
         let constants = opaque.tables.constants;
         if self.pipeline.as_ref().is_none_or(|made| made.target != opaque.target || made.constants != constants) {
-            let pipeline = pipeline(device, &self.layout, opaque)?;
+            let pipeline = pipeline(device, [&self.layout, &self.bands.layout], opaque)?;
             self.pipeline = Some(SeaPipeline { target: opaque.target, constants, pipeline });
         }
         let Some(made) = &self.pipeline else { return Ok(()) };
         pass.set_pipeline(&made.pipeline);
         pass.set_bind_group(1, opaque.tables.group, &[]);
         pass.set_bind_group(2, &self.group, &[]);
-        pass.set_vertex_buffer(0, self.blocks.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..self.index_count, 0, 0..draw.blocks.len() as u32);
+        let mut from = 0;
+        for blocks in draw.levels() {
+            // Instances begin at 0, since OpenGL ES has no first instance.
+            pass.set_vertex_buffer(0, self.blocks.slice(from..));
+            pass.set_bind_group(3, &self.bands.groups[blocks[0].level as usize], &[]);
+            pass.draw_indexed(0..self.index_count, 0, 0..blocks.len() as u32);
+            from += size_of_val(blocks) as u64;
+        }
         Ok(())
     }
 }
 
 /// Creates the pipeline for a target.
-fn pipeline(device: &Device, layout: &wgpu::BindGroupLayout, opaque: &OpaqueDraw<'_>) -> Result<wgpu::RenderPipeline> {
+fn pipeline(
+    device: &Device,
+    [layout, bands]: [&wgpu::BindGroupLayout; 2],
+    opaque: &OpaqueDraw<'_>,
+) -> Result<wgpu::RenderPipeline> {
     let begun = std::time::Instant::now();
     let (target, tables) = (opaque.target, &opaque.tables);
     let module = device.shader("sea/draw.wgsl")?;
     let pipeline_layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("sea"),
-        bind_group_layouts: &[Some(opaque.layout), Some(tables.layout), Some(layout)],
+        bind_group_layouts: &[Some(opaque.layout), Some(tables.layout), Some(layout), Some(bands)],
         immediate_size: 0,
     });
     let block = wgpu::VertexBufferLayout {

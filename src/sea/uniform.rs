@@ -40,7 +40,7 @@ pub(super) struct SeaUniform {
     pub to_lamp: [f32; 3],
     pub index: f32,
     pub lamp_lux: [f32; 3],
-    pub pad_a: f32,
+    pub seen_per_octave: f32,
     pub sky_lux: [f32; 3],
     pub pad_b: f32,
     pub body: [f32; 3],
@@ -154,6 +154,7 @@ impl DrawnSea<'_> {
             to_lamp: f(lamp.apparent),
             index: stats.refractive_index as f32,
             lamp_lux: f3(lamp_lux),
+            seen_per_octave: (1.0 / libm::log2((self.eye.reach_m / self.eye.height_m).max(2.0))) as f32,
             sky_lux: f3(scene.ground.sky_lux),
             body: f3(water),
             white: f3(white),
@@ -208,9 +209,10 @@ impl SeaUniform {
 mod tests {
     use super::{
         super::{
-            drawn::{MIPS, MOST_WAVES, WaveUniform},
+            drawn::{MOST_WAVES, WaveUniform},
             fft::SIDE,
             mesh::{CELLS, CELLS_TO_DISTANCE, FINEST_M, MORPH},
+            seen::{FLAT_MIP, LEAST_CELLS, MOST_LENGTHENED, PIXEL_DEVIATION, SEEN_SIDES, SMOOTH_CELLS, SeaBand},
         },
         *,
     };
@@ -242,6 +244,7 @@ mod tests {
                 to_lamp,
                 index,
                 lamp_lux,
+                seen_per_octave,
                 sky_lux,
                 body,
                 white,
@@ -253,14 +256,15 @@ mod tests {
             "sea/uniform.wgsl",
             "SeaTile",
             TileUniform,
-            [anchor, turn, length, lowering, is_there, slopes]
+            [anchor, turn, length, lowering, is_there, octaves]
         );
         shader::assert_layout!(
             "sea/uniform.wgsl",
             "SeaWave",
             WaveUniform,
-            [turns, phase, height, shift, turns_per_m, lowering]
+            [turns, phase, height, turns_per_m, length, shift, lowering]
         );
+        shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last]);
     }
 
     #[test]
@@ -268,7 +272,6 @@ mod tests {
         let text = shader::assemble("sea/surface.wgsl").unwrap();
         for (name, value) in [
             ("SEA_TILES: u32", format!("{TILES}u")),
-            ("SEA_MIPS: u32", format!("{MIPS}u")),
             ("SEA_SIDE: f32", format!("{SIDE}.0")),
             ("MOST_SEA_WAVES: u32", format!("{MOST_WAVES}u")),
             ("SEA_FINEST: f32", FINEST_M.to_string()),
@@ -276,6 +279,12 @@ mod tests {
             ("SEA_MORPH_FROM: f32", MORPH[0].to_string()),
             ("SEA_MORPH_UNTIL: f32", MORPH[1].to_string()),
             ("SEA_CELLS_TO_DISTANCE: f32", format!("{CELLS_TO_DISTANCE:?}")),
+            ("SEA_LEAST_CELLS: f32", format!("{LEAST_CELLS:?}")),
+            ("SEA_FLAT_MIP: f32", format!("{FLAT_MIP:?}")),
+            ("SEA_SMOOTH_CELLS: f32", format!("{SMOOTH_CELLS:?}")),
+            ("SEA_PIXEL_DEVIATION: f32", format!("{PIXEL_DEVIATION:?}")),
+            ("SEA_MOST_LENGTHENED: f32", format!("{MOST_LENGTHENED:?}")),
+            ("SEA_SEEN: vec2f", format!("vec2f({:?}, {:?})", SEEN_SIDES[0] as f32, SEEN_SIDES[1] as f32)),
         ] {
             let line = format!("const {name} = {value};");
             assert!(text.contains(&line), "{line}");

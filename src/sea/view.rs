@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::{
-    drawn::{DrawnTiles, MOST_WAVES, WaveUniform, fill_waves},
+    drawn::{DrawnTiles, MOST_WAVES, TileSlopes, WaveUniform, fill_waves},
     far::horizon_distance_m,
     held::HeldSea,
     mesh::{MOST_BLOCKS, MeshBlock, MeshEye},
@@ -11,6 +11,7 @@ use super::{
     passes::{SeaDraw, SeaPasses},
     regions::WaterBody,
     settings::SeaSettings,
+    tiles::TILES,
     uniform::{DrawnSea, SeaChart, SeaUniform},
 };
 use crate::{
@@ -42,6 +43,7 @@ pub(crate) struct SeaView {
     /// Blocks of the mesh that this frame shows; none where no sea is seen.
     pub(super) blocks: Vec<MeshBlock>,
     waves: Vec<WaveUniform>,
+    tile_slopes: [TileSlopes; TILES],
     pub(super) block: SeaUniform,
     /// Refractive index of the water.
     index: f64,
@@ -121,15 +123,15 @@ impl SeaView {
         }
         let anchor = eye.anchor_m();
         let list = surface.tiles();
-        let uniforms = std::array::from_fn(|t| tiles.uniform(t, &list[t], anchor));
+        self.tile_slopes = std::array::from_fn(|t| tiles.slopes(t, &list[t]));
         self.waves.reserve_exact(MOST_WAVES);
-        let sums = fill_waves(&surface, &uniforms, anchor, &mut self.waves);
+        let sums = fill_waves(&surface, &self.tile_slopes, anchor, &mut self.waves);
         let drawn = DrawnSea {
             scene: &now.scene,
             chart,
             eye,
             statistics,
-            tiles: uniforms,
+            tiles: std::array::from_fn(|t| tiles.uniform(&list[t], anchor)),
             sums,
             waves: self.waves.len(),
             foam_from: surface.still().foam_from,
@@ -197,7 +199,13 @@ impl DrawnEffect for SeaView {
         if std::mem::take(&mut self.is_new) {
             passes.upload(context.device, tiles);
         }
-        let draw = SeaDraw { block: &self.block, waves: &self.waves, blocks: &self.blocks, index: self.index };
+        let draw = SeaDraw {
+            block: &self.block,
+            waves: &self.waves,
+            tiles: &self.tile_slopes,
+            blocks: &self.blocks,
+            index: self.index,
+        };
         passes.draw(context.device, &draw, opaque, pass)
     }
 

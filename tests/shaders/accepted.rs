@@ -535,11 +535,6 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "a footprint is wider than 0: a pixel's angle times a range of at least 0.1 m",
     ),
     ("logarithmic", "1.0 / in.position.w", "w is 1 over a clip coordinate in front of the eye"),
-    (
-        "mesh_share",
-        "SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * turns_per_m * distance)",
-        "waves have lengths, and the mesh's distance is at least 0.1 m",
-    ),
     ("rest_of", "mesh_distance(at) / (length * f32(SEA_CELLS))", "a block's cells have a length"),
     (
         "sea_facing",
@@ -581,10 +576,16 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "variances have a floor, so the determinant is above 0, and facets point upwards",
     ),
     ("sea_glitter", "sqrt(xx * yy)", "variances have a floor, so the determinant is above 0, and facets point upwards"),
+    ("sea_slopes_at", "1.0 / last", "last_turns is above 0"),
     (
         "sea_slopes_at",
-        "log2(width * SEA_SIDE / sea.tiles[i].length)",
-        "tiles have lengths of at least some metres, and a cell's width is above 0",
+        "SEA_CELLS_TO_DISTANCE / (SEA_SMOOTH_CELLS * mesh_distance(at))",
+        "the mesh's distance is at least 0.1 m",
+    ),
+    (
+        "sea_slopes_at",
+        "log2(max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION)",
+        "a footprint is wider than 0: a pixel's angle times a range of at least 0.1 m",
     ),
     (
         "sea_slopes_at",
@@ -592,12 +593,17 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "tiles have lengths of at least some metres, and a cell's width is above 0",
     ),
     (
-        "sea_slopes_at",
-        "width * SEA_SIDE / sea.tiles[i].length",
-        "tiles have lengths of at least some metres, and a cell's width is above 0",
+        "seen_place",
+        "footprint.across / (SEA_PIXEL_DEVIATION * sea.pixel * sea.height)",
+        "pixels have an angle, and the eye is at least 0.1 m above the water",
     ),
-    ("seen_share", "wave.turns_per_m / last", "last_turns is above 0"),
-    ("single_waves", "SEA_CELLS_TO_DISTANCE / (SEA_LEAST_CELLS * distance)", "the mesh's distance is at least 0.1 m"),
+    (
+        "seen_place",
+        "log2(footprint.across / (SEA_PIXEL_DEVIATION * sea.pixel * sea.height))",
+        "pixels have an angle, and the eye is at least 0.1 m above the water",
+    ),
+    ("single_waves", "1.0 / last_turns(footprint)", "last_turns is above 0"),
+    ("single_waves", "SEA_CELLS_TO_DISTANCE / distance", "the mesh's distance is at least 0.1 m"),
     (
         "tile_shapes",
         "SEA_TEXELS_TO_CELL * cell * SEA_SIDE / sea.tiles[i].length",
