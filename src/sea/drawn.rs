@@ -190,7 +190,8 @@ pub(super) const FOAM_MIPS: f32 = 0.8;
 
 /// Makes the compression of texels smoother, by the next coarser level, which has `side` texels along a side.
 fn smooth_compression(texels: &mut [Vec4], coarser: &[Vec4], side: usize) {
-    let beside = |at: usize| (at / 2, if at % 2 == 0 { (at / 2 + side - 1) % side } else { (at / 2 + 1) % side });
+    let beside =
+        |at: usize| (at / 2, if at.is_multiple_of(2) { (at / 2 + side - 1) % side } else { (at / 2 + 1) % side });
     for (y, row) in texels.chunks_exact_mut(2 * side).enumerate() {
         let (near, far) = beside(y);
         let (near, far) = (&coarser[near * side..][..side], &coarser[far * side..][..side]);
