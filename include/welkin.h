@@ -71,9 +71,6 @@
  *
  * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
  * major version, and later versions add new ones. Settled for planned features, so that a host can prepare:
- * - The sea is drawn by new functions of the context. It tests and writes the host's depth, which a frame lends with
- *   wk_frame.depth_access.
- * - Soil materials of the terrain's tiles are new functions of the context.
  * - Snow in rain areas is wk_rain_area.snow.
  * - Base colour and motion are images appended to the target structs.
  * - Allocator and file callbacks come as extensions of wk_device_desc through `next`.

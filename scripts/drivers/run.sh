@@ -4,7 +4,7 @@
 readonly PACKAGES=(libgl1-mesa-dri libegl1 libgl1 libvulkan1 mesa-vulkan-drivers vulkan-validationlayers)
 readonly TABLE=tests/drivers/expected.tsv
 # Seconds for the scenes of one driver; 0: as long as it takes.
-LIMIT_S="${DRIVERS_LIMIT_S:-400}"
+LIMIT_S="${DRIVERS_LIMIT_S:-900}"
 # Differences beyond the table's, of 255, that processors with other vectors may bring: p95 and greatest.
 readonly ROOM_P95=1 ROOM_MOST=16
 

@@ -184,8 +184,8 @@ fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
     }
 }
 
-/// Mip levels by which the compression of tiles is smoother than their slopes: foam is made by waves that are some times
-/// longer than the shortest ripples.
+/// Mip levels by which the compression of tiles is smoother than their slopes: foam is made by waves that are some
+/// times longer than the shortest ripples.
 pub(super) const FOAM_MIPS: f32 = 0.8;
 
 /// Makes the compression of texels smoother, by the next coarser level, which has `side` texels along a side.

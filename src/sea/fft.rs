@@ -82,11 +82,11 @@ impl Lines {
         }
     }
 
-    /// Transforms four samples at `at`, which need no products.
+    /// Transforms four samples from `first` on, which need no products.
     #[inline(always)]
-    fn first_four(&mut self, at: usize) {
+    fn first_four(&mut self, first: usize) {
         for l in 0..LINES {
-            let of = |n: usize| (self.re[at + n][l], self.im[at + n][l]);
+            let of = |n: usize| (self.re[first + n][l], self.im[first + n][l]);
             let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
             let (low, high) = ((a.0 + b.0, a.1 + b.1), (c.0 + d.0, c.1 + d.1));
             let (left, right) = ((a.0 - b.0, a.1 - b.1), (c.0 - d.0, c.1 - d.1));
@@ -98,7 +98,7 @@ impl Lines {
                 (left.0 + right.1, left.1 - right.0),
             ];
             for (n, (re, im)) in four.into_iter().enumerate() {
-                (self.re[at + n][l], self.im[at + n][l]) = (re, im);
+                (self.re[first + n][l], self.im[first + n][l]) = (re, im);
             }
         }
     }

@@ -1,5 +1,5 @@
-//! What pixels show of the waves: the slopes' covariances by place, as a table for the shaders, and the single waves that
-//! the pixels of a level of the mesh have to sum.
+//! Share of the waves that pixels show: the slopes' covariances by place, as a table for the shaders, and the single
+//! waves that the pixels of a level of the mesh have to sum.
 
 use std::f32::consts::TAU;
 
@@ -69,13 +69,13 @@ impl PixelFilter {
 
 /// Returns the covariances of the slopes of all single waves that a pixel shows in a direction at a distance from the
 /// eye, and half the variance of those that are not in the mesh.
-fn seen_slopes(sea: &SeaUniform, waves: &[WaveUniform], range: f32, toward: [f32; 2]) -> [f32; 4] {
+fn seen_slopes(sea: &SeaUniform, waves: &[WaveUniform], range: f32, direction: [f32; 2]) -> [f32; 4] {
     let level = (range * range - sea.height * sea.height).max(0.0).sqrt();
-    let distance = (level * toward[0].abs().max(toward[1].abs())).max(sea.height);
+    let distance = (level * direction[0].abs().max(direction[1].abs())).max(sea.height);
     let (filter, cells) = (PixelFilter::at(sea, range), CELLS_TO_DISTANCE as f32 / (LEAST_CELLS * distance));
     let mut sums = [0.0; 4];
     for wave in waves.iter().take_while(|wave| wave.turns_per_m < filter.last) {
-        let rise = TAU * wave.height * filter.share(wave, toward);
+        let rise = TAU * wave.height * filter.share(wave, direction);
         let (x, y) = (rise * wave.turns[0], rise * wave.turns[1]);
         let out = 1.0 - (cells * wave.length - 1.0).clamp(0.0, 1.0);
         let half = [0.5 * x * x, 0.5 * x * y, 0.5 * y * y, 0.25 * (x * x + y * y) * out];
