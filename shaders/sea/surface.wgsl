@@ -78,7 +78,7 @@ fn wave_turn(turns: f32) -> vec2f {
     return vec2f(sin(angle), cos(angle));
 }
 
-// The same within 1.1e-3, for slopes: a parabola, and its square for the rest.
+// Sine and cosine of a phase in turns within 1.1e-3, for slopes: a parabola, corrected by its own square.
 fn near_turn(turns: f32) -> vec2f {
     let both = vec2f(turns, turns + 0.25);
     let part = both - floor(both + 0.5);

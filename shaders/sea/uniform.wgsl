@@ -105,9 +105,9 @@ struct SeaWave {
 // make foam.
 @group(2) @binding(7) var sea_seen: texture_2d_array<f32>;
 
-// Waves of the pixels of a level of the mesh.
+// Range of the single waves that pixels of a level of the mesh sum.
 struct SeaBand {
-    // The first that they sum, and the first that they need not.
+    // Index of the first wave, and of the one after the last.
     first: u32,
     last: u32,
     pad: vec2u,

@@ -24,8 +24,8 @@ pub(super) const FLAT_MIP: f32 = 5.0;
 /// Margin for rounding where the waves of a level are chosen.
 const MARGIN: f32 = 1.001;
 
-/// First wave that the pixels of a level have to sum, and the first that they need not (`SeaBand` of
-/// `shaders/sea/uniform.wgsl`).
+/// Range of the single waves that pixels of a level of the mesh sum: the first, and the one after the last (`SeaBand`
+/// of `shaders/sea/uniform.wgsl`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct SeaBand {

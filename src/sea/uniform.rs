@@ -95,16 +95,6 @@ impl SeaChart {
         let [xx, xy, yy] = self.bend;
         self.foot + self.east * m.x + self.north * m.y + xx * (m.x * m.x) + xy * (m.x * m.y) + yy * (m.y * m.y)
     }
-
-    /// Returns half the size, along the camera's axes, of a box around the chart's image of a square on the map. `half`
-    /// is half the square's side; the box and the square have the same middle.
-    pub fn half_size_m(&self, middle: DVec2, half: f64) -> DVec3 {
-        let [xx, xy, yy] = self.bend;
-        let east = self.east + xx * (2.0 * middle.x) + xy * middle.y;
-        let north = self.north + yy * (2.0 * middle.y) + xy * middle.x;
-        let bent = xx.abs() + xy.abs() + yy.abs();
-        (east.abs() + north.abs()) * half + bent * (half * half)
-    }
 }
 
 /// Inputs of the block.

@@ -66,7 +66,7 @@ impl SidePlanes {
         Self([w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length()))
     }
 
-    /// Whether all lines of sight from the camera rise. Those of a parallel projection start at other places too.
+    /// Whether all lines of sight rise from the camera; never so for a parallel projection, whose lines start elsewhere.
     fn look_up(&self) -> bool {
         let normals = self.0.map(|plane| plane.truncate());
         let rises = |[a, b, opposite]: [usize; 3]| {
@@ -77,9 +77,9 @@ impl SidePlanes {
         self.0.iter().all(|plane| plane.w.abs() < 1e-9) && corners.into_iter().all(rises)
     }
 
-    /// Whether any of a box along the axes may be in the picture.
-    fn shows(&self, middle: DVec3, half_m: DVec3) -> bool {
-        self.0.iter().all(|plane| plane.dot(middle.extend(1.0)) > -plane.truncate().abs().dot(half_m))
+    /// Whether any of a sphere may be in the picture.
+    fn shows(&self, middle: DVec3, radius_m: f64) -> bool {
+        self.0.iter().all(|plane| plane.dot(middle.extend(1.0)) > -radius_m)
     }
 }
 
@@ -94,8 +94,7 @@ impl SeaView {
         }
         self.blocks.reserve_exact(MOST_BLOCKS);
         let displaced_m = DISPLACED_TO_CREST * self.crest_m;
-        let shows =
-            |middle: DVec2, half: f64| planes.shows(chart.at(middle), chart.half_size_m(middle, half) + displaced_m);
+        let shows = |middle: DVec2, half: f64| planes.shows(chart.at(middle), 1.5 * half + displaced_m);
         eye.blocks(shows, &mut self.blocks);
     }
 
