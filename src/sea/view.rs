@@ -66,7 +66,7 @@ impl SidePlanes {
         Self([w + x, w - x, w + y, w - y].map(|plane| plane / plane.truncate().length()))
     }
 
-    /// Whether all lines of sight rise from the camera; never so for a parallel projection, whose lines start elsewhere.
+    /// Whether all lines of sight rise from the camera; never in a parallel projection, whose lines start elsewhere.
     fn look_up(&self) -> bool {
         let normals = self.0.map(|plane| plane.truncate());
         let rises = |[a, b, opposite]: [usize; 3]| {
