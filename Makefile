@@ -115,10 +115,10 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 
 ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
-accept: setup lint docs ## the long sweeps in release, and the benchmarks, at most 90 minutes
+accept: setup lint docs ## the long sweeps in release, and the benchmarks with a short day, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_ACCEPT=1 cargo test --locked --workspace --release --doc
-	$(MAKE) --no-print-directory bench
+	RUN_QUICK=1 $(MAKE) --no-print-directory bench
 	$(MAKE) --no-print-directory windows-accept
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 
