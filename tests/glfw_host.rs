@@ -144,6 +144,20 @@ fn fog_hides_what_is_beyond_its_visibility_and_not_the_excavator() {
     assert!(far[1] > 100.0, "fog at noon is bright, got {far:?}");
 }
 
+/// A vessel lies on the sea, with its deck above the water.
+#[test]
+fn a_vessel_floats_on_the_sea() {
+    let host = Host::build("sea");
+    run(host.command().args(["--sea", "--report", "3", "--size", "320x180"]));
+    let noon = host.picture("03_noon.png");
+    let (sky, sea) = (mean(&noon, [0, 0, 320, 60]), mean(&noon, [0, 130, 320, 180]));
+    assert!(sea[2] > sea[0] + 20.0 && sea[1] < 0.7 * sky[1], "a blue sea under the sky: {sea:?} {sky:?}");
+    let house = mean(&noon, [164, 88, 184, 96]);
+    assert!(house[0] > 120.0 && house[2] < house[0] + 30.0, "a white house: {house:?}");
+    let crane = noon.enumerate_pixels().filter(|(_, _, p)| p[0] > p[2].saturating_add(40)).count();
+    assert!(crane > 15, "an orange crane: {crane} pixels");
+}
+
 /// The gallery's pictures have the size that was asked for, smooth edges, and in them what only they have: lamps, a
 /// bridge.
 #[test]

@@ -95,7 +95,7 @@ static int write_sheet(demo *d, int first, int rows, const char *out)
     return ok ? 0 : 1;
 }
 
-int contact_run(const char *data, const char *planet, const char *out, int width, int height, int only)
+int contact_run(const char *data, const char *planet, const char *out, int width, int height, int only, bool at_sea)
 {
     platform p;
     demo d;
@@ -105,7 +105,8 @@ int contact_run(const char *data, const char *planet, const char *out, int width
     if (gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1)) {
         bool one = only > 0 && only <= d.reports.count;
         printf("no display: writing pictures to %s\nadapter: %s\n", out, weather_adapter(&d.weather));
-        code = one ? write_sheet(&d, only - 1, 1, out) : write_sheet(&d, 0, d.reports.count, out);
+        if (!at_sea || demo_sail(&d))
+            code = one ? write_sheet(&d, only - 1, 1, out) : write_sheet(&d, 0, d.reports.count, out);
         demo_close(&d);
     }
     headless_close(&p);

@@ -22,6 +22,19 @@ static light bare_light(void)
 
 static const char *const CAMERA_NAMES[CAMERA_COUNT] = {"hillside", "beside the excavator", "towards the north", "from 3 km up"};
 
+static const char *const SEA_CAMERA_NAMES[CAMERA_COUNT] = {"off the bow", "from the bridge", "astern", "from 120 m up"};
+
+/* The cameras of the vessel. All but the bridge's keep level. */
+static camera view_at_sea(const demo *d, double time_s)
+{
+    static const vec3 EYES[CAMERA_COUNT] = {{38, 46, 7}, {0, 0, 0}, {-14, -60, 12}, {-60, -170, 120}};
+    mat4 level = vessel_level(&d->boat, time_s);
+    if (d->camera == 1)
+        return (camera){transform_point(d->pose, VESSEL_HELM), transform_direction(d->pose, direction(0.0, -2.0)), RAD(60.0)};
+    vec3 eye = transform_point(level, EYES[d->camera]);
+    return (camera){eye, normalize(sub(transform_point(level, vec(0, 0, 3)), eye)), RAD(45.0)};
+}
+
 static camera view_from(const demo *d)
 {
     const ground *g = &d->scene.ground;
@@ -69,6 +82,17 @@ bool demo_open(demo *d, const platform *p, const char *data, const char *planet,
     return weather_open(&d->weather, p, planet) && demo_next_report(d, 0) && demo_next_hour(d, 0);
 }
 
+bool demo_sail(demo *d)
+{
+    wk_sea sea = WK_SEA_INIT;
+    d->at_sea = d->scene.at_sea = true;
+    d->scene.extra = VESSEL;
+    d->weather.station_altitude_m = 0.0;
+    d->boat = (vessel){0.0, 0.0, 210.0, 5.0};
+    return weather_check(wk_context_set_sea(d->weather.context, &sea)) &&
+           weather_check(vessel_keep_dry(&d->boat, d->weather.context)) && demo_next_report(d, 0);
+}
+
 void demo_close(demo *d)
 {
     weather_close(&d->weather);
@@ -96,7 +120,7 @@ void demo_next_camera(demo *d, int step)
 
 const char *demo_camera_name(const demo *d)
 {
-    return CAMERA_NAMES[d->camera];
+    return d->at_sea ? SEA_CAMERA_NAMES[d->camera] : CAMERA_NAMES[d->camera];
 }
 
 bool demo_resize(demo *d, int width, int height)
@@ -111,11 +135,16 @@ bool demo_resize(demo *d, int width, int height)
 
 bool demo_draw(demo *d)
 {
-    camera c = d->still ? *d->still : view_from(d);
     light l = bare_light();
     bool weather = !d->bare;
     double start = demo_clock_ms();
     double time_s = d->moving ? (start - d->started_ms) * 1e-3 : d->time_s;
+    if (d->at_sea) {
+        if (!weather_check(vessel_float(&d->boat, d->weather.context, time_s, &d->pose)))
+            return false;
+        scene_place_vessel(&d->scene, d->pose);
+    }
+    camera c = d->still ? *d->still : d->at_sea ? view_at_sea(d, time_s) : view_from(d);
     if (weather && !weather_light(&d->weather, &c, time_s, &l))
         return false;
     l.lamps = d->lamps;

@@ -6,6 +6,7 @@
 #include "platform.h"
 #include "reports.h"
 #include "scene.h"
+#include "vessel.h"
 #include "weather_link.h"
 
 #define CAMERA_COUNT 4
@@ -22,6 +23,9 @@ typedef struct demo {
     bool bare; /* without weather: only what the host itself draws */
     bool cut;  /* the camera jumped */
     bool measure; /* time each effect in the next frame; that frame's picture is not used */
+    bool at_sea;  /* a vessel on the open sea in place of the land */
+    vessel boat;
+    mat4 pose; /* of the boat in the last frame */
     bool history; /* use the history of earlier frames although time stands still */
     bool moving; /* time runs, and the weather changes over some seconds */
     double time_s; /* simulation time while it stands still */
@@ -37,6 +41,9 @@ typedef struct demo {
  */
 bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer);
 void demo_close(demo *d);
+
+/* Puts a vessel on the open sea in place of the land, before the first frame. */
+bool demo_sail(demo *d);
 
 /* Step through reports, hours and cameras, wrapping around at the ends. `step` is 1 or -1. */
 bool demo_next_report(demo *d, int step);

@@ -61,8 +61,9 @@ static bool take(demo *d, const shot *s, const char *out, uint8_t *rgb)
     d->lamps = (lamp_pair){0};
     d->time_s = 0.0;
     d->history = false;
-    d->scene.extra = s->world == WITH_BRIDGE ? BRIDGE : s->world == WITH_BARN ? BARN : NO_EXTRA;
+    d->scene.extra = s->world == WITH_BRIDGE ? BRIDGE : s->world == WITH_BARN ? BARN : s->world == WITH_VESSEL ? VESSEL : NO_EXTRA;
     d->scene.empty = s->world == NO_WORLD || s->world == OPEN_SEA;
+    d->scene.at_sea = s->world == WITH_VESSEL;
     d->scene.landless = s->world == LANDLESS;
     weather_close(&d->weather);
     bool ok = weather_open(&d->weather, d->platform, NULL) && s->prepare(d) &&

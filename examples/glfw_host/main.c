@@ -12,7 +12,7 @@
 #include "window.h"
 
 static const char USAGE[] =
-    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N] [--planet FILE]\n"
+    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N] [--planet FILE] [--sea]\n"
     "glfw_host --gallery [NAME..] [--data DIR] [--out DIR] [--size WxH]\n"
     "  --data DIR   terrain and weather reports (examples/data)\n"
     "  --out DIR    where pictures go when there is no display (out); it must exist\n"
@@ -21,6 +21,7 @@ static const char USAGE[] =
     "  --frames N   close the window after N frames\n"
     "  --report N   begin with report N; pictures of that one only\n"
     "  --planet FILE  a planet file, as examples/data/planet_dusty.toml, in place of the Earth\n"
+    "  --sea        a vessel on the open sea in place of the land\n"
     "  --gallery    draw the pictures of docs/gallery.md, or those of the names given, with 2 x 2 samples a pixel\n"
     "  --help, --version\n";
 
@@ -65,7 +66,7 @@ int main(int argc, char **argv)
 {
     const char *data = "examples/data", *out = "out", *planet_file = NULL;
     int width = 0, height = 0, frames = 0, report = 0;
-    bool headless = !window_possible(), gallery = false;
+    bool headless = !window_possible(), gallery = false, at_sea = false;
     char **names = argv; /* collected in place, over the arguments */
     int name_count = 0;
     static const char *const WITH_VALUE[] = {"--data", "--out", "--planet", "--frames", "--report", "--size", NULL};
@@ -90,6 +91,8 @@ int main(int argc, char **argv)
             ok = read_size(argv[++i], &width, &height);
         else if (strcmp(option, "--headless") == 0)
             headless = true;
+        else if (strcmp(option, "--sea") == 0)
+            at_sea = true;
         else if (strcmp(option, "--gallery") == 0)
             gallery = true;
         else if (gallery && option[0] != '-')
@@ -108,8 +111,8 @@ int main(int argc, char **argv)
     char *planet = planet_file ? text_of(planet_file) : NULL;
     if (planet_file && !planet)
         return 1;
-    int code = headless ? contact_run(data, planet, out, width, height, report)
-                        : window_run(data, planet, width, height, frames, report);
+    int code = headless ? contact_run(data, planet, out, width, height, report, at_sea)
+                        : window_run(data, planet, width, height, frames, report, at_sea);
     free(planet);
     return code;
 }

@@ -1,4 +1,4 @@
-/* Growing vertex and index lists, boxes and cones. */
+/* Growing vertex and index lists, boxes, prisms and cones. */
 #include "mesh.h"
 
 #include <stdio.h>
@@ -66,6 +66,24 @@ void mesh_box(mesh *m, mat4 place, vec3 size, vec3 albedo)
         }
         mesh_triangle(m, first, first + 1, first + 2);
         mesh_triangle(m, first, first + 2, first + 3);
+    }
+}
+
+void mesh_prism(mesh *m, const double (*outline)[2], int corners, double foot, double top, vec3 albedo, vec3 lid)
+{
+    uint32_t middle = mesh_vertex(m, plain(vec(0, 0, top), vec(0, 0, 1), lid));
+    for (int i = 0; i < corners; i++) {
+        const double *a = outline[i], *b = outline[(i + 1) % corners];
+        vec3 side = normalize(vec(b[1] - a[1], a[0] - b[0], 0)), up = vec(0, 0, 1);
+        uint32_t wall = mesh_vertex(m, plain(vec(a[0], a[1], foot), side, albedo));
+        mesh_vertex(m, plain(vec(b[0], b[1], foot), side, albedo));
+        mesh_vertex(m, plain(vec(b[0], b[1], top), side, albedo));
+        mesh_vertex(m, plain(vec(a[0], a[1], top), side, albedo));
+        mesh_triangle(m, wall, wall + 1, wall + 2);
+        mesh_triangle(m, wall, wall + 2, wall + 3);
+        uint32_t edge = mesh_vertex(m, plain(vec(a[0], a[1], top), up, lid));
+        mesh_vertex(m, plain(vec(b[0], b[1], top), up, lid));
+        mesh_triangle(m, middle, edge, edge + 1);
     }
 }
 

@@ -1,4 +1,4 @@
-/* Triangles in memory, and the two solids from which all objects are built: boxes and cones. */
+/* Triangles in memory, and the solids from which all objects are built: boxes, prisms and cones. */
 #ifndef MESH_H
 #define MESH_H
 
@@ -26,6 +26,10 @@ void mesh_free(mesh *m);
 
 /* Adds a box of `size`, centred at the origin of `place`. */
 void mesh_box(mesh *m, mat4 place, vec3 size, vec3 albedo);
+
+/* Adds a prism on an outline of at most 64 corners, which run against the clock seen from above and lie around the origin;
+ * its lid has a colour of its own. */
+void mesh_prism(mesh *m, const double (*outline)[2], int corners, double foot, double top, vec3 albedo, vec3 lid);
 
 /* Adds a cone standing on `foot`, with smooth normals. */
 void mesh_cone(mesh *m, vec3 foot, double radius, double height, int sides, vec3 albedo);

@@ -6,6 +6,7 @@
 
 #include "objects.h"
 #include "shaders.h"
+#include "vessel.h"
 
 #define NEAR_M 0.5
 #define SHADOW_SIZE 2048
@@ -61,6 +62,12 @@ static void create_shadow_map(scene *s)
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+static void vessel_extra(const ground *g, mesh *m)
+{
+    (void)g;
+    vessel_mesh(m);
+}
+
 bool scene_create(scene *s, const char *terrain_png)
 {
     *s = (scene){0};
@@ -70,9 +77,11 @@ bool scene_create(scene *s, const char *terrain_png)
     s->ground_indices = (GLsizei)s->mesh.index_count;
     objects_mesh(&s->ground, &s->mesh);
     s->object_indices = (GLsizei)s->mesh.index_count - s->ground_indices;
-    void (*const extras[EXTRAS])(const ground *, mesh *) = {[BRIDGE] = objects_bridge_mesh, [BARN] = objects_barn_mesh};
+    void (*const extras[EXTRAS])(const ground *, mesh *) = {
+        [BRIDGE] = objects_bridge_mesh, [BARN] = objects_barn_mesh, [VESSEL] = vessel_extra};
     for (int i = NO_EXTRA + 1; i < EXTRAS; i++) {
         s->extra_first[i] = (GLsizei)s->mesh.index_count;
+        s->vessel_vertex = s->mesh.vertex_count;
         extras[i](&s->ground, &s->mesh);
         s->extra_indices[i] = (GLsizei)s->mesh.index_count - s->extra_first[i];
     }
@@ -103,6 +112,25 @@ void scene_destroy(scene *s)
     *s = (scene){0};
 }
 
+void scene_place_vessel(scene *s, mat4 pose)
+{
+    size_t count = s->mesh.vertex_count - s->vessel_vertex;
+    vertex *moved = malloc(count * sizeof *moved);
+    if (!moved)
+        return;
+    for (size_t i = 0; i < count; i++) {
+        moved[i] = s->mesh.vertices[s->vessel_vertex + i];
+        float *p = moved[i].position, *n = moved[i].normal;
+        vec3 at = transform_point(pose, vec(p[0], p[1], p[2])), out = transform_direction(pose, vec(n[0], n[1], n[2]));
+        p[0] = (float)at.x, p[1] = (float)at.y, p[2] = (float)at.z;
+        n[0] = (float)out.x, n[1] = (float)out.y, n[2] = (float)out.z;
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, s->vertices);
+    glBufferSubData(GL_ARRAY_BUFFER, (GLintptr)(s->vessel_vertex * sizeof *moved), (GLsizeiptr)(count * sizeof *moved), moved);
+    free(moved);
+    s->vessel_at = transform_point(pose, vec(0, 0, 0));
+}
+
 mat4 camera_view(const camera *c)
 {
     return look_along(c->ahead, vec(0, 0, 1));
@@ -123,19 +151,20 @@ static void shade_terrain(scene *s, vec3 sun)
     s->shaded_for = sun;
     for (size_t i = 0; i < s->mesh.vertex_count; i++) {
         const float *p = s->mesh.vertices[i].position;
-        s->lit[i] = (float)ground_sunlit(&s->ground, vec(p[0], p[1], p[2] + 1.0), sun);
+        s->lit[i] = i < s->vessel_vertex ? (float)ground_sunlit(&s->ground, vec(p[0], p[1], p[2] + 1.0), sun) : 1.0f;
     }
     glBindBuffer(GL_ARRAY_BUFFER, s->sunlit);
     glBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(s->mesh.vertex_count * sizeof(float)), s->lit);
 }
 
-/* World to shadow clip space: a square around the pad, seen along the sun's rays. */
+/* World to shadow clip space: a square around the pad or the vessel, seen along the sun's rays. */
 static mat4 shadow_matrix(const scene *s, vec3 sun)
 {
     double x, y;
     ground_pad(&x, &y);
+    vec3 middle = s->extra == VESSEL ? s->vessel_at : vec(x, y, s->ground.pad_height);
     vec3 up = fabs(sun.z) > 0.99 ? vec(0, 1, 0) : vec(0, 0, 1);
-    mat4 view = multiply(look_along(scale(sun, -1.0), up), translation(vec(-x, -y, -s->ground.pad_height)));
+    mat4 view = multiply(look_along(scale(sun, -1.0), up), translation(scale(middle, -1.0)));
     mat4 box = identity();
     box.m[0] = box.m[5] = 1.0 / SHADOW_HALF_M;
     box.m[10] = -1.0 / (2.5 * SHADOW_HALF_M);
@@ -151,10 +180,11 @@ static void draw(const scene *s, bool with_ground, bool objects)
 {
     if (s->empty)
         return;
-    if (with_ground && !s->landless)
+    if (with_ground && !s->landless && !s->at_sea)
         draw_from(0, s->ground_indices);
     if (objects) {
-        draw_from(s->ground_indices, s->object_indices);
+        if (!s->at_sea)
+            draw_from(s->ground_indices, s->object_indices);
         draw_from(s->extra_first[s->extra], s->extra_indices[s->extra]);
     }
 }

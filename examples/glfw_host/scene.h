@@ -13,7 +13,7 @@ typedef struct camera {
 } camera;
 
 /* Objects that stand in some pictures only. */
-typedef enum extra { NO_EXTRA, BRIDGE, BARN, EXTRAS } extra;
+typedef enum extra { NO_EXTRA, BRIDGE, BARN, VESSEL, EXTRAS } extra;
 
 typedef struct scene {
     ground ground;
@@ -23,15 +23,21 @@ typedef struct scene {
     extra extra;
     bool empty;    /* draw nothing, as seen from space */
     bool landless; /* draw objects without ground */
+    bool at_sea;   /* draw the extra object alone */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;
+    size_t vessel_vertex; /* first of the vessel's, which are the last */
+    vec3 vessel_at;
     vec3 shaded_for; /* the sun's direction for which the terrain's shadows were computed */
     float *lit;
 } scene;
 
 bool scene_create(scene *s, const char *terrain_png);
 void scene_destroy(scene *s);
+
+/* Moves the vessel to a pose. */
+void scene_place_vessel(scene *s, mat4 pose);
 
 /* World to eye, rotation only. */
 mat4 camera_view(const camera *c);

@@ -2,6 +2,7 @@
 #include "sea_shots.h"
 
 #include "shots.h"
+#include "vessel.h"
 
 /* Sets air, wind and a sea that the wind raises; `crossing`, which may be NULL, is a swell. */
 static bool sea_in(demo *d, double visibility_m, double wind_m_s, const wk_cloud_layer *cloud, const wk_sea_swell *crossing)
@@ -52,6 +53,24 @@ bool moonlit_sea(demo *d)
     moon.elevation_deg = 22.0;
     return sea_in(d, 40e3, 5.0, NULL, NULL) && sun_at(d, 0, -30) &&
            weather_check(wk_context_set_moon(d->weather.context, &moon));
+}
+
+bool sea_vessel(demo *d)
+{
+    mat4 pose;
+    vec3 at = add(d->still->position, scale(direction(SITE_VIEW_AZIMUTH_DEG + 1.0, 0.0), 58.0));
+    vessel v = {at.x, at.y, fmod(SITE_VIEW_AZIMUTH_DEG + 125.0, 360.0), 0.0};
+    wk_cloud_layer heaps = WK_CLOUD_LAYER_INIT;
+    heaps.kind = WK_CLOUD_CUMULUS;
+    heaps.cover = 0.3;
+    heaps.base_m = 900.0;
+    if (!sea_in(d, 30e3, 12.0, &heaps, NULL) || !sun_at(d, SITE_VIEW_AZIMUTH_DEG - 75.0, 32) ||
+        !weather_check(wk_context_set_cloud_model(d->weather.context, WK_CLOUD_MODEL_VOLUME)) ||
+        !weather_check(vessel_keep_dry(&v, d->weather.context)) ||
+        !weather_check(vessel_float(&v, d->weather.context, d->time_s, &pose)))
+        return false;
+    scene_place_vessel(&d->scene, pose);
+    return true;
 }
 
 bool sea_fog(demo *d) { return sea_in(d, 400.0, 4.0, NULL, NULL) && sun_at(d, 60, 25); }

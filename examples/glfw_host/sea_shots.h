@@ -14,6 +14,8 @@ bool sea_glitter(demo *d);
 bool sea_swell(demo *d);
 /* The glitter of the moon. */
 bool moonlit_sea(demo *d);
+/* A vessel on the waves of a strong breeze. */
+bool sea_vessel(demo *d);
 /* Fog over the water. */
 bool sea_fog(demo *d);
 

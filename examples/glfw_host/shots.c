@@ -484,6 +484,7 @@ const shot SHOTS[] = {
     {"sea_swell", "A swell of 3 m across the waves of the wind", AFLOAT(40.0, SITE_VIEW_AZIMUTH_DEG, -9.0, 50.0), sea_swell, OPEN_SEA, NULL, true},
     {"moonlit_sea", "The glitter of the moon", AFLOAT(10.0, SITE_VIEW_AZIMUTH_DEG, 3.0, 50.0), moonlit_sea, OPEN_SEA, NULL, true},
     {"sea_fog", "Fog over the water, visibility 400 m, with its fogbow", AFLOAT(5.0, SITE_VIEW_AZIMUTH_DEG, -3.0, 50.0), sea_fog, OPEN_SEA, NULL, true},
+    {"sea_vessel", "A vessel on waves of 12 m/s, afloat by the queries", AFLOAT(7.0, SITE_VIEW_AZIMUTH_DEG, -5.0, 40.0), sea_vessel, WITH_VESSEL, NULL, true},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 
@@ -491,6 +492,6 @@ camera shot_camera(const shot *s, const ground *g)
 {
     double x, y;
     ground_road_point(s->along_m, s->right_m, &x, &y);
-    double level_m = s->world == OPEN_SEA ? 0.0 : ground_z(g, x, y);
+    double level_m = s->world == OPEN_SEA || s->world == WITH_VESSEL ? 0.0 : ground_z(g, x, y);
     return (camera){vec(x, y, level_m + s->up_m), direction(s->azimuth_deg, s->elevation_deg), RAD(s->fov_y_deg)};
 }

@@ -11,6 +11,7 @@ enum world {
     WITH_BARN,
     NO_WORLD, /* seen from so high that the host's land would end */
     OPEN_SEA, /* nothing but Welkin's sea, whose level is 0 */
+    WITH_VESSEL, /* a vessel on it */
     LANDLESS, /* the host's objects on terrain that Welkin draws */
 };
 

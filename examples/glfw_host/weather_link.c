@@ -31,7 +31,7 @@ bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
     wk_rain rain = WK_RAIN_INIT;
     rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
 
-    *w = (weather_link){.caps = WK_CAPS_INIT};
+    *w = (weather_link){.caps = WK_CAPS_INIT, .station_altitude_m = SITE_ALTITUDE_M};
     return weather_check(wk_device_create_opengl(&host, &w->device)) &&
            weather_check(wk_context_create(w->device, &place, &w->context)) &&
            weather_check(wk_view_create(w->context, NULL, &w->view)) &&
@@ -52,7 +52,7 @@ bool weather_report(weather_link *w, const char *metar, double transition_s)
     wk_cloud_layer layers[16];
     if (!weather_check(wk_weather_from_metar(metar, layers, 16, sizeof layers[0], &weather, NULL)))
         return false;
-    weather.station_altitude_m = SITE_ALTITUDE_M; /* reports do not contain it */
+    weather.station_altitude_m = w->station_altitude_m; /* reports do not contain it */
     return weather_check(wk_context_set_weather(w->context, &weather, w->time_s, transition_s));
 }
 

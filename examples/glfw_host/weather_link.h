@@ -20,6 +20,7 @@ typedef struct weather_link {
     wk_context *context; /* the weather */
     wk_view *view;       /* one camera */
     double time_s;       /* simulation time */
+    double station_altitude_m; /* of the airport that sends the reports */
     uint64_t generation; /* counts replacements of the picture's textures */
     wk_diagnostic diagnostic; /* quantity to show in false colours in place of the picture */
     wk_caps caps;

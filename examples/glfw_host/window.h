@@ -16,8 +16,8 @@ void window_end(void);
 
 /*
  * Runs until the window is closed, or for `frames` frames if that is not 0, starting with report `first` (counted from
- * 1). Returns the process's exit code.
+ * 1), on the open sea if `at_sea`. Returns the process's exit code.
  */
-int window_run(const char *data, const char *planet, int width, int height, int frames, int first);
+int window_run(const char *data, const char *planet, int width, int height, int frames, int first, bool at_sea);
 
 #endif
