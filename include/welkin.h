@@ -7802,9 +7802,9 @@ typedef struct wk_sea_point {
     double acceleration_m_s2[3];
     /** Depth of the water under the surface, m. */
     double depth_m;
-    /** Share of the place under foam of waves that break now, 0 to 1. */
+    /** Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left. */
     double foam;
-    /** 1 where there is water, else 0. */
+    /** 1 where there is water, 0 where there is none or in a dry region. */
     uint32_t has_water;
     /** 0. */
     uint32_t reserved0;
@@ -7893,14 +7893,14 @@ wk_status wk_context_set_sea_regions(wk_context *context,
 
 /**
  * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
- * them. Only the place on the ground of a position counts, not its height. There is no water in dry regions, and where
- * the terrain's tiles lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. `shortest_wave_m`, range
- * [0, 10000], leaves out waves shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are
- * the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for
- * points. The first call for a time costs some milliseconds; the sums of the last two times are kept, and each place
- * then costs some microseconds. No device is needed, and nothing is allocated after the first calls.
- * Thread: concurrent.
- * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
+ * them. Only the place on the ground of a position counts, not its height. There is no water where the terrain's tiles
+ * lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other
+ * fields are those of the water around, by which a hull floats. `shortest_wave_m`, range [0, 10000], leaves out waves
+ * shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are the distances from one element
+ * to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for points. The first call for a
+ * time costs some milliseconds; the sums of the last two times are kept, and each place then costs some microseconds.
+ * No device is needed, and nothing is allocated after the first calls. Thread: concurrent. Errors:
+ * WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
  * wk_context_get_conditions.
  */
 WK_API

@@ -2,14 +2,10 @@
 // f64 laws are in src/sea/water.rs and src/sea/slopes.rs.
 //!include "common/opaque.wgsl"
 //!include "between/air.wgsl"
-//!include "sea/surface.wgsl"
+//!include "sea/foam.wgsl"
 
 // Largest root mean square slope of the table of reflectances.
 const SEA_MOST_SLOPE: f32 = 0.4;
-// Reflectance of foam: the mean over all ages (Koepke 1984), and that of fresh foam.
-const FOAM_MEAN: f32 = 0.22;
-const FOAM_FRESH: f32 = 0.55;
-
 // Least cosine between the eye and a normal.
 const LEAST_COSINE: f32 = 0.02;
 // Share of the light that waves at grazing views throw on.
@@ -83,20 +79,6 @@ fn sea_glitter(slope: vec2f, covariances: vec3f, to_eye: vec3f, area: f32) -> ve
     return sea.lamp_lux * (density * open * sea_fresnel(dot(facet, to_eye)) / (4.0 * h2 * h2 * area));
 }
 
-// Share of the upper tail of the normal distribution (Page 1977).
-fn upper_tail(x: f32) -> f32 {
-    let y = x * (1.5976 + 0.070566 * x * x);
-    return 1.0 / (1.0 + exp(clamp(y, -80.0, 80.0)));
-}
-
-// Share under foam: the surface is compressed beyond a threshold, by what is shown and what is not.
-fn foam_share(shown: SeaSlopes) -> f32 {
-    let deviation = max(sqrt(sea.compression * shown.hidden), 0.02);
-    let x = (sea.foam_from - shown.compression) / deviation;
-    let density = exp(-min(0.5 * x * x, 80.0)) * 0.39894228;
-    return clamp(upper_tail(x) - deviation * density, 0.0, 1.0);
-}
-
 // Surface in a pixel, seen from the eye.
 struct SeaFacing {
     to_eye: vec3f,
@@ -130,8 +112,9 @@ fn sea_facing(point: vec3f, shown: SeaSlopes) -> SeaFacing {
     return SeaFacing(to_eye, slope, reflected, reflect(-to_eye, facet), area);
 }
 
-// Light of the surface at a camera-relative point towards the eye, cd/m^2.
-fn sea_light(point: vec3f, shown: SeaSlopes) -> vec3f {
+// Light of the surface at a camera-relative point, whose place at rest is `at`, towards the eye, cd/m^2; `left` is the
+// share under foam that earlier waves left.
+fn sea_light(point: vec3f, at: vec2f, shown: SeaSlopes, left: f32) -> vec3f {
     let facing = sea_facing(point, shown);
     // A mirrored ray that points down meets other waves, which mirror part of the sky beside it.
     let around = mirrored_sky(vec3f(facing.mirrored.xy, abs(facing.mirrored.z)));
@@ -141,7 +124,5 @@ fn sea_light(point: vec3f, shown: SeaSlopes) -> vec3f {
     if sea.foam_from >= SEA_NO_FOAM {
         return light;
     }
-    let excess = shown.compression / max(sea.foam_from, 0.05) - 1.0;
-    let white = sea.white * mix(FOAM_MEAN, FOAM_FRESH, smoothstep(-0.3, 0.5, excess));
-    return mix(light, white, foam_share(shown));
+    return mix(light, sea.white * FOAM_WHITE, foam_cover(at, shown, left).white);
 }

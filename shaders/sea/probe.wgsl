@@ -11,23 +11,24 @@ fn probed_place(position: vec4f) -> vec2f {
 
 // Displacement and height of a vertex, m.
 @fragment fn shapes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
-    let vertex = sea_vertex(probed_place(position));
+    let vertex = sea_vertex(probed_place(position), 1.0);
     return vec4f(vertex.shift, vertex.height, 0.0);
 }
 
 // Slope that a pixel shows, variance of the slopes that it does not show, and compression.
 @fragment fn slopes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
-    let here = sea_vertex(at);
-    let shown = sea_slopes_at(at, here.slope, here.squeeze);
+    let here = sea_vertex(at, 1.0);
+    let shown = sea_slopes_at(at, here.slope, here.squeeze, 1.0);
     return vec4f(shown.slope, shown.left.x + shown.left.z, shown.compression);
 }
 
-// Reflectance towards the eye, and the share under foam.
+// Reflectance towards the eye, the share under foam, and how much of the light of dense foam there is.
 @fragment fn reflectances(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
-    let here = sea_vertex(at);
-    let shown = sea_slopes_at(at, here.slope, here.squeeze);
+    let here = sea_vertex(at, 1.0);
+    let shown = sea_slopes_at(at, here.slope, here.squeeze, 1.0);
     let point = sea_point(at, 0.0);
-    return vec4f(sea_facing(point, shown).reflected, foam_share(shown), 0.0, 0.0);
+    let foam = foam_cover(at, shown, here.left);
+    return vec4f(sea_facing(point, shown).reflected, foam.share, foam.white, 0.0);
 }

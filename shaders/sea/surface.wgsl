@@ -5,8 +5,10 @@
 // the pixel resolves it. The slopes that are left have a known variance. Shares depend on the place alone and not on
 // the level of the mesh, so that levels meet without cracks.
 //!include "sea/mesh.wgsl"
+//!include "sea/regions.wgsl"
 
 const SEA_TAU: f32 = 6.28318531;
+const SEA_HALF_TAU: f32 = 3.14159265;
 // Cells of the mesh are at most this many times shorter than their distance.
 const SEA_CELLS_TO_DISTANCE: f32 = 11.9;
 // A wave's height is wholly in the mesh if its length is at least three cells, and not at all below one and a half.
@@ -23,6 +25,8 @@ const SEA_PIXEL_DEVIATION: f32 = 0.4;
 const SEA_MOST_LENGTHENED: f32 = 2.0;
 // Compression that no sea has: without whitecaps foam begins beyond it.
 const SEA_NO_FOAM: f32 = 100.0;
+// Least standard deviation of the compression that is known by its variance alone.
+const SEA_LEAST_DEVIATION: f32 = 0.02;
 // Mip level at which a tile shows no waves.
 const SEA_FLAT_MIP: f32 = 5.0;
 
@@ -66,10 +70,38 @@ struct SeaVertex {
     // Displacement and height above the level, m.
     shift: vec2f,
     height: f32,
+    // Rise that makes up for the narrowing of crests, m, for waves of their full height.
+    raised: f32,
     // Slopes of the single waves that are smooth on the mesh, filtered by the pixel: of the height, and of the
     // displacement (xx, xy, yy).
     slope: vec2f,
     squeeze: vec3f,
+    // Share under foam that waves left which broke in the last seconds.
+    left: f32,
+}
+
+// Share of the upper tail of the normal distribution (Page 1977).
+fn upper_tail(x: f32) -> f32 {
+    let y = x * (1.5976 + 0.070566 * x * x);
+    return 1.0 / (1.0 + exp(clamp(y, -80.0, 80.0)));
+}
+
+// Area of what is compressed beyond the threshold of foam, over its area at rest, where a normal distribution of some
+// deviation is added to a known compression.
+fn compressed_area(compression: f32, deviation: f32) -> f32 {
+    let wide = max(deviation, SEA_LEAST_DEVIATION);
+    let x = (sea.foam_from - compression) / wide;
+    let density = exp(-min(0.5 * x * x, 80.0)) * 0.39894228;
+    return max((1.0 - compression) * upper_tail(x) - wide * density, 0.0);
+}
+
+// Compression of the surface by a wave at four ages, for its amplitude now, and sine and cosine of its phase.
+fn past_compression(size: f32, turn: vec2f, age_step: f32) -> vec4f {
+    let step = near_turn(age_step);
+    let a = vec2f(turn.x * step.y + turn.y * step.x, turn.y * step.y - turn.x * step.x);
+    let b = vec2f(a.x * step.y + a.y * step.x, a.y * step.y - a.x * step.x);
+    let c = vec2f(b.x * step.y + b.y * step.x, b.y * step.y - b.x * step.x);
+    return size * vec4f(a.y, b.y, c.y, c.y * step.y - c.x * step.x);
 }
 
 // Sine and cosine of a phase in turns.
@@ -86,8 +118,12 @@ fn near_turn(turns: f32) -> vec2f {
     return curve * (0.775 + 0.225 * abs(curve));
 }
 
-fn single_waves(at: vec2f, distance: f32, footprint: Footprint) -> SeaVertex {
+// Sum of the single waves, whose heights have a share of those on the open sea.
+fn single_waves(at: vec2f, distance: f32, footprint: Footprint, height_share: f32) -> SeaVertex {
     var out: SeaVertex;
+    // Compression at four ages, and the variance of what it has of all waves.
+    var before = vec4f(0.0);
+    var known = 0.0;
     let along = footprint.toward * footprint.along;
     let across = vec2f(footprint.toward.y, -footprint.toward.x) * footprint.across;
     let shortest = 1.0 / last_turns(footprint);
@@ -100,13 +136,28 @@ fn single_waves(at: vec2f, distance: f32, footprint: Footprint) -> SeaVertex {
         }
         let share = clamp(cells * (1.0 / SEA_LEAST_CELLS) - 1.0, 0.0, 1.0);
         let smooth_share = clamp(cells * (1.0 / SEA_SMOOTH_CELLS) - 1.0, 0.0, 1.0);
-        let shown = SEA_TAU * smooth_share * seen_share(wave.turns, along, across, wave.turns_per_m * shortest);
+        let seen = seen_share(wave.turns, along, across, wave.turns_per_m * shortest);
+        let shown = SEA_TAU * smooth_share * seen;
         let turn = wave_turn(dot(wave.turns, at) + wave.phase);
-        out.height += share * (wave.height * turn.y + share * wave.lowering);
+        let square = wave.turns_per_m * wave.turns_per_m;
+        let lowering = SEA_HALF_TAU * square * wave.shift * wave.height;
+        out.height += share * wave.height * turn.y;
+        out.raised += share * share * lowering;
         out.shift -= (share * turn.x * wave.shift) * wave.turns;
         out.slope -= (shown * turn.x * wave.height) * wave.turns;
         let squeezed = (shown * turn.y * wave.shift) * wave.turns;
         out.squeeze -= vec3f(squeezed.x * wave.turns.x, squeezed.x * wave.turns.y, squeezed.y * wave.turns.y);
+        if sea.foam_from < SEA_NO_FOAM {
+            let size = height_share * SEA_TAU * share * seen * square * wave.shift;
+            before += past_compression(size, turn, wave.age_step);
+            known += 0.5 * size * size;
+        }
+    }
+    if sea.foam_from < SEA_NO_FOAM {
+        let deviation = sqrt(max(height_share * height_share * sea.compression - known, 0.0));
+        for (var age = 0u; age < 4u; age++) {
+            out.left += sea.foam.kept[age] * compressed_area(before[age], deviation);
+        }
     }
     return out;
 }
@@ -133,10 +184,10 @@ fn tile_spline(tile: u32, turns: vec2f, mip: f32) -> vec3f {
     return (aa * low.x + ba * high.x) * low.y + (ab * low.x + bb * high.x) * high.y;
 }
 
-// Displacement and height of the tiles, as far as the mesh resolves them.
-fn tile_shapes(at: vec2f, distance: f32) -> vec3f {
+// Displacement, height and rise of the tiles, as far as the mesh resolves them.
+fn tile_shapes(at: vec2f, distance: f32) -> vec4f {
     let cell = max(2.0 * SEA_FINEST, distance / SEA_CELLS_TO_DISTANCE);
-    var sum = vec3f(0.0);
+    var sum = vec4f(0.0);
     for (var i = 0u; i < SEA_TILES; i++) {
         let mip = max(log2(SEA_TEXELS_TO_CELL * cell * SEA_SIDE / sea.tiles[i].length), 0.0);
         if sea.tiles[i].is_there == 0.0 || mip >= SEA_FLAT_MIP {
@@ -147,18 +198,21 @@ fn tile_shapes(at: vec2f, distance: f32) -> vec3f {
         let turns = sea.tiles[i].anchor + to_tile(turn, at) / sea.tiles[i].length;
         let low = floor(mip);
         let shape = mix(tile_spline(i, turns, low), tile_spline(i, turns, low + 1.0), mip - low) * share;
-        sum += vec3f(from_tile(turn, shape.yz), shape.x + sea.tiles[i].lowering * share * max(1.0 - 0.5 * mip, 0.0));
+        sum += vec4f(from_tile(turn, shape.yz), shape.x, sea.tiles[i].lowering * share * max(1.0 - 0.5 * mip, 0.0));
     }
     return sum;
 }
 
-// Surface at a vertex whose place at rest is `at`.
-fn sea_vertex(at: vec2f) -> SeaVertex {
+// Surface at a vertex whose place at rest is `at`, with waves of a share of their height on the open sea.
+fn sea_vertex(at: vec2f, share: f32) -> SeaVertex {
     let distance = mesh_distance(at);
-    var out = single_waves(at, distance, footprint_at(at));
+    var out = single_waves(at, distance, footprint_at(at), share);
     let tiles = tile_shapes(at, distance);
-    out.shift += tiles.xy;
-    out.height += tiles.z;
+    out.shift = share * (out.shift + tiles.xy);
+    // The level falls by the square of the waves' height.
+    out.height = share * (out.height + tiles.z + share * (out.raised + tiles.w));
+    out.slope *= share;
+    out.squeeze *= share;
     return out;
 }
 
@@ -202,8 +256,9 @@ fn seen_place(footprint: Footprint) -> vec2f {
     return vec2f((column + 0.5) / SEA_SEEN.x, seen_row(footprint.toward) + 0.5 / SEA_SEEN.y);
 }
 
-// Adds the single waves that the vertices have not, and the tiles, to what the vertices have of a pixel.
-fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f) -> SeaSlopes {
+// Adds the single waves that the vertices have not, and the tiles, to what the vertices have of a pixel. Waves have a
+// share of their height on the open sea.
+fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f, height_share: f32) -> SeaSlopes {
     let footprint = footprint_at(at);
     let along = footprint.toward * footprint.along;
     let across = vec2f(footprint.toward.y, -footprint.toward.x) * footprint.across;
@@ -220,8 +275,8 @@ fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f) -> SeaSl
         let squeezed = (share * turn.y * wave.shift) * wave.turns;
         squeeze += vec3f(squeezed.x * wave.turns.x, squeezed.x * wave.turns.y, squeezed.y * wave.turns.y);
     }
-    slope = vertex_slope - SEA_TAU * slope;
-    squeeze = vertex_squeeze - SEA_TAU * squeeze;
+    slope = vertex_slope - height_share * SEA_TAU * slope;
+    squeeze = vertex_squeeze - height_share * SEA_TAU * squeeze;
     // The slope over places at rest becomes that over fixed places.
     let stretch = 1.0 + vec2f(squeeze.x, squeeze.z);
     let inverse = 1.0 / max(stretch.x * stretch.y - squeeze.y * squeeze.y, 0.1);
@@ -235,7 +290,7 @@ fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f) -> SeaSl
         }
         let turn = sea.tiles[i].turn;
         let turns = sea.tiles[i].anchor + to_tile(turn, at) / sea.tiles[i].length;
-        let found = textureSampleLevel(sea_slopes, sea_repeating, turns, i, mip).xyz;
+        let found = height_share * textureSampleLevel(sea_slopes, sea_repeating, turns, i, mip).xyz;
         slope += from_tile(turn, found.xy);
         compression += found.z;
     }
@@ -243,6 +298,9 @@ fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f) -> SeaSl
     let seen = textureSampleLevel(sea_seen, sea_repeating, place, 0u, 0.0);
     let squeezed = textureSampleLevel(sea_seen, sea_repeating, place, 1u, 0.0).x;
     let left = max(sea.slopes.xyz - seen.xyz, vec3f(0.0, -1.0, 0.0));
-    let hidden = clamp(1.0 - squeezed / max(sea.slopes.w, 1e-9), 0.0, 1.0);
-    return SeaSlopes(slope, compression, hidden, left, seen.w);
+    let hidden = clamp(1.0 - squeezed * sea.squeeze / max(sea.compression, 1e-9), 0.0, 1.0);
+    // Waves that the pixel does not show are lower too; the ripples of the wind, which no vertex or pixel has, are not.
+    let square = height_share * height_share;
+    let drawn = clamp((sea.slopes.w - seen.x - seen.z) / max(left.x + left.z, 1e-9), 0.0, 1.0);
+    return SeaSlopes(slope, compression, square * hidden, left * mix(1.0, square, drawn), square * seen.w);
 }

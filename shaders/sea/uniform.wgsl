@@ -5,6 +5,8 @@ const SEA_TILES: u32 = 3u;
 // Texels along a tile's side.
 const SEA_SIDE: f32 = 128.0;
 const MOST_SEA_WAVES: u32 = 512u;
+const MOST_SEA_REGIONS: u32 = 64u;
+const MOST_OUTLINE_CORNERS: u32 = 64u;
 
 struct SeaTile {
     // Texture coordinates of the anchor.
@@ -19,6 +21,19 @@ struct SeaTile {
     is_there: f32,
     // Octaves between a texel and a metre.
     octaves: f32,
+}
+
+struct SeaFoam {
+    // Share of its first area that foam of each age has.
+    kept: vec4f,
+    // Texture coordinates of the anchor in the fine pattern, and in the coarse one.
+    lace: vec4f,
+    // Streaks in two directions: texture coordinates of the anchor, and cosine and sine of the turn.
+    streaks: array<vec4f, 2>,
+    // Share of the second direction, and how far the wind gathers foam in streaks: 0 to 1.
+    second: f32,
+    gathered: f32,
+    pad: vec2f,
 }
 
 struct SeaUniform {
@@ -59,7 +74,8 @@ struct SeaUniform {
     seen_per_octave: f32,
     // Light of the sky on level ground, lux.
     sky_lux: vec3f,
-    pad_b: f32,
+    // Variance of the compression of the drawn waves over that of their slopes.
+    squeeze: f32,
     // Luminance of the light that leaves the water when seen from above, cd/m^2.
     body: vec3f,
     pad_c: f32,
@@ -70,6 +86,7 @@ struct SeaUniform {
     // and the sum of the variances of the slopes that are drawn.
     slopes: vec4f,
     tiles: array<SeaTile, 3>,
+    foam: SeaFoam,
 }
 
 // A single wave.
@@ -85,8 +102,8 @@ struct SeaWave {
     length: f32,
     // Amplitude of the displacement over the wave vector, m^2.
     shift: f32,
-    // Lowering of the mean level, m.
-    lowering: f32,
+    // Phase of the time between two ages of foam, turns.
+    age_step: f32,
 }
 
 @group(2) @binding(0) var<uniform> sea: SeaUniform;
@@ -104,13 +121,42 @@ struct SeaWave {
 // north), and half the variance of those that are not in the mesh. In the second layer the variance of the slopes that
 // make foam.
 @group(2) @binding(7) var sea_seen: texture_2d_array<f32>;
+// Ranks of the pattern of foam.
+@group(2) @binding(8) var sea_lace: texture_2d<f32>;
 
-// Range of the single waves that pixels of a level of the mesh sum.
+// A region of the sea.
+struct SeaRegion {
+    // Place of the anchor, m to the right and ahead of the centre.
+    anchor: vec2f,
+    // Square of the distance of the farthest corner from the centre, m^2.
+    reach2: f32,
+    // 0 for one without water, 1 for lower waves, 2 for a lake.
+    kind: u32,
+    // Ways to the right and ahead for a metre to the east on the map, and for one to the north.
+    turn: vec4f,
+    // Number of corners.
+    corners: u32,
+    // Height of waves over that around the region.
+    wave_share: f32,
+    // Width of the band over which waves become lower, m.
+    rim: f32,
+    pad: f32,
+}
+
+// Regions that the camera may see.
+@group(2) @binding(9) var<uniform> sea_regions: array<SeaRegion, 64>;
+// Corners of a region in each row, m to the right and ahead of its centre.
+@group(2) @binding(10) var sea_outlines: texture_2d<f32>;
+
+// Blocks of the mesh that are drawn together.
 struct SeaBand {
-    // Index of the first wave, and of the one after the last.
+    // Single waves that their pixels sum: index of the first, and of the one after the last.
     first: u32,
     last: u32,
-    pad: vec2u,
+    // Number of regions that may lie in them.
+    regions: u32,
+    // 1 if there is sea outside regions, 0 if not.
+    is_open: u32,
 }
 
 @group(3) @binding(0) var<uniform> sea_band: SeaBand;

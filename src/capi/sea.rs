@@ -138,14 +138,14 @@ pub unsafe extern "C" fn wk_context_set_sea_regions(
 }
 
 /// Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
-/// them. Only the place on the ground of a position counts, not its height. There is no water in dry regions, and where
-/// the terrain's tiles lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. `shortest_wave_m`, range
-/// [0, 10000], leaves out waves shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are
-/// the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for
-/// points. The first call for a time costs some milliseconds; the sums of the last two times are kept, and each place
-/// then costs some microseconds. No device is needed, and nothing is allocated after the first calls.
-/// Thread: concurrent.
-/// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
+/// them. Only the place on the ground of a position counts, not its height. There is no water where the terrain's tiles
+/// lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other
+/// fields are those of the water around, by which a hull floats. `shortest_wave_m`, range [0, 10000], leaves out waves
+/// shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are the distances from one element
+/// to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for points. The first call for a
+/// time costs some milliseconds; the sums of the last two times are kept, and each place then costs some microseconds.
+/// No device is needed, and nothing is allocated after the first calls. Thread: concurrent. Errors:
+/// WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
 /// wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sea_at(

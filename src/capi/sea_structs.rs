@@ -413,9 +413,9 @@ pub struct wk_sea_point {
     pub acceleration_m_s2: [f64; 3],
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam of waves that break now, 0 to 1.
+    /// Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left.
     pub foam: f64,
-    /// 1 where there is water, else 0.
+    /// 1 where there is water, 0 where there is none or in a dry region.
     pub has_water: u32,
     /// 0.
     pub reserved0: u32,

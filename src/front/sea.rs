@@ -87,10 +87,10 @@ impl Context {
     }
 
     /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
-    /// place on the ground of a position counts, not its height. There is no water in dry regions, and where the
-    /// terrain's tiles lie above the surface, except in cells of [`SurfaceClass::Water`]. `shortest_wave_m`, [0, 1e4],
-    /// leaves out shorter waves, and tiles that hold no longer ones; 0 leaves out none. [`SeaPoint::height_error_m`]
-    /// says by how much the height may be off.
+    /// place on the ground of a position counts, not its height. There is no water where the terrain's tiles lie above
+    /// the surface, except in cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers
+    /// are those of the water around. `shortest_wave_m`, [0, 1e4], leaves out shorter waves, and tiles that hold no
+    /// longer ones; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may be off.
     ///
     /// The first query of a time sums the short waves (some milliseconds); the sums of the last two times are kept.
     /// Nothing is allocated after the first queries.

@@ -10,6 +10,7 @@ use half::{
 
 use super::{
     fft::SIDE,
+    foam::AGE_STEP_S,
     surface::{SeaSurface, TileFields, to_tile},
     tiles::TILES,
     turn::fraction,
@@ -30,7 +31,7 @@ pub(super) struct WaveUniform {
     pub turns_per_m: f32,
     pub length: f32,
     pub shift: f32,
-    pub lowering: f32,
+    pub age_step: f32,
 }
 
 /// A tile (`SeaTile` of `shaders/sea/uniform.wgsl`).
@@ -252,7 +253,7 @@ pub(super) fn fill_waves(
             length: (1.0 / turns.length()) as f32,
             // Water moves along the wave vector.
             shift: (wave.shift_m.dot(turns) / turns.length_squared()) as f32,
-            lowering: wave.lowering_m as f32,
+            age_step: fraction(wave.frequency_hz * AGE_STEP_S) as f32,
         });
     }
     for tile in tiles {

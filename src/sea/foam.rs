@@ -2,12 +2,30 @@
 
 use std::f64::consts::PI;
 
+use crate::numerics::smoothstep;
+
 /// Time in which foam of breaking waves fades to 1/e in salt water, s (Monahan et al. 1986, second hand).
 pub const SALT_DECAY_S: f64 = 3.85;
 /// Time in which foam of breaking waves fades to 1/e in fresh water, s (Monahan et al. 1986, second hand).
 pub const FRESH_DECAY_S: f64 = 2.54;
 /// Mean reflectance of foam of all ages (Koepke 1984).
 pub const MEAN_REFLECTANCE: f64 = 0.22;
+
+/// Share of the area under foam that belongs to waves that break now. Crests break for about a second, and what they
+/// leave fades within some four.
+pub(super) const BREAKING_SHARE: f64 = 0.25;
+/// Number of ages for which foam that waves left is counted, and the step between them, s.
+pub(super) const AGES: usize = 4;
+pub(super) const AGE_STEP_S: f64 = 0.9;
+/// Salinity of the sea for which [`SALT_DECAY_S`] holds, g/kg.
+const SALT_G_KG: f64 = 35.0;
+/// Range of compressions about the threshold over which foam begins, as a share of the threshold.
+const EDGE: f64 = 0.05;
+const LEAST_EDGE: f64 = 1e-3;
+/// Standard deviations beyond which a normal distribution has nothing.
+const FARTHEST_TAIL: f64 = 6.0;
+/// Least standard deviation of the compression that is known by its variance alone.
+const LEAST_DEVIATION: f64 = 0.02;
 
 /// Returns the share of the sea under whitecaps for a wind, m/s, at 10 m: 3.84e-6 U^3.41 (Monahan and O'Muircheartaigh
 /// 1980), at most 1. Published laws differ by a factor of 2.
@@ -30,10 +48,7 @@ pub fn fold_threshold(share: f64, variance: f64) -> f64 {
     if s <= 0.0 || share <= 0.0 {
         return f64::INFINITY;
     }
-    let area = |x: f64| {
-        let density = libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt();
-        0.5 * libm::erfc(x / std::f64::consts::SQRT_2) - s * density
-    };
+    let area = |x: f64| compressed_area(s * x, 0.0, s);
     // The area falls from x = -1/s on, where whole compression begins; it is sought where places are compressed.
     let (mut low, mut high) = (-1.0 / s, 1.0 / s);
     for _ in 0..60 {
@@ -41,6 +56,63 @@ pub fn fold_threshold(share: f64, variance: f64) -> f64 {
         if area(middle) > share { low = middle } else { high = middle }
     }
     s * 0.5 * (low + high)
+}
+
+/// Returns the area of what is compressed by more than a threshold, over its area at rest, where a normal distribution
+/// of deviation `s` is added to a known compression.
+fn compressed_area(threshold: f64, known: f64, s: f64) -> f64 {
+    let x = (threshold - known) / s;
+    // A billionth: calm water has no foam at all.
+    if x > FARTHEST_TAIL {
+        return 0.0;
+    }
+    let density = libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt();
+    (1.0 - known) * 0.5 * libm::erfc(x / std::f64::consts::SQRT_2) - s * density
+}
+
+/// Foam on a surface by its compression, now and some seconds ago: foam stays with the water that was compressed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FoamLaw {
+    /// Compression at which waves break; infinite where none do.
+    pub from: f64,
+    /// Variance of the compression by all waves.
+    pub variance: f64,
+    /// Standard deviation of the compression by short waves, whose past is known by their variance alone.
+    pub short_deviation: f64,
+    /// Share of its first area that foam of each age has.
+    pub kept: [f64; AGES],
+}
+
+impl FoamLaw {
+    /// No foam.
+    pub const NONE: Self = Self { from: f64::INFINITY, variance: 0.0, short_deviation: 0.0, kept: [0.0; AGES] };
+
+    /// Returns the law by which foam covers `share` of a sea, for variances of the compression by all waves and by the
+    /// short ones, in water of a salinity, g/kg.
+    pub fn new(share: f64, [all, short]: [f64; 2], salinity_g_kg: f64) -> Self {
+        let salt = (salinity_g_kg / SALT_G_KG).clamp(0.0, 1.0);
+        let decay_s = FRESH_DECAY_S + (SALT_DECAY_S - FRESH_DECAY_S) * salt;
+        let left: [f64; AGES] = std::array::from_fn(|i| libm::exp(-AGE_STEP_S * (i + 1) as f64 / decay_s));
+        // What is left of all ages covers the rest of the share.
+        let factor = (1.0 / BREAKING_SHARE - 1.0) / left.iter().sum::<f64>();
+        Self {
+            from: fold_threshold(BREAKING_SHARE * share, all),
+            variance: all,
+            short_deviation: short.max(0.0).sqrt(),
+            kept: left.map(|left| factor * left),
+        }
+    }
+
+    /// Returns the share of a place under foam, from its compression now and that by long waves at each age, for waves
+    /// of a share of their height on the open sea.
+    pub fn share(&self, now: f64, past: [f64; AGES], height_share: f64) -> f64 {
+        let edge = EDGE * self.from.abs() + LEAST_EDGE;
+        let breaking = smoothstep(self.from - edge, self.from + edge, now);
+        let s = (height_share * self.short_deviation).max(LEAST_DEVIATION);
+        let area = |compression: f64| compressed_area(self.from, compression, s).max(0.0);
+        let left: f64 = past.iter().zip(self.kept).map(|(compression, kept)| kept * area(*compression)).sum();
+        (breaking + left).min(1.0)
+    }
 }
 
 #[cfg(test)]

@@ -267,7 +267,12 @@ impl HeldSea {
         self.regions.iter().map(|placed| &placed.region)
     }
 
-    /// Returns the water at a position and time; `None` where there is none.
+    /// Returns the regions as they lie in the world.
+    pub(super) fn placed_regions(&self) -> &[PlacedRegion] {
+        &self.regions
+    }
+
+    /// Returns the water at a position and time; `None` where there is none around.
     pub fn water_at(&self, position: DVec3, time_s: f64) -> Option<WaterBody> {
         let is_sea = self.settings().is_some_and(|settings| !settings.only_in_regions);
         water_at(&self.regions, is_sea, position, time_s)

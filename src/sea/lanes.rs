@@ -6,8 +6,9 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3, Vec4};
 
 use super::{
+    foam::{AGE_STEP_S, AGES},
     lattice::SeaWave,
-    turn::{fraction, sin_cos_four},
+    turn::{fraction, sin_cos, sin_cos_four},
 };
 
 /// Waves that are summed at a time.
@@ -32,6 +33,9 @@ struct WaveGroup {
     rise_y: Vec4,
     /// Frequency, rad/s.
     w: Vec4,
+    /// Sine and cosine of the phase of [`AGE_STEP_S`].
+    step_sin: Vec4,
+    step_cos: Vec4,
 }
 
 /// Sines and cosines of the waves' phases at a place; 0 for waves that are left out.
@@ -94,8 +98,8 @@ pub(super) struct SurfaceWave {
     /// Amplitude of the height and of the displacement, m.
     pub height_m: f64,
     pub shift_m: DVec2,
-    /// Lowering of the mean level, m.
-    pub lowering_m: f64,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
 }
 
 impl WaveLanes {
@@ -103,13 +107,12 @@ impl WaveLanes {
     pub fn each(&self) -> impl Iterator<Item = SurfaceWave> + '_ {
         (0..self.length_m.len()).map(|i| {
             let (group, l) = (&self.groups[i / LANES], i % LANES);
-            let before = if i > 0 { self.lowering_m[i - 1] } else { 0.0 };
             SurfaceWave {
                 turns_per_m: DVec2::new(group.turns_x[l], group.turns_y[l]),
                 phase: group.phase[l],
                 height_m: f64::from(group.height[l]),
                 shift_m: DVec2::new(f64::from(group.shift_x[l]), f64::from(group.shift_y[l])),
-                lowering_m: self.lowering_m[i] - before,
+                frequency_hz: f64::from(group.w[l]) / TAU,
             }
         })
     }
@@ -134,6 +137,8 @@ impl WaveLanes {
                     ((along.x * a * wave.stretch) as f32, (along.y * a * wave.stretch) as f32);
                 (group.rise_x[l], group.rise_y[l]) = ((along.x * k) as f32, (along.y * k) as f32);
                 group.w[l] = (TAU * wave.frequency_hz) as f32;
+                let (sin, cos) = sin_cos(wave.frequency_hz * AGE_STEP_S);
+                (group.step_sin[l], group.step_cos[l]) = (sin as f32, cos as f32);
                 variance += 0.5 * a * a;
                 lowering += 0.5 * a * a * k * wave.stretch;
                 self.variance_m2.push(variance);
@@ -179,6 +184,21 @@ impl WaveLanes {
         }
         let [x, y, xx, xy, yy] = sums.map(sum);
         Displacement { shift: DVec2::new(x, y), slopes: [xx, xy, xy, yy] }
+    }
+
+    /// Returns the compression of the water around the particle whose phases are known at each of the last ages.
+    pub fn past_compression(&self, included: &IncludedLanes, phases: &Phases) -> [f64; AGES] {
+        let mut sums = [Vec4::ZERO; AGES];
+        let groups = self.groups.iter().take(included.waves.div_ceil(LANES));
+        for (group, [sin, cos]) in groups.zip(&phases.0) {
+            let size = group.shift_x * group.rise_x + group.shift_y * group.rise_y;
+            let (mut sin, mut cos) = (*sin, *cos);
+            for sum in &mut sums {
+                (sin, cos) = (sin * group.step_cos + cos * group.step_sin, cos * group.step_cos - sin * group.step_sin);
+                *sum += size * cos;
+            }
+        }
+        sums.map(sum)
     }
 
     /// Returns height and motion of the particle at rest at a place whose phases are known.
@@ -237,6 +257,8 @@ mod tests {
             let rest = DVec2::new(3e5 + 0.25, -7e4);
             let moved = lanes.displacement(rest, &included, &mut phases);
             let motion = lanes.motion(&included, &phases);
+            let past = lanes.past_compression(&included, &phases);
+            let mut before = [0.0; AGES];
             let (mut shift, mut slope, mut height) = (DVec2::ZERO, 0.0, 0.0);
             let (mut velocity, mut lift) = (DVec3::ZERO, 0.0);
             for wave in &waves[..count] {
@@ -248,9 +270,17 @@ mod tests {
                 height += a * cos;
                 velocity += (wave.toward * (a * wave.stretch * w * cos)).extend(a * w * sin);
                 lift -= a * w * w * cos;
+                for (age, sum) in (1..).zip(&mut before) {
+                    let earlier = turns + wave.frequency_hz * AGE_STEP_S * f64::from(age);
+                    *sum += a * wave.stretch * k * libm::cos(TAU * (earlier - earlier.floor()));
+                }
             }
             assert!((moved.shift - shift).length() < 3e-6 && (moved.slopes[1] - slope).abs() < 3e-6, "{count}");
             assert!((motion.height - height).abs() < 3e-6 && (motion.velocity - velocity).length() < 1e-5, "{count}");
+            assert!(
+                past.iter().zip(before).all(|(found, wanted)| (found - wanted).abs() < 1e-5),
+                "{past:?} {before:?}"
+            );
             assert!((motion.acceleration.z - lift).abs() < 1e-5, "{count}: {} {lift}", motion.acceleration.z);
             let variance: f64 = waves[..count].iter().map(|wave| 0.5 * wave.amplitude_m.powi(2)).sum();
             assert!((included.variance_m2 - variance).abs() < 1e-12);

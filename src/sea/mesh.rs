@@ -38,7 +38,8 @@ pub(super) struct MeshBlock {
     pub corner: [i32; 2],
     /// Level: the block's cells are 2^level finest cells long.
     pub level: i32,
-    pub pad: i32,
+    /// 1 for a block that regions may reach, which are drawn apart from the others; else 0.
+    pub has_regions: i32,
 }
 
 impl MeshBlock {
@@ -95,7 +96,11 @@ impl MeshEye {
                         continue;
                     }
                     let cells = (corner - anchor) / FINEST_M;
-                    blocks.push(MeshBlock { corner: [cells.x as i32, cells.y as i32], level: level as i32, pad: 0 });
+                    blocks.push(MeshBlock {
+                        corner: [cells.x as i32, cells.y as i32],
+                        level: level as i32,
+                        has_regions: 0,
+                    });
                 }
             }
             if (HALF - 1) as f64 * side >= self.reach_m {

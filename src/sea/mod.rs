@@ -32,8 +32,9 @@
 //! resolve them. What they do not resolve is in the slopes of the pixels; what a pixel does not resolve is known by its
 //! covariances, so that all of it together is Cox and Munk's at every distance (`shaders/sea/surface.wgsl`). Pixels
 //! mirror the sky with the mean reflectance of such slopes, sun and moon by their distribution, and show the light out
-//! of the water, and foam where the surface is compressed (`shaders/sea/light.wgsl`). Phases are reduced in f64 about
-//! an anchor near the camera.
+//! of the water (`shaders/sea/light.wgsl`). Foam is where waves are compressed, and where they were 0.9 to 3.6 s ago:
+//! it stays with the water, thins, and breaks up into lace and, in strong wind, streaks (`shaders/sea/foam.wgsl`).
+//! Phases are reduced in f64 about an anchor near the camera.
 //!
 //! # Settings
 //! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
@@ -53,7 +54,7 @@
 //! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
-//! No shore, no wakes, no memory of foam: their laws are here, but the surface does not use them yet. A lake has the
+//! No shore, no wakes: their laws are here, but the surface does not use them yet. A lake has the
 //! waves of the sea around it, as high as its region says; pictures show no regions. There is no `candidates.rs`,
 //! because there is one way to draw it; no `reference.rs`, because all that queries use is the f64 reference.
 
@@ -66,10 +67,12 @@ mod drawn_probe;
 pub mod far;
 mod fft;
 pub mod foam;
+mod foam_uniform;
 mod growth;
 mod held;
 mod history;
 mod ice;
+mod lace;
 mod lanes;
 mod lattice;
 mod mesh;
@@ -80,6 +83,7 @@ mod passes;
 pub mod probe;
 mod regions;
 mod seen;
+mod seen_regions;
 mod settings;
 pub mod shore;
 mod single;

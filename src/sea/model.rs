@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::{
     bins::{BINS, Bins, MAX_SYSTEMS, Spreading, WaveSystem, bin_rad_s, toward_of},
     dispersion::wave_length_m,
-    foam::{fold_threshold, whitecap_share},
+    foam::{FoamLaw, whitecap_share},
     growth::{GrowthState, gamma_of_variance, kept_variance_m2, peak_of_variance_rad_s},
     history::{DatedGrowth, GrowthHistory},
     lattice::{SeaWave, list},
@@ -199,7 +199,7 @@ pub(super) struct SeaWorkshop {
     waves: Vec<SeaWave>,
     tiles: WaveTiles,
     statistics: SeaStatistics,
-    foam_from: f64,
+    foam: FoamLaw,
     work: TileWork,
     surfaces: Vec<KeptSurface>,
     /// Number of queries so far.
@@ -229,7 +229,7 @@ impl SeaWorkshop {
             waves: Vec::with_capacity(512),
             tiles: WaveTiles::new(sea.seed, depth_m),
             statistics: SeaStatistics::default(),
-            foam_from: f64::INFINITY,
+            foam: FoamLaw::NONE,
             work: TileWork::new(),
             surfaces: (0..KEPT_SURFACES).map(kept).collect(),
             queries: 0,
@@ -303,7 +303,8 @@ impl SeaWorkshop {
     fn count(&mut self, sea: &PreparedSea, systems: &Systems, factor: f64) {
         let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
         let mut slope = self.tiles.tiles.iter().map(|t| t.mean_square_slope).sum::<f64>();
-        let mut compression = self.tiles.tiles.iter().map(|t| t.compression).sum::<f64>();
+        let tiles = self.tiles.tiles.iter().map(|t| t.compression).sum::<f64>();
+        let mut compression = tiles;
         for wave in &self.waves {
             let own = 0.5 * wave.amplitude_m * wave.amplitude_m;
             let k = TAU * wave.turns_per_m;
@@ -334,7 +335,8 @@ impl SeaWorkshop {
             whitecap_share: if sea.settings.without_whitecaps { 0.0 } else { open * whitecap_share(systems.wind_m_s) },
             ..SeaStatistics::default()
         };
-        self.foam_from = fold_threshold(self.statistics.whitecap_share, compression);
+        let share = self.statistics.whitecap_share;
+        self.foam = FoamLaw::new(share, [compression, tiles], sea.settings.salinity_g_kg);
     }
 
     /// Returns the frequency of the highest density, which lies in or beside a bin: a parabola through three.
@@ -385,7 +387,7 @@ impl SeaWorkshop {
         let still = StillSea {
             level_m: sea.settings.level_at_m(time_s),
             depth_m: sea.settings.depth_m + sea.settings.level_at_m(time_s) - sea.settings.level_m,
-            foam_from: self.foam_from,
+            foam: self.foam,
         };
         let oldest = (0..KEPT_SURFACES).min_by_key(|i| self.surfaces[*i].used).unwrap_or(0);
         let kept = &mut self.surfaces[oldest];

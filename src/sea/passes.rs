@@ -7,8 +7,12 @@ use half::f16;
 use super::{
     drawn::{DrawnTiles, MIPS, MOST_WAVES, TileSlopes, WaveUniform},
     fft::SIDE,
+    lace::{LACE_MIPS, LACE_SIDE, lace_levels},
     mesh::{self, LEVELS, MOST_BLOCKS, MeshBlock},
+    outline::MAX_OUTLINE_CORNERS,
+    regions::MAX_SEA_REGIONS,
     seen::{SEEN_SIDES, SeaBand, band_of, fill_seen},
+    seen_regions::{RegionUniform, SeenRegions},
     tiles::TILES,
     uniform::SeaUniform,
     water::{TABLE_SIDES, reflectance_table},
@@ -42,6 +46,9 @@ pub(super) struct SeaPasses {
     block: wgpu::Buffer,
     waves: wgpu::Buffer,
     blocks: wgpu::Buffer,
+    regions: wgpu::Buffer,
+    /// Corners of the regions' outlines.
+    outlines: wgpu::Texture,
     indices: wgpu::Buffer,
     index_count: u32,
     shapes: wgpu::Texture,
@@ -63,25 +70,34 @@ pub(super) struct SeaDraw<'a> {
     pub waves: &'a [WaveUniform],
     pub tiles: &'a [TileSlopes; TILES],
     pub blocks: &'a [MeshBlock],
+    pub regions: &'a SeenRegions,
+    /// Whether there is sea outside all regions.
+    pub is_open: bool,
     /// Refractive index of the water.
     pub index: f64,
 }
 
 impl SeaDraw<'_> {
-    /// Returns the blocks of each level in turn.
-    fn levels(&self) -> impl Iterator<Item = &[MeshBlock]> {
-        self.blocks.chunk_by(|a, b| a.level == b.level)
+    /// Returns the blocks that are drawn together, with the number of their band: those of each level in turn, apart by
+    /// whether regions may reach them.
+    fn bands(&self) -> impl Iterator<Item = (usize, &[MeshBlock])> {
+        let alike = |a: &MeshBlock, b: &MeshBlock| (a.level, a.has_regions) == (b.level, b.has_regions);
+        self.blocks
+            .chunk_by(alike)
+            .map(|blocks| (2 * blocks[0].level as usize + blocks[0].has_regions as usize, blocks))
     }
 }
 
-/// Distance between the blocks of two levels in the buffer, bytes: the largest that a device may ask for.
+/// Distance between two bands in the buffer, bytes: the largest that a device may ask for.
 const BAND_STRIDE: usize = 256;
+/// Bands of all levels.
+const BANDS: usize = 2 * LEVELS as usize;
 
-/// Waves that the pixels of each level sum, and of all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
+/// Waves that the pixels of each band sum, and of all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
 pub(super) struct SeaBands {
     pub layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
-    /// A group for each level, and one with all waves.
+    /// A group for each band, and one with all waves.
     pub groups: Vec<wgpu::BindGroup>,
 }
 
@@ -89,27 +105,27 @@ impl SeaBands {
     fn new(device: &Device) -> Self {
         let made = &device.device;
         let slots = [(0, Slot::Uniform(size_of::<SeaBand>()))];
-        let layout = bind::layout(made, "bands of the sea", wgpu::ShaderStages::FRAGMENT, &slots);
-        let buffer = bind::block(made, "bands of the sea", BAND_STRIDE * (LEVELS as usize + 1));
-        let whole = BAND_STRIDE * LEVELS as usize;
-        device.write_buffer(&buffer, whole as u64, bytemuck::bytes_of(&SeaBand::WHOLE));
-        let group = |level: u32| {
-            let from = BAND_STRIDE * level as usize;
+        let layout = bind::layout(made, "bands of the sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots);
+        let buffer = bind::block(made, "bands of the sea", BAND_STRIDE * (BANDS + 1));
+        device.write_buffer(&buffer, (BAND_STRIDE * BANDS) as u64, bytemuck::bytes_of(&SeaBand::WHOLE));
+        let group = |band: usize| {
+            let from = BAND_STRIDE * band;
             made.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("band of the sea"),
                 layout: &layout,
                 entries: &[bind::part(0, &buffer, from..from + size_of::<SeaBand>())],
             })
         };
-        let groups = (0..=LEVELS).map(group).collect();
+        let groups = (0..=BANDS).map(group).collect();
         Self { layout, buffer, groups }
     }
 
     fn upload(&self, device: &Device, draw: &SeaDraw<'_>) {
-        for blocks in draw.levels() {
-            let band = band_of(draw.block, draw.waves, blocks);
-            let at = BAND_STRIDE as u64 * blocks[0].level as u64;
-            device.write_buffer(&self.buffer, at, bytemuck::bytes_of(&band));
+        for (number, blocks) in draw.bands() {
+            let regions = draw.regions.list.len() as u32 * blocks[0].has_regions as u32;
+            let waves = band_of(draw.block, draw.waves, blocks);
+            let band = SeaBand { regions, is_open: u32::from(draw.is_open), ..waves };
+            device.write_buffer(&self.buffer, (BAND_STRIDE * number) as u64, bytemuck::bytes_of(&band));
         }
     }
 }
@@ -125,6 +141,9 @@ pub(super) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         (5, Slot::Sampler),
         (6, Slot::Sampler),
         (7, Slot::FilteredArray),
+        (8, Slot::Filtered),
+        (9, Slot::Uniform(MAX_SEA_REGIONS * size_of::<RegionUniform>())),
+        (10, Slot::Texels),
     ];
     bind::layout(device, "sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -141,6 +160,29 @@ fn tiles_texture(device: &wgpu::Device, label: &str) -> wgpu::Texture {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     })
+}
+
+/// Creates the texture of the pattern of foam.
+fn lace_texture(device: &Device) -> wgpu::Texture {
+    let side = LACE_SIDE as u32;
+    let texture = device.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("lace of foam"),
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: LACE_MIPS as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (mip, texels) in (0..).zip(lace_levels()) {
+        let side = side >> mip;
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(side), rows_per_image: None };
+        let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 };
+        let to = wgpu::TexelCopyTextureInfo { mip_level: mip, ..texture.as_image_copy() };
+        device.write_texture(to, &texels, rows, size);
+    }
+    texture
 }
 
 fn sampler(device: &wgpu::Device, address: wgpu::AddressMode) -> wgpu::Sampler {
@@ -177,6 +219,9 @@ impl SeaPasses {
         });
         let block = bind::block(made, "sea", size_of::<SeaUniform>());
         let waves = bind::block(made, "waves of the sea", MOST_WAVES * size_of::<WaveUniform>());
+        let regions = bind::block(made, "regions of the sea", MAX_SEA_REGIONS * size_of::<RegionUniform>());
+        let size = (MAX_OUTLINE_CORNERS as u32, MAX_SEA_REGIONS as u32);
+        let outlines = flat_texture(made, "outlines of regions", size, wgpu::TextureFormat::Rg32Float, usage);
         let indices = mesh::indices();
         let buffer = |label, bytes: usize, usage| {
             made.create_buffer(&wgpu::BufferDescriptor {
@@ -201,6 +246,9 @@ impl SeaPasses {
                 bind::sampler(5, &sampler(made, wgpu::AddressMode::Repeat)),
                 bind::sampler(6, &sampler(made, wgpu::AddressMode::ClampToEdge)),
                 bind::view(7, &bind::as_layers(&seen)),
+                bind::view(8, &lace_texture(device).create_view(&Default::default())),
+                bind::buffer(9, &regions),
+                bind::view(10, &outlines.create_view(&Default::default())),
             ],
         });
         let index_count = indices.len() as u32;
@@ -210,6 +258,8 @@ impl SeaPasses {
             block,
             waves,
             blocks,
+            regions,
+            outlines,
             indices: index_buffer,
             index_count,
             shapes,
@@ -226,9 +276,11 @@ impl SeaPasses {
     /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let texels: usize = (0..MIPS).map(|mip| TILES * (SIDE >> mip) * (SIDE >> mip)).sum();
-        let buffers = [&self.block, &self.waves, &self.blocks, &self.indices].map(wgpu::Buffer::size);
+        let buffers = [&self.block, &self.waves, &self.blocks, &self.regions, &self.indices].map(wgpu::Buffer::size);
         let tables = 2 * TABLE_SIDES[0] * TABLE_SIDES[1] + 2 * 8 * SEEN_SIDES[0] * SEEN_SIDES[1];
-        (2 * 8 * texels + tables) as u64 + buffers.iter().sum::<u64>() + self.bands.buffer.size()
+        let lace: usize = (0..LACE_MIPS).map(|mip| (LACE_SIDE >> mip) * (LACE_SIDE >> mip)).sum();
+        let outlines = 8 * MAX_OUTLINE_CORNERS * MAX_SEA_REGIONS;
+        (2 * 8 * texels + tables + lace + outlines) as u64 + buffers.iter().sum::<u64>() + self.bands.buffer.size()
     }
 
     /// Uploads the tiles of another time.
@@ -274,6 +326,17 @@ impl SeaPasses {
         device.write_texture(self.seen.as_image_copy(), bytes, layout, self.seen.size());
     }
 
+    fn upload_regions(&self, device: &Device, regions: &SeenRegions) {
+        if regions.list.is_empty() {
+            return;
+        }
+        device.write_buffer(&self.regions, 0, bytemuck::cast_slice(&regions.list));
+        let row = MAX_OUTLINE_CORNERS as u32;
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(8 * row), rows_per_image: None };
+        let size = wgpu::Extent3d { width: row, height: regions.list.len() as u32, depth_or_array_layers: 1 };
+        device.write_texture(self.outlines.as_image_copy(), bytemuck::cast_slice(&regions.corners), rows, size);
+    }
+
     /// Draws the sea.
     ///
     /// # Errors
@@ -291,6 +354,7 @@ impl SeaPasses {
         device.write_buffer(&self.blocks, 0, bytemuck::cast_slice(draw.blocks));
         self.upload_seen(device, draw);
         self.bands.upload(device, draw);
+        self.upload_regions(device, draw.regions);
         let constants = opaque.tables.constants;
         if self.pipeline.as_ref().is_none_or(|made| made.target != opaque.target || made.constants != constants) {
             let pipeline = pipeline(device, [&self.layout, &self.bands.layout], opaque)?;
@@ -302,10 +366,10 @@ impl SeaPasses {
         pass.set_bind_group(2, &self.group, &[]);
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
         let mut from = 0;
-        for blocks in draw.levels() {
+        for (number, blocks) in draw.bands() {
             // Instances begin at 0, since OpenGL ES has no first instance.
             pass.set_vertex_buffer(0, self.blocks.slice(from..));
-            pass.set_bind_group(3, &self.bands.groups[blocks[0].level as usize], &[]);
+            pass.set_bind_group(3, &self.bands.groups[number], &[]);
             pass.draw_indexed(0..self.index_count, 0, 0..blocks.len() as u32);
             from += size_of_val(blocks) as u64;
         }

@@ -19,7 +19,8 @@ const MOST_SPEED_M_S: f64 = 60.0;
 /// Kind of water inside a region.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SeaRegionKind {
-    /// No water: inside a hull or an empty dock. It counts before all other regions.
+    /// No water: inside a hull or an empty dock. It counts before all other regions. Queries there answer the surface
+    /// of the water around, by which a hull floats.
     Dry,
     /// The sea, at its own level, with lower waves: a harbour.
     Sheltered,
@@ -107,11 +108,13 @@ pub(crate) struct WaterBody {
     pub lake: Option<[f64; 2]>,
     /// Height of waves over that on the open sea.
     pub wave_share: f64,
+    /// Whether a dry region keeps the water off the place.
+    pub is_dry: bool,
 }
 
 impl WaterBody {
     /// The open sea.
-    pub const OPEN: Self = Self { lake: None, wave_share: 1.0 };
+    pub const OPEN: Self = Self { lake: None, wave_share: 1.0, is_dry: false };
 }
 
 /// A valid region in the form in which places are looked up.
@@ -137,26 +140,49 @@ impl PlacedRegion {
         Ok(Self { region, center, to_enu: local.world_to_enu, radius_m })
     }
 
+    /// Returns the distance of the farthest corner from the centre, m.
+    pub fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// Returns a vector (east, north) in directions to the right and ahead at a time.
+    fn headed(&self, v: DVec2, time_s: f64) -> DVec2 {
+        let past_s = time_s - self.region.at_s;
+        let turns = (self.region.heading_deg + self.region.turn_deg_s * past_s) / 360.0;
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (turns - turns.floor()));
+        DVec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+    }
+
+    /// Returns a position in metres east and north of the centre at a time.
+    fn from_center(&self, position: DVec3, time_s: f64) -> DVec2 {
+        let moved = DVec2::from(self.region.velocity_m_s) * (time_s - self.region.at_s);
+        (self.to_enu * (position - self.center)).truncate() - moved
+    }
+
+    /// Returns a position in metres to the right and ahead of the centre at a time.
+    pub fn offset_m(&self, position: DVec3, time_s: f64) -> DVec2 {
+        self.headed(self.from_center(position, time_s), time_s)
+    }
+
+    /// Returns the part of a vector of the host's world to the right and ahead at a time.
+    pub fn turned(&self, v: DVec3, time_s: f64) -> DVec2 {
+        self.headed((self.to_enu * v).truncate(), time_s)
+    }
+
     /// Returns a position in metres to the right and ahead of the centre at a time; `None` farther away than all
     /// corners.
     fn within(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
-        let past_s = time_s - self.region.at_s;
-        let moved = DVec2::from(self.region.velocity_m_s) * past_s;
-        let offset = (self.to_enu * (position - self.center)).truncate() - moved;
+        let offset = self.from_center(position, time_s);
         let is_near = offset.length_squared() <= self.radius_m * self.radius_m;
-        if !is_near {
-            return None;
-        }
-        let turns = (self.region.heading_deg + self.region.turn_deg_s * past_s) / 360.0;
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (turns - turns.floor()));
-        Some(DVec2::new(cos * offset.x - sin * offset.y, sin * offset.x + cos * offset.y))
+        is_near.then(|| self.headed(offset, time_s))
     }
 }
 
-/// Returns the water at a position and time; `None` where there is none. `is_sea` says whether there is sea outside all
-/// regions. Later regions count before earlier ones, dry ones before all.
+/// Returns the water at a position and time; `None` where there is none around. `is_sea` says whether there is sea
+/// outside all regions. Later regions count before earlier ones, dry ones before all.
 pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, time_s: f64) -> Option<WaterBody> {
     let mut water = is_sea.then_some(WaterBody::OPEN);
+    let mut is_dry = false;
     for placed in regions {
         let region = &placed.region;
         let Some(p) = placed.within(position, time_s).filter(|p| outline::holds(&region.corners_m, *p)) else {
@@ -164,11 +190,14 @@ pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, 
         };
         let wave_share = region.wave_share;
         water = match (region.kind, water) {
-            (SeaRegionKind::Dry, _) => return None,
-            (SeaRegionKind::Lake { level_m, depth_m }, _) => {
-                Some(WaterBody { lake: Some([level_m, depth_m]), wave_share })
+            (SeaRegionKind::Dry, around) => {
+                is_dry = true;
+                around
             }
-            (SeaRegionKind::Sheltered, None) => Some(WaterBody { lake: None, wave_share }),
+            (SeaRegionKind::Lake { level_m, depth_m }, _) => {
+                Some(WaterBody { lake: Some([level_m, depth_m]), wave_share, is_dry: false })
+            }
+            (SeaRegionKind::Sheltered, None) => Some(WaterBody { wave_share, ..WaterBody::OPEN }),
             (SeaRegionKind::Sheltered, Some(around)) => {
                 let deep = if region.rim_m > 0.0 {
                     smoothstep(0.0, region.rim_m, outline::distance_m(&region.corners_m, p))
@@ -180,7 +209,7 @@ pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, 
             }
         };
     }
-    water
+    water.map(|water| WaterBody { is_dry, ..water })
 }
 
 #[cfg(test)]
@@ -200,6 +229,7 @@ mod tests {
     }
 
     const OPEN: Option<WaterBody> = Some(WaterBody::OPEN);
+    const DRY: Option<WaterBody> = Some(WaterBody { is_dry: true, ..WaterBody::OPEN });
 
     #[test]
     fn hulls_move_and_turn() {
@@ -213,10 +243,10 @@ mod tests {
         let placed = placed(&[hull.clone(), SeaRegion { turn_deg_s: 4.5, center_m: [0.0, 1e4, 0.0], ..hull }]);
         let at = |x: f64, y: f64, t: f64| water_at(&placed, true, DVec3::new(x, y, 0.0), t);
         // Heading east: long to the east, narrow to the north.
-        assert_eq!((at(1095.0, 45.0, 10.0), at(1000.0, 60.0, 10.0), at(1105.0, 0.0, 10.0)), (None, OPEN, OPEN));
-        assert_eq!((at(1145.0, 0.0, 20.0), at(1045.0, 0.0, 20.0), at(940.0, 0.0, 20.0)), (None, None, OPEN));
+        assert_eq!((at(1095.0, 45.0, 10.0), at(1000.0, 60.0, 10.0), at(1105.0, 0.0, 10.0)), (DRY, OPEN, OPEN));
+        assert_eq!((at(1145.0, 0.0, 20.0), at(1045.0, 0.0, 20.0), at(940.0, 0.0, 20.0)), (DRY, DRY, OPEN));
         // Ten seconds later the other one heads south-east.
-        assert_eq!((at(110.0, 1e4 - 60.0, 20.0), at(110.0, 1e4 + 60.0, 20.0)), (None, OPEN));
+        assert_eq!((at(110.0, 1e4 - 60.0, 20.0), at(110.0, 1e4 + 60.0, 20.0)), (DRY, OPEN));
     }
 
     #[test]
@@ -235,14 +265,17 @@ mod tests {
         // The ship stands first in the list and still counts.
         let placed = placed(&[ship, harbour, lake]);
         let at = |x: f64, y: f64| water_at(&placed, true, DVec3::new(x, y, 0.0), 0.0);
-        assert_eq!((at(0.0, 0.0), at(0.0, 50.0)), (Some(WaterBody { lake: None, wave_share: 0.2 }), None));
+        let calm = WaterBody { wave_share: 0.2, ..WaterBody::OPEN };
+        // Inside the ship the query answers the harbour's water.
+        let dry = Some(WaterBody { is_dry: true, ..calm });
+        assert_eq!((at(0.0, 0.0), at(0.0, 50.0)), (Some(calm), dry));
         let rim = at(30.0, 0.0).expect("water").wave_share;
         assert!((rim - 0.6).abs() < 1e-12, "{rim}");
         assert!(at(49.999, 0.0).expect("water").wave_share > 0.9999 && at(60.0, 0.0) == OPEN);
-        assert_eq!(at(0.0, 500.0), Some(WaterBody { lake: Some([12.0, 3.0]), wave_share: 0.5 }));
+        assert_eq!(at(0.0, 500.0), Some(WaterBody { lake: Some([12.0, 3.0]), wave_share: 0.5, is_dry: false }));
         // Without a sea around them there is water only inside.
         let inside = |x: f64, y: f64| water_at(&placed, false, DVec3::new(x, y, 0.0), 0.0);
-        assert_eq!((inside(400.0, 0.0), inside(0.0, 50.0)), (None, None));
+        assert_eq!((inside(400.0, 0.0), inside(0.0, 50.0)), (None, dry));
         assert_eq!((inside(30.0, 0.0).expect("water").wave_share, inside(0.0, 500.0)), (0.2, at(0.0, 500.0)));
     }
 
@@ -258,7 +291,7 @@ mod tests {
         let hull = SeaRegion { center_m: center.to_array(), ..square(SeaRegionKind::Dry) };
         let placed = [PlacedRegion::new(hull, &frame).expect("a region")];
         let at = |x: f64, y: f64| water_at(&placed, true, center + up * DVec3::new(x, y, 7.0), 0.0);
-        assert_eq!((at(45.0, -95.0), at(55.0, 0.0), at(0.0, 105.0)), (None, OPEN, OPEN));
+        assert_eq!((at(45.0, -95.0), at(55.0, 0.0), at(0.0, 105.0)), (DRY, OPEN, OPEN));
     }
 
     #[test]

@@ -24,19 +24,20 @@ pub(super) const FLAT_MIP: f32 = 5.0;
 /// Margin for rounding where the waves of a level are chosen.
 const MARGIN: f32 = 1.001;
 
-/// Range of the single waves that pixels of a level of the mesh sum: the first, and the one after the last (`SeaBand`
-/// of `shaders/sea/uniform.wgsl`).
+/// Blocks of a level that are drawn together (`SeaBand` of `shaders/sea/uniform.wgsl`): the single waves that their
+/// pixels sum, the first and the one after the last, and the regions that may lie in them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct SeaBand {
     pub first: u32,
     pub last: u32,
-    pub pad: [u32; 2],
+    pub regions: u32,
+    pub is_open: u32,
 }
 
 impl SeaBand {
-    /// All waves.
-    pub const WHOLE: Self = Self { first: 0, last: u32::MAX, pad: [0; 2] };
+    /// All waves, and no regions.
+    pub const WHOLE: Self = Self { first: 0, last: u32::MAX, regions: 0, is_open: 1 };
 }
 
 /// Filter of a pixel on the level surface, as `footprint_at` of `shaders/sea/surface.wgsl` has it.
@@ -150,7 +151,7 @@ pub(super) fn fill_seen(
     }
 }
 
-/// Returns the waves that the pixels of some blocks have to sum.
+/// Returns the waves that the pixels of some blocks have to sum, without regions.
 pub(super) fn band_of(sea: &SeaUniform, waves: &[WaveUniform], blocks: &[MeshBlock]) -> SeaBand {
     let (mut nearest, mut farthest) = (f32::INFINITY, sea.height);
     for block in blocks {
@@ -164,7 +165,8 @@ pub(super) fn band_of(sea: &SeaUniform, waves: &[WaveUniform], blocks: &[MeshBlo
     let smooth = CELLS_TO_DISTANCE as f32 / (2.0 * SMOOTH_CELLS * farthest * MARGIN);
     let last = PixelFilter::at(sea, nearest).last * MARGIN;
     let first = waves.partition_point(|wave| wave.turns_per_m < smooth);
-    SeaBand { first: first as u32, last: waves.partition_point(|wave| wave.turns_per_m < last) as u32, pad: [0; 2] }
+    let last = waves.partition_point(|wave| wave.turns_per_m < last);
+    SeaBand { first: first as u32, last: last as u32, ..SeaBand::WHOLE }
 }
 
 #[cfg(test)]

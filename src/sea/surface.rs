@@ -9,26 +9,24 @@ use glam::{DVec2, DVec3};
 
 use super::{
     fft::SIDE,
+    foam::FoamLaw,
     lanes::{Displacement, IncludedLanes, ParticleMotion, Phases, SurfaceWave, WaveLanes},
     lattice::SeaWave,
     regions::WaterBody,
     tiles::{TILES, TileWork, VALUES, WaveTiles, sample},
 };
-use crate::numerics::smoothstep;
 
 /// Largest distance, m, between the place asked for and the one solved for, and most steps towards it.
 const SOLVED_M: f64 = 5e-4;
 const MOST_STEPS: usize = 12;
 /// Standard deviations that a stated bound allows for: 1 place in 16,000 is off by more.
 const BOUND_DEVIATIONS: f64 = 4.0;
-/// Range of compressions about the threshold over which foam begins, as a share of the threshold.
-const FOAM_EDGE: f64 = 0.05;
-const LEAST_FOAM_EDGE: f64 = 1e-3;
 
-/// The sea at a place and time. Where there is no water all numbers are 0, and the normal is up.
+/// The sea at a place and time. Where there is no water all numbers are 0, and the normal is up. In a dry region they
+/// are those of the water around, by which a hull floats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeaPoint {
-    /// Whether there is water.
+    /// Whether there is water: not in a dry region.
     pub has_water: bool,
     /// Point of the surface above or below the place that was asked about, in the host's world, m; without water that
     /// place itself.
@@ -46,8 +44,7 @@ pub struct SeaPoint {
     pub acceleration_m_s2: DVec3,
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam of waves that break now, 0 to 1. Foam left by earlier waves is not in this
-    /// version.
+    /// Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left.
     pub foam: f64,
 }
 
@@ -69,14 +66,14 @@ pub(super) struct TileFields {
 }
 
 /// Values of the surface that hold everywhere.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StillSea {
     /// Level without waves, m.
     pub level_m: f64,
     /// Depth below it, m.
     pub depth_m: f64,
-    /// Compression at which foam begins.
-    pub foam_from: f64,
+    /// Foam.
+    pub foam: FoamLaw,
 }
 
 /// The surface at a time.
@@ -129,7 +126,8 @@ impl SeaSurface {
             longest_m: 1.0,
         };
         let tiles = (0..TILES).map(|_| none()).collect();
-        Self { lanes: WaveLanes::default(), tiles, still: StillSea::default(), variance_m2: 0.0 }
+        let still = StillSea { level_m: 0.0, depth_m: 0.0, foam: FoamLaw::NONE };
+        Self { lanes: WaveLanes::default(), tiles, still, variance_m2: 0.0 }
     }
 
     /// Takes over waves, which must be sorted from long to short, and tiles at a time.
@@ -175,15 +173,14 @@ impl SeaSurface {
         let height = motion.height + share * share * included.raised_m + slope.dot(off);
         let [level_m, depth_m] = water.lake.unwrap_or([self.still.level_m, self.still.depth_m]);
         let compression = -(moved.slopes[0] + moved.slopes[3]);
-        let foam_from = self.still.foam_from;
-        let foam = if foam_from.is_finite() {
-            let edge = FOAM_EDGE * foam_from.abs() + LEAST_FOAM_EDGE;
-            smoothstep(foam_from - edge, foam_from + edge, compression)
+        let foam = if self.still.foam.from.is_finite() {
+            let before = self.lanes.past_compression(&included.lanes, &phases);
+            self.still.foam.share(compression, before.map(|compression| compression * share), share)
         } else {
             0.0
         };
         SeaPoint {
-            has_water: true,
+            has_water: !water.is_dry,
             surface: DVec3::ZERO,
             height_m: level_m + height,
             height_error_m: share * included.error_m + off.length() * slope.length() + SOLVED_M,

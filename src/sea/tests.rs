@@ -377,7 +377,7 @@ fn ice_takes_the_short_waves_and_shelter_all_alike() {
 
     let mut open = TestSea::of(2.0, 7.0, 4000.0, 2);
     let surface = open.surface(70.0);
-    let harbour = WaterBody { lake: None, wave_share: 0.3 };
+    let harbour = WaterBody { wave_share: 0.3, ..WaterBody::OPEN };
     let (mut squares, mut sum, mut worst) = (0.0, 0.0, 0.0f64);
     for i in 0..20_000 {
         let point = surface.within(&harbour, DVec2::new(37.0 * f64::from(i % 150), 61.0 * f64::from(i / 150)), 0.0);
@@ -387,7 +387,7 @@ fn ice_takes_the_short_waves_and_shelter_all_alike() {
     }
     let (found, mean) = (4.0 * (squares / 2e4).sqrt(), sum / 2e4);
     assert!((found / 0.6 - 1.0).abs() < 0.02 && mean.abs() < 3e-3 && worst < 2e-3, "{found} {mean} {worst}");
-    let lake = surface.within(&WaterBody { lake: Some([50.0, 4.0]), wave_share: 0.0 }, DVec2::ONE, 0.0);
+    let lake = surface.within(&WaterBody { lake: Some([50.0, 4.0]), wave_share: 0.0, is_dry: false }, DVec2::ONE, 0.0);
     assert_eq!((lake.height_m, lake.depth_m, lake.normal, lake.foam), (50.0, 4.0, DVec3::Z, 0.0));
 }
 

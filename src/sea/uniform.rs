@@ -6,6 +6,8 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::{
     drawn::{DrawnSums, TileUniform},
+    foam::FoamLaw,
+    foam_uniform::FoamUniform,
     mesh::MeshEye,
     model::SeaStatistics,
     slopes::cox_munk,
@@ -42,13 +44,14 @@ pub(super) struct SeaUniform {
     pub lamp_lux: [f32; 3],
     pub seen_per_octave: f32,
     pub sky_lux: [f32; 3],
-    pub pad_b: f32,
+    pub squeeze: f32,
     pub body: [f32; 3],
     pub pad_c: f32,
     pub white: [f32; 3],
     pub pad_d: f32,
     pub slopes: [f32; 4],
     pub tiles: [TileUniform; TILES],
+    pub foam: FoamUniform,
 }
 
 /// Map around a camera: the camera-relative place (east, north, up) of the sea's level by the place on the map, as a
@@ -107,7 +110,7 @@ pub(super) struct DrawnSea<'a> {
     pub sums: DrawnSums,
     /// Number of single waves.
     pub waves: usize,
-    pub foam_from: f64,
+    pub foam: FoamLaw,
     pub fog_depth: f64,
 }
 
@@ -134,9 +137,9 @@ impl DrawnSea<'_> {
             waves: self.waves as u32,
             north: f(self.chart.north),
             bend_xx: f(xx),
-            foam_from: self.foam_from.min(1e3) as f32,
+            foam_from: self.foam.from.min(1e3) as f32,
             bend_xy: f(xy),
-            compression: self.sums.compression as f32,
+            compression: self.foam.variance as f32,
             bend_yy: f(yy),
             fog_depth: self.fog_depth as f32,
             eye: (self.eye.place_m - self.eye.anchor_m()).as_vec2().to_array(),
@@ -146,10 +149,12 @@ impl DrawnSea<'_> {
             lamp_lux: f3(lamp_lux),
             seen_per_octave: (1.0 / libm::log2((self.eye.reach_m / self.eye.height_m).max(2.0))) as f32,
             sky_lux: f3(scene.ground.sky_lux),
+            squeeze: (self.sums.compression / (self.sums.slopes[0] + self.sums.slopes[2]).max(1e-12)) as f32,
             body: f3(water),
             white: f3(white),
             slopes: self.slopes(),
             tiles: self.tiles,
+            foam: FoamUniform::new(&self.foam, self.eye.anchor_m(), self.wind_m_s(), stats.mean_from_deg),
             ..SeaUniform::default()
         }
     }
@@ -161,14 +166,18 @@ impl DrawnSea<'_> {
         let [xx, xy, yy] = self.sums.slopes;
         let drawn = xx + yy;
         let rest = (self.statistics.mean_square_slope - drawn).max(0.0);
-        let wind = (self.statistics.mean_square_slope - 0.003).max(0.0) / 0.005_12;
-        let v = cox_munk(wind);
+        let v = cox_munk(self.wind_m_s());
         let upwind = if v.total() > 0.0 { rest * v.upwind / v.total() } else { 0.5 * rest };
         let across = rest - upwind;
         let (sin, cos) = libm::sincos(self.statistics.mean_from_deg.to_radians());
         let along = upwind - across;
         [xx + across + along * sin * sin, xy + along * sin * cos, yy + across + along * cos * cos, drawn]
             .map(|v| v as f32)
+    }
+
+    /// Returns the wind that the sea's mean square slope stands for, m/s (Cox and Munk 1954).
+    fn wind_m_s(&self) -> f64 {
+        (self.statistics.mean_square_slope - 0.003).max(0.0) / 0.005_12
     }
 
     /// Returns the luminance of the light out of the water, seen from above, and that of a white surface, cd/m^2.
@@ -202,7 +211,10 @@ mod tests {
             drawn::{MOST_WAVES, WaveUniform},
             fft::SIDE,
             mesh::{CELLS, CELLS_TO_DISTANCE, FINEST_M, MORPH},
+            outline::MAX_OUTLINE_CORNERS,
+            regions::MAX_SEA_REGIONS,
             seen::{FLAT_MIP, LEAST_CELLS, MOST_LENGTHENED, PIXEL_DEVIATION, SEEN_SIDES, SMOOTH_CELLS, SeaBand},
+            seen_regions::{RegionUniform, SHELTERED_REGION},
         },
         *,
     };
@@ -236,10 +248,12 @@ mod tests {
                 lamp_lux,
                 seen_per_octave,
                 sky_lux,
+                squeeze,
                 body,
                 white,
                 slopes,
-                tiles
+                tiles,
+                foam
             ]
         );
         shader::assert_layout!(
@@ -252,9 +266,16 @@ mod tests {
             "sea/uniform.wgsl",
             "SeaWave",
             WaveUniform,
-            [turns, phase, height, turns_per_m, length, shift, lowering]
+            [turns, phase, height, turns_per_m, length, shift, age_step]
         );
-        shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last]);
+        shader::assert_layout!("sea/uniform.wgsl", "SeaFoam", FoamUniform, [kept, lace, streaks, second, gathered]);
+        shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last, regions, is_open]);
+        shader::assert_layout!(
+            "sea/uniform.wgsl",
+            "SeaRegion",
+            RegionUniform,
+            [anchor, reach2, kind, turn, corners, wave_share, rim]
+        );
     }
 
     #[test]
@@ -264,6 +285,9 @@ mod tests {
             ("SEA_TILES: u32", format!("{TILES}u")),
             ("SEA_SIDE: f32", format!("{SIDE}.0")),
             ("MOST_SEA_WAVES: u32", format!("{MOST_WAVES}u")),
+            ("MOST_SEA_REGIONS: u32", format!("{MAX_SEA_REGIONS}u")),
+            ("MOST_OUTLINE_CORNERS: u32", format!("{MAX_OUTLINE_CORNERS}u")),
+            ("SHELTERED_REGION: u32", format!("{SHELTERED_REGION}u")),
             ("SEA_FINEST: f32", FINEST_M.to_string()),
             ("SEA_CELLS: u32", format!("{CELLS}u")),
             ("SEA_MORPH_FROM: f32", MORPH[0].to_string()),

@@ -10,7 +10,7 @@ use super::{
     model::SeaStatistics,
     passes::{SeaDraw, SeaPasses},
     regions::WaterBody,
-    settings::SeaSettings,
+    seen_regions::{RegionsEye, SeenRegions},
     tiles::TILES,
     uniform::{DrawnSea, SeaChart, SeaUniform},
 };
@@ -42,6 +42,9 @@ type TilesKey = (u64, u64, u64);
 pub(crate) struct SeaView {
     /// Blocks of the mesh that this frame shows; none where no sea is seen.
     pub(super) blocks: Vec<MeshBlock>,
+    regions: SeenRegions,
+    /// Whether there is sea outside all regions.
+    is_open: bool,
     waves: Vec<WaveUniform>,
     tile_slopes: [TileSlopes; TILES],
     pub(super) block: SeaUniform,
@@ -98,6 +101,20 @@ impl SeaView {
         eye.blocks(shows, &mut self.blocks);
     }
 
+    /// Marks the blocks that regions may reach, and leaves out those without water.
+    fn mark_regions(&mut self) {
+        if self.regions.list.is_empty() && self.is_open {
+            return;
+        }
+        let displaced_m = DISPLACED_TO_CREST * self.crest_m;
+        let regions = &self.regions;
+        self.blocks.iter_mut().for_each(|block| block.has_regions = regions.touch(block, displaced_m).into());
+        if !self.is_open {
+            self.blocks.retain(|block| block.has_regions != 0);
+        }
+        self.blocks.sort_unstable_by_key(|block| (block.level, block.has_regions));
+    }
+
     /// Works out the surface of the frame's time.
     fn fill(
         &mut self,
@@ -133,7 +150,7 @@ impl SeaView {
             tiles: std::array::from_fn(|t| tiles.uniform(&list[t], anchor)),
             sums,
             waves: self.waves.len(),
-            foam_from: surface.still().foam_from,
+            foam: surface.still().foam,
             fog_depth,
         };
         (self.block, self.index) = (drawn.uniform(), statistics.refractive_index);
@@ -150,9 +167,7 @@ impl DrawnEffect for SeaView {
         self.blocks.clear();
         let (now, world) = (context.now, context.world);
         let held = context.held.of::<HeldSea>()?;
-        // Water in regions alone is only in the queries.
-        let is_seen = |settings: &&SeaSettings| !settings.only_in_regions && context.asked.has(Stages::SURFACE);
-        let Some(settings) = held.settings().filter(is_seen) else { return Ok(()) };
+        let Some(settings) = held.settings().filter(|_| context.asked.has(Stages::SURFACE)) else { return Ok(()) };
         let level_m = settings.level_at_m(now.time_s);
         let height_m = now.scene.place.altitude_m - level_m;
         if !(-DEEPEST_TROUGH_M..=MOST_HEIGHT_M).contains(&height_m) {
@@ -166,6 +181,10 @@ impl DrawnEffect for SeaView {
         let statistics = held.statistics(world, now.time_s)?;
         self.crest_m = CREST_SHARE * statistics.highest_in_hour_m;
         self.find_blocks(context, &eye, &chart);
+        let above = RegionsEye { scene: &now.scene, position: now.eye, chart: &chart, eye: &eye, time_s: now.time_s };
+        self.regions.fill(held.placed_regions(), &above);
+        self.is_open = !settings.only_in_regions;
+        self.mark_regions();
         if self.blocks.is_empty() || context.frame.depth_access != DepthAccess::ReadWrite {
             return Ok(());
         }
@@ -203,6 +222,8 @@ impl DrawnEffect for SeaView {
             waves: &self.waves,
             tiles: &self.tile_slopes,
             blocks: &self.blocks,
+            regions: &self.regions,
+            is_open: self.is_open,
             index: self.index,
         };
         passes.draw(context.device, &draw, opaque, pass)
