@@ -126,8 +126,10 @@ impl SeaView {
     ) -> Result<()> {
         let (now, world) = (context.now, context.world);
         let surface = held.surface(world, now.time_s)?;
-        // From below the surface is not drawn.
-        if surface.within(&WaterBody::OPEN, eye.place_m, 0.0).height_m > now.scene.place.altitude_m {
+        // From below the surface is not drawn. In a harbour it is lower than on the open sea.
+        let water = held.water_at(now.eye, now.time_s).unwrap_or(WaterBody::OPEN);
+        let water = WaterBody { lake: None, ..water };
+        if surface.within(&water, eye.place_m, 0.0).height_m > now.scene.place.altitude_m {
             self.blocks.clear();
             return Ok(());
         }

@@ -257,6 +257,29 @@ fn a_sea_in_regions_alone_is_drawn_there() {
 }
 
 #[test]
+fn a_camera_low_over_a_calm_harbour_sees_its_water() {
+    let mut host = SeaHost::new(18.0, storm());
+    let eye = DVec3::new(500.0, 20.0, 1.0);
+    // A time at which the open sea would be higher than the eye.
+    let is_high = |time_s: &f64| {
+        let mut open = [SeaPoint::default()];
+        host.context.sea_at(&[eye], *time_s, 0.0, &mut open).unwrap();
+        open[0].height_m > 2.0
+    };
+    let time_s = (0..400).map(f64::from).find(is_high).expect("a crest");
+    let harbour = SeaRegion {
+        center_m: eye.to_array(),
+        velocity_m_s: [0.0; 2],
+        wave_share: 0.01,
+        ..region(SeaRegionKind::Sheltered)
+    };
+    host.context.set_sea_regions(vec![harbour]).unwrap();
+    host.context.update(time_s).unwrap();
+    host.draw(&camera(eye, -30.0), DepthAccess::ReadWrite);
+    assert!(host.depths().iter().filter(|depth| **depth > 0.0).count() > 4000);
+}
+
+#[test]
 fn depths_are_those_of_the_queries() {
     let mut host = SeaHost::new(10.0, WindSea::Height { significant_m: 2.1, peak_period_s: Some(6.2), gamma: None });
     let eye = DVec3::new(40.0, -25.0, 6.0);
