@@ -55,7 +55,7 @@
 //!
 //! # What is not here
 //! No shore, no wakes: their laws are here, but the surface does not use them yet. A lake has the
-//! waves of the sea around it, as high as its region says; pictures show no regions. There is no `candidates.rs`,
+//! waves of the sea around it, as high as its region says; pictures show no lakes. There is no `candidates.rs`,
 //! because there is one way to draw it; no `reference.rs`, because all that queries use is the f64 reference.
 
 mod bins;

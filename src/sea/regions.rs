@@ -13,6 +13,8 @@ use crate::{
 
 /// Maximum number of regions.
 pub const MAX_SEA_REGIONS: usize = 64;
+/// Depth below a region's level, and height above it, from which on a position is on the planet's other side, m.
+const OTHER_SIDE_M: f64 = 3e6;
 /// Largest speed of a region, m/s.
 const MOST_SPEED_M_S: f64 = 60.0;
 
@@ -153,15 +155,16 @@ impl PlacedRegion {
         DVec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
     }
 
-    /// Returns a position in metres east and north of the centre at a time.
-    fn from_center(&self, position: DVec3, time_s: f64) -> DVec2 {
+    /// Returns a position in metres east and north of the centre at a time; `None` on the planet's other side.
+    fn from_center(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
         let moved = DVec2::from(self.region.velocity_m_s) * (time_s - self.region.at_s);
-        (self.to_enu * (position - self.center)).truncate() - moved
+        let offset = self.to_enu * (position - self.center);
+        (offset.z.abs() < OTHER_SIDE_M).then(|| offset.truncate() - moved)
     }
 
-    /// Returns a position in metres to the right and ahead of the centre at a time.
-    pub fn offset_m(&self, position: DVec3, time_s: f64) -> DVec2 {
-        self.headed(self.from_center(position, time_s), time_s)
+    /// Returns a position in metres to the right and ahead of the centre at a time; `None` on the planet's other side.
+    pub fn offset_m(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
+        Some(self.headed(self.from_center(position, time_s)?, time_s))
     }
 
     /// Returns the part of a vector of the host's world to the right and ahead at a time.
@@ -172,7 +175,7 @@ impl PlacedRegion {
     /// Returns a position in metres to the right and ahead of the centre at a time; `None` farther away than all
     /// corners.
     fn within(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
-        let offset = self.from_center(position, time_s);
+        let offset = self.from_center(position, time_s)?;
         let is_near = offset.length_squared() <= self.radius_m * self.radius_m;
         is_near.then(|| self.headed(offset, time_s))
     }
@@ -292,6 +295,7 @@ mod tests {
         let placed = [PlacedRegion::new(hull, &frame).expect("a region")];
         let at = |x: f64, y: f64| water_at(&placed, true, center + up * DVec3::new(x, y, 7.0), 0.0);
         assert_eq!((at(45.0, -95.0), at(55.0, 0.0), at(0.0, 105.0)), (DRY, OPEN, OPEN));
+        assert_eq!(water_at(&placed, true, -center, 0.0), OPEN, "the other side of the planet");
     }
 
     #[test]

@@ -57,11 +57,11 @@ impl SeenRegions {
         let to_world = camera.scene.world_to_enu.transpose();
         for placed in regions.iter().take(MAX_SEA_REGIONS) {
             let below = placed.offset_m(camera.position + to_world * camera.chart.foot, camera.time_s);
+            let Some(below) = below.filter(|place| place.length() <= placed.radius_m() + camera.eye.reach_m) else {
+                continue;
+            };
             let turn = |on_map: DVec3| placed.turned(to_world * on_map, camera.time_s);
             let turn = DMat2::from_cols(turn(camera.chart.east), turn(camera.chart.north));
-            if below.length() > placed.radius_m() + camera.eye.reach_m {
-                continue;
-            }
             let region = &placed.region;
             let kind = match region.kind {
                 SeaRegionKind::Dry => DRY_REGION,
