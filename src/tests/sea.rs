@@ -367,7 +367,7 @@ fn foam_covers_the_area_of_the_law_and_has_the_published_light() {
         let mut host = SeaHost::new(wind, WindSea::Weather);
         // Sums of area, of what is under foam, and of its light: places at rest count by what they cover.
         let mut sums = [[0.0; 3]; DISTANCES_M.len()];
-        for place in 0..32 {
+        for place in 0..64 {
             let position = DVec3::new(1700.0 * f64::from(place), 9.0, 12.0);
             host.draw(&camera(position, -30.0), DepthAccess::ReadWrite);
             let eye = host.view.effects.sea.eye_place();
