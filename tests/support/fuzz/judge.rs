@@ -25,9 +25,16 @@ const INTERNAL: &[&str] = &[
     "bind group",
 ];
 
-/// A message without what it quotes of an input, which may have any words.
+/// A message without what it quotes of an input, which may have any words and marks: all from a quotation mark to the
+/// last one of its kind is left out.
 fn unquoted(text: &str) -> String {
-    text.split(['"', '`']).step_by(2).collect()
+    let (mut own, mut rest) = (String::new(), text);
+    while let Some(begin) = rest.find(['"', '`']) {
+        own.push_str(&rest[..begin]);
+        let mark = &rest[begin..=begin];
+        rest = rest.rfind(mark).map_or("", |end| &rest[end + 1..]);
+    }
+    own + rest
 }
 
 impl Judge {
