@@ -6,7 +6,7 @@
 use toml::{Table, Value};
 
 use super::parts::Part;
-use crate::error::{Error, Result, Status, listed, toml_fault};
+use crate::error::{Error, Result, Status, beginning, listed, toml_fault};
 
 /// Version of the text: 2 since rain has parts, 3 since parts have rungs.
 const VERSION: u32 = 3;
@@ -94,17 +94,19 @@ fn unread(why: &dyn std::fmt::Display) -> Error {
     Error::new(Status::Parse, why.to_string()).within("plan")
 }
 
-/// Returns a value as the end of a message, at most 40 characters of it.
+/// Returns a value as the end of a message: at most 40 characters of it, and dots if there are more.
 fn shown(value: Option<&Value>) -> String {
-    value.map_or("nothing".into(), |v| v.to_string().chars().take(40).collect())
+    value.map_or("nothing".into(), |v| beginning(&v.to_string(), 40).into_owned())
 }
 
 /// Refuses fields other than the `known` ones.
 fn only(table: &Table, path: &str, known: &[&str]) -> Result<()> {
     let unknown = table.keys().find(|k| !known.contains(&k.as_str()));
     unknown.map_or(Ok(()), |k| {
-        let k: String = k.chars().take(40).collect();
-        Err(fault(&format!("{path}.{k}"), format_args!("is unknown: the fields are {}", listed(known))))
+        Err(fault(
+            &format!("{path}.{}", beginning(k, 40)),
+            format_args!("is unknown: the fields are {}", listed(known)),
+        ))
     })
 }
 
@@ -203,6 +205,11 @@ mod tests {
             ("version = 3", "version = 4\nparts = 5", "plan.version must be 3, got 4"),
             ("version = 3", "", "plan.version must be 3, got nothing"),
             ("fog = \"all\"", "fog = 1", "plan.drawn.fog must be one of all, none, got 1"),
+            (
+                "fog = \"all\"",
+                "fog = \"a word of more than forty characters in all\"",
+                "plan.drawn.fog must be one of all, none, got \"a word of more than forty characters in...",
+            ),
             ("rain = \"drops\"", "rain = \"all\"", "plan.drawn.rain must be one of drops, cones, none, got \"all\""),
             ("fog = \"all\"\n", "", "plan.drawn.fog must be one of all, none, got nothing"),
             (

@@ -2,7 +2,7 @@
 
 use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKind, SurfaceState};
 use super::model::{Aerosol, CloudLayer, Fog, Lofted, Precipitation, Sea, Surface, Swell, Weather, Wind};
-use crate::error::{Error, Result, listed};
+use crate::error::{Error, Result, beginning, listed};
 
 /// A preset: its name, one line for a menu, and the function that creates it.
 struct Preset {
@@ -68,8 +68,7 @@ impl Weather {
 fn find(name: &str) -> Result<&'static Preset> {
     PRESETS.iter().find(|p| p.name == name).ok_or_else(|| {
         let names: Vec<&str> = Weather::preset_names().collect();
-        let got: String = name.chars().take(40).collect();
-        Error::range("name", &format!("one of {}", listed(&names)), format!("{got:?}"))
+        Error::range("name", &format!("one of {}", listed(&names)), format!("{:?}", beginning(name, 40)))
     })
 }
 

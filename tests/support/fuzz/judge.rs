@@ -26,13 +26,13 @@ const INTERNAL: &[&str] = &[
 ];
 
 /// A message without what it quotes of an input, which may have any words and marks: all from a quotation mark to the
-/// last one of its kind is left out.
+/// last one of its kind is left out, or to the end where a quotation is cut.
 fn unquoted(text: &str) -> String {
     let (mut own, mut rest) = (String::new(), text);
     while let Some(begin) = rest.find(['"', '`']) {
         own.push_str(&rest[..begin]);
         let mark = &rest[begin..=begin];
-        rest = rest.rfind(mark).map_or("", |end| &rest[end + 1..]);
+        rest = rest.rfind(mark).filter(|end| *end > begin).map_or("", |end| &rest[end + 1..]);
     }
     own + rest
 }
