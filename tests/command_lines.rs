@@ -36,16 +36,20 @@ fn cargo() -> Command {
     cargo
 }
 
+/// Profile of the tests: another one would build all of the library once more.
+const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
+
 /// The folder of what the tests' profile builds.
 fn built() -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug")
+    let folder = if PROFILE == "dev" { "debug" } else { PROFILE };
+    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join(folder)
 }
 
 fn library() -> PathBuf {
     if let Some(named) = std::env::var_os("WELKIN_LIB") {
         return named.into();
     }
-    run(cargo().args(["rustc", "--quiet", "--locked", "--lib", "--crate-type", "cdylib"]));
+    run(cargo().args(["rustc", "--quiet", "--locked", "--profile", PROFILE, "--lib", "--crate-type", "cdylib"]));
     built().join("libwelkin.so")
 }
 
@@ -101,7 +105,17 @@ fn assert_conventions(program: &Path, wrong: &[(&[&str], &str)]) {
 
 #[test]
 fn examples_in_rust_keep_the_conventions() {
-    run(cargo().args(["build", "--quiet", "--locked", "--workspace", "--bins", "--example", "native"]));
+    run(cargo().args([
+        "build",
+        "--quiet",
+        "--locked",
+        "--profile",
+        PROFILE,
+        "--workspace",
+        "--bins",
+        "--example",
+        "native",
+    ]));
     let native = built().join("examples/native");
     assert_conventions(
         &built().join("noise"),
