@@ -51,13 +51,21 @@ fn streak_factor(at: vec2f, octaves: f32) -> f32 {
         return 1.0;
     }
     let mip = max(octaves + STREAK_OCTAVES, STREAK_LEAST_MIP);
+    if mip >= STREAK_FADES.y {
+        return 1.0;
+    }
     let size = vec2f(1.0 / STREAK_LONG, 1.0 / STREAK_WIDE);
-    let first = sea.foam.streaks[0];
-    let second = sea.foam.streaks[1];
-    let a = textureSampleLevel(sea_lace, sea_repeating, first.xy + to_tile(first.zw, at) * size, mip).r;
-    let b = textureSampleLevel(sea_lace, sea_repeating, second.xy + to_tile(second.zw, at) * size, mip).r;
+    var density = 0.0;
+    for (var i = 0u; i < 2u; i++) {
+        let weight = select(1.0 - sea.foam.second, sea.foam.second, i == 1u);
+        if weight > 0.0 {
+            let streaks = sea.foam.streaks[i];
+            let place = streaks.xy + to_tile(streaks.zw, at) * size;
+            density += weight * gathered_at(textureSampleLevel(sea_lace, sea_repeating, place, mip).r);
+        }
+    }
     let gathered = sea.foam.gathered * (1.0 - smoothstep(STREAK_FADES.x, STREAK_FADES.y, mip));
-    return mix(1.0, mix(gathered_at(a), gathered_at(b), sea.foam.second), gathered);
+    return mix(1.0, density, gathered);
 }
 
 // Rank of a place in the pattern: foam of a share covers the places of lower rank. It is the product of two ranks,
@@ -81,9 +89,12 @@ struct FoamCover {
 
 // Foam at a place at rest, where earlier waves left some.
 fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32) -> FoamCover {
+    let breaking = breaking_share(shown);
+    if breaking + left < FOAM_LEAST {
+        return FoamCover(breaking + left, 0.0);
+    }
     let footprint = footprint_at(at);
     let octaves = log2(max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION);
-    let breaking = breaking_share(shown);
     let share = min(breaking + left * streak_factor(at, octaves), 1.0);
     if share < FOAM_LEAST {
         return FoamCover(share, 0.0);

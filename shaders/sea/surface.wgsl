@@ -95,13 +95,14 @@ fn compressed_area(compression: f32, deviation: f32) -> f32 {
     return max((1.0 - compression) * upper_tail(x) - wide * density, 0.0);
 }
 
-// Compression of the surface by a wave at four ages, for its amplitude now, and sine and cosine of its phase.
-fn past_compression(size: f32, turn: vec2f, age_step: f32) -> vec4f {
-    let step = near_turn(age_step);
-    let a = vec2f(turn.x * step.y + turn.y * step.x, turn.y * step.y - turn.x * step.x);
-    let b = vec2f(a.x * step.y + a.y * step.x, a.y * step.y - a.x * step.x);
-    let c = vec2f(b.x * step.y + b.y * step.x, b.y * step.y - b.x * step.x);
-    return size * vec4f(a.y, b.y, c.y, c.y * step.y - c.x * step.x);
+// Compression of the surface by a wave at four ages, for its amplitude, and sine and cosine of its phase now and of the
+// phase of a step of age. The cosines of equal steps follow from the two before (Chebyshev).
+fn past_compression(size: f32, turn: vec2f, step: vec2f) -> vec4f {
+    let double = 2.0 * step.y;
+    let a = turn.y * step.y - turn.x * step.x;
+    let b = double * a - turn.y;
+    let c = double * b - a;
+    return size * vec4f(a, b, c, double * c - b);
 }
 
 // Sine and cosine of a phase in turns.
@@ -149,7 +150,7 @@ fn single_waves(at: vec2f, distance: f32, footprint: Footprint, height_share: f3
         out.squeeze -= vec3f(squeezed.x * wave.turns.x, squeezed.x * wave.turns.y, squeezed.y * wave.turns.y);
         if sea.foam_from < SEA_NO_FOAM {
             let size = height_share * SEA_TAU * share * seen * square * wave.shift;
-            before += past_compression(size, turn, wave.age_step);
+            before += past_compression(size, turn, unpack2x16snorm(wave.age_step));
             known += 0.5 * size * size;
         }
     }

@@ -102,8 +102,8 @@ struct SeaWave {
     length: f32,
     // Amplitude of the displacement over the wave vector, m^2.
     shift: f32,
-    // Phase of the time between two ages of foam, turns.
-    age_step: f32,
+    // Sine and cosine of the phase of the time between two ages of foam, 16 bits each with a sign.
+    age_step: u32,
 }
 
 @group(2) @binding(0) var<uniform> sea: SeaUniform;

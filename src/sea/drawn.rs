@@ -13,7 +13,7 @@ use super::{
     foam::AGE_STEP_S,
     surface::{SeaSurface, TileFields, to_tile},
     tiles::TILES,
-    turn::fraction,
+    turn::{fraction, sin_cos},
 };
 
 /// Mip levels of a tile: from [`SIDE`] texels down to one.
@@ -31,7 +31,7 @@ pub(super) struct WaveUniform {
     pub turns_per_m: f32,
     pub length: f32,
     pub shift: f32,
-    pub age_step: f32,
+    pub age_step: u32,
 }
 
 /// A tile (`SeaTile` of `shaders/sea/uniform.wgsl`).
@@ -229,6 +229,13 @@ fn filtered_covariances(texels: &[Vec4], side: usize) -> [f64; 3] {
     sums.map(|sum| sum / (side * side) as f64)
 }
 
+/// Returns sine and cosine of a phase in turns as `unpack2x16snorm` reads them.
+fn packed_turn(turns: f64) -> u32 {
+    let (sin, cos) = sin_cos(turns);
+    let [sin, cos] = [sin, cos].map(|v| u32::from((32_767.0 * v).round() as i16 as u16));
+    sin | (cos << 16)
+}
+
 /// Writes the single waves of a surface around an anchor on the map, and returns the sums over all that is drawn.
 pub(super) fn fill_waves(
     surface: &SeaSurface,
@@ -253,7 +260,7 @@ pub(super) fn fill_waves(
             length: (1.0 / turns.length()) as f32,
             // Water moves along the wave vector.
             shift: (wave.shift_m.dot(turns) / turns.length_squared()) as f32,
-            age_step: fraction(wave.frequency_hz * AGE_STEP_S) as f32,
+            age_step: packed_turn(fraction(wave.frequency_hz * AGE_STEP_S)),
         });
     }
     for tile in tiles {
