@@ -51,8 +51,7 @@ fn streak(number: f64, anchor_m: DVec2) -> [f32; 4] {
 impl FoamUniform {
     /// Returns the block around an anchor on the map, for a wind, m/s, and the direction that it comes from, degrees.
     pub fn new(law: &FoamLaw, anchor_m: DVec2, wind_m_s: f64, from_deg: f64) -> Self {
-        let [fine, coarse] =
-            [anchor_m / LACE_FINE_M, to_tile(LACE_TURN, anchor_m) / LACE_COARSE_M].map(|place| repeated(place));
+        let [fine, coarse] = [anchor_m / LACE_FINE_M, to_tile(LACE_TURN, anchor_m) / LACE_COARSE_M].map(repeated);
         // Streaks are the same in opposite directions; the angle runs from east to north.
         let steps = (270.0 - from_deg).rem_euclid(180.0) / STREAK_STEP_DEG;
         let [from, until] = STREAK_WINDS_M_S;

@@ -156,7 +156,7 @@ impl PlacedRegion {
     }
 
     /// Returns a position in metres east and north of the centre at a time; `None` on the planet's other side.
-    fn from_center(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
+    fn offset_from_center(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
         let moved = DVec2::from(self.region.velocity_m_s) * (time_s - self.region.at_s);
         let offset = self.to_enu * (position - self.center);
         (offset.z.abs() < OTHER_SIDE_M).then(|| offset.truncate() - moved)
@@ -164,7 +164,7 @@ impl PlacedRegion {
 
     /// Returns a position in metres to the right and ahead of the centre at a time; `None` on the planet's other side.
     pub fn offset_m(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
-        Some(self.headed(self.from_center(position, time_s)?, time_s))
+        Some(self.headed(self.offset_from_center(position, time_s)?, time_s))
     }
 
     /// Returns the part of a vector of the host's world to the right and ahead at a time.
@@ -175,7 +175,7 @@ impl PlacedRegion {
     /// Returns a position in metres to the right and ahead of the centre at a time; `None` farther away than all
     /// corners.
     fn within(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
-        let offset = self.from_center(position, time_s)?;
+        let offset = self.offset_from_center(position, time_s)?;
         let is_near = offset.length_squared() <= self.radius_m * self.radius_m;
         is_near.then(|| self.headed(offset, time_s))
     }

@@ -26,9 +26,9 @@ const INTERNAL: &[&str] = &[
 ];
 
 /// A message without what it quotes of an input, which may have any words and marks: all from a quotation mark to the
-/// last one of its kind is left out, or to the end where a quotation is cut.
+/// last one of its kind is left out, or to the end where a quotation is cut, and so is what was got.
 fn unquoted(text: &str) -> String {
-    let (mut own, mut rest) = (String::new(), text);
+    let (mut own, mut rest) = (String::new(), text.split(", got ").next().unwrap_or_default());
     while let Some(begin) = rest.find(['"', '`']) {
         own.push_str(&rest[..begin]);
         let mark = &rest[begin..=begin];
