@@ -32,8 +32,8 @@ const STREAK_FADES: vec2f = vec2f(3.5, 5.5);
 // between texels flatten them.
 const LACE_FADES: vec2f = vec2f(1.5, 4.0);
 
-// Share under foam of waves that break now: the surface is compressed beyond a threshold, by what is shown and what is
-// not.
+// Share under foam of waves that break now, where the compression is beyond the threshold. The compression is what the
+// pixel shows, and a normal distribution for what it does not.
 fn breaking_share(shown: SeaSlopes) -> f32 {
     let area = compressed_area(shown.compression, sqrt(sea.compression * shown.hidden));
     return min(area / max(1.0 - shown.compression, SEA_LEAST_AREA), 1.0);
@@ -105,7 +105,7 @@ fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32) -> FoamCover {
     if faded >= 1.0 {
         return FoamCover(share, mean * share);
     }
-    // Foam thins towards its edges; the power gives it the mean.
+    // Foam thins towards its edges, by a power that makes its mean thickness over the share `mean`.
     let thickness = clamp(1.0 - lace_rank(at, octaves) / share, 0.0, 1.0);
     return FoamCover(share, mix(pow(thickness, 1.0 / mean - 1.0), mean * share, faded));
 }

@@ -144,8 +144,9 @@ pub unsafe extern "C" fn wk_context_set_sea_regions(
 /// shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are the distances from one element
 /// to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for points. The first call for a
 /// time costs some milliseconds; the sums of the last two times are kept, and each place then costs some microseconds.
-/// No device is needed, and nothing is allocated after the first calls. Thread: concurrent. Errors:
-/// WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
+/// No device is needed, and nothing is allocated after the first calls.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
 /// wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sea_at(

@@ -260,7 +260,7 @@ pub(super) fn fill_waves(
             length: (1.0 / turns.length()) as f32,
             // Water moves along the wave vector.
             shift: (wave.shift_m.dot(turns) / turns.length_squared()) as f32,
-            age_step: packed_turn(fraction(wave.frequency_hz * AGE_STEP_S)),
+            age_step: packed_turn(wave.frequency_hz * AGE_STEP_S),
         });
     }
     for tile in tiles {

@@ -12,7 +12,7 @@ pub(super) const LACE_SIDE: usize = 256;
 pub(super) const LACE_MIPS: usize = 6;
 /// Stream of the pattern's random numbers, the same for all seas.
 const LACE_SEED: u64 = 0x6c61_6365;
-/// Cells along a side of the three lattices, with the weight of their distances.
+/// Cells along a side of each lattice of points, and the weight of the distance to its nearest point.
 const LATTICES: [(usize, f32); 3] = [(9, 1.0), (21, 0.6), (47, 0.35)];
 /// Cells along a side of the noises that bend the lattices, with the size of the bends as a share of the tile.
 const BENDS: [(usize, f32); 3] = [(6, 0.03), (20, 0.012), (50, 0.004)];

@@ -186,7 +186,7 @@ impl WaveLanes {
         Displacement { shift: DVec2::new(x, y), slopes: [xx, xy, xy, yy] }
     }
 
-    /// Returns the compression of the water around the particle whose phases are known at each of the last ages.
+    /// Returns the compression around a particle at each age of foam before now, from its phases now.
     pub fn past_compression(&self, included: &IncludedLanes, phases: &Phases) -> [f64; AGES] {
         let mut sums = [Vec4::ZERO; AGES];
         let groups = self.groups.iter().take(included.waves.div_ceil(LANES));
