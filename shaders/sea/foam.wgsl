@@ -93,19 +93,17 @@ fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32) -> FoamCover {
     if breaking + left < FOAM_LEAST {
         return FoamCover(breaking + left, 0.0);
     }
-    let footprint = footprint_at(at);
-    let octaves = log2(max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION);
-    let share = min(breaking + left * streak_factor(at, octaves), 1.0);
+    let share = min(breaking + left * streak_factor(at, shown.octaves), 1.0);
     if share < FOAM_LEAST {
         return FoamCover(share, 0.0);
     }
     let fresh = min(breaking / share, 1.0);
     let mean = mix(FOAM_LEFT_MEAN, FOAM_FRESH_MEAN, fresh);
-    let faded = smoothstep(LACE_FADES.x, LACE_FADES.y, octaves + LACE_FINE_OCTAVES);
+    let faded = smoothstep(LACE_FADES.x, LACE_FADES.y, shown.octaves + LACE_FINE_OCTAVES);
     if faded >= 1.0 {
         return FoamCover(share, mean * share);
     }
     // Foam thins towards its edges, by a power that makes its mean thickness over the share `mean`.
-    let thickness = clamp(1.0 - lace_rank(at, octaves) / share, 0.0, 1.0);
+    let thickness = clamp(1.0 - lace_rank(at, shown.octaves) / share, 0.0, 1.0);
     return FoamCover(share, mix(pow(thickness, 1.0 / mean - 1.0), mean * share, faded));
 }

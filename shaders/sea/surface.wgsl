@@ -236,6 +236,8 @@ struct SeaSlopes {
     left: vec3f,
     // Variance of the shown slopes that do not move the mesh.
     mapped: f32,
+    // Octaves of the pixel's width on the surface over a metre.
+    octaves: f32,
 }
 
 // Nodes of the table of shown slopes.
@@ -303,5 +305,5 @@ fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f, height_s
     // Waves that the pixel does not show are lower too; the ripples of the wind, which no vertex or pixel has, are not.
     let square = height_share * height_share;
     let drawn = clamp((sea.slopes.w - seen.x - seen.z) / max(left.x + left.z, 1e-9), 0.0, 1.0);
-    return SeaSlopes(slope, compression, square * hidden, left * mix(1.0, square, drawn), square * seen.w);
+    return SeaSlopes(slope, compression, square * hidden, left * mix(1.0, square, drawn), square * seen.w, octaves);
 }

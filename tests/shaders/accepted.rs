@@ -516,12 +516,7 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
     ("breaking_share", "sqrt(sea.compression * shown.hidden)", "both are variances or shares of them"),
     ("foam_cover", "1.0 / mean", "a mean between two constants above 0"),
     ("foam_cover", "breaking / share", "the share is at least FOAM_LEAST"),
-    ("foam_cover", "lace_rank(at, octaves) / share", "the share is at least FOAM_LEAST"),
-    (
-        "foam_cover",
-        "log2(max(footprint.across, footprint.along / SEA_MOST_LENGTHENED) / SEA_PIXEL_DEVIATION)",
-        "a pixel is wide at any distance, which is at least the camera's height",
-    ),
+    ("foam_cover", "lace_rank(at, shown.octaves) / share", "the share is at least FOAM_LEAST"),
     ("foam_cover", "pow(thickness, 1.0 / mean - 1.0)", "the thickness is at least 0, and the mean below 1"),
     (
         "footprint_at",
