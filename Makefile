@@ -115,12 +115,12 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 
 ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
-accept: setup lint docs ## the long sweeps in release, and the benchmarks with a short day, at most 90 minutes
+# What `make test` checks already, lint and documentation, is not checked twice. Benches come last, beside nothing else.
+accept: setup ## the long sweeps in release, under Wine too, and the benchmarks with a short day, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
-	WELKIN_ACCEPT=1 cargo test --locked --workspace --release --doc
-	RUN_QUICK=1 $(MAKE) --no-print-directory bench
-	$(MAKE) --no-print-directory windows-accept
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
+	$(MAKE) --no-print-directory windows-accept
+	RUN_QUICK=1 $(MAKE) --no-print-directory bench
 
 # Other drivers are fetched into target/drivers and stay there; pictures and logs too. Uses the tests' quick build.
 .PHONY: drivers drivers-all
