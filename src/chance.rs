@@ -17,7 +17,7 @@ impl RandomStream {
         Self(seed)
     }
 
-    /// Creates one of the streams of a seed: each number `what`, which stands for a use, gives another stream.
+    /// Creates one of the streams of a seed. Each use passes its own number `what` and so has its own stream.
     pub fn new(seed: u64, what: u64) -> Self {
         let mut one = Self(seed);
         let first = one.bits();
@@ -34,7 +34,7 @@ impl RandomStream {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Next number with a uniform distribution over (0, 1), both ends left out.
+    /// Next number with a uniform distribution over (0, 1]; rounding gives 1 about once in 2^53 numbers.
     pub fn even(&mut self) -> f64 {
         ((self.bits() >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
@@ -46,7 +46,8 @@ impl RandomStream {
     }
 }
 
-/// Quantile of the normal distribution for a probability in (0, 1) (Acklam 2003, relative error below 1.2e-9).
+/// Quantile of the normal distribution for a probability, which is clamped to \[1e-12, 1 - 1e-12\] (Acklam 2003,
+/// relative error below 1.2e-9).
 pub fn normal_quantile(p: f64) -> f64 {
     const A: [f64; 6] = [
         -3.969_683_028_665_376e1,

@@ -52,15 +52,16 @@ use crate::{
 /// Settings for a new context.
 #[derive(Clone, Debug)]
 pub struct ContextDesc {
-    /// Mapping of the host's world onto the planet.
+    /// Mapping of the host's world onto the planet. Default a flat world, z up, at latitude 50 and longitude 10
+    /// degrees.
     pub world: WorldFrame,
     /// Air, ground and sun. Default the Earth.
     pub planet: Planet,
-    /// Seed of everything random.
+    /// Seed of everything random. Default 0.
     pub seed: u64,
-    /// Exposure of frames that set none.
+    /// Exposure of frames that set none. Default automatic.
     pub exposure: Exposure,
-    /// Tone curve, from luminance to display values.
+    /// Tone curve, from luminance to display values. Default exponential.
     pub tone: ToneCurve,
     /// Universal time at simulation time 0. Default 2026-06-21 10:00 UTC.
     pub utc_at_zero: Utc,
@@ -114,7 +115,7 @@ pub(crate) struct Held {
     pub land: HeldLand,
 }
 
-/// State that was read from a saved one and is not yet in use.
+/// State of the effects that was read from a saved state and is not yet in use.
 pub(crate) struct LoadedHeld {
     flow: HeldFlow,
     soil: LoadedSoil,
@@ -185,7 +186,7 @@ impl Held {
     /// Takes the effects' entries out of a saved state and reads them.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] naming the entry that does not fit.
+    /// [`crate::Status::Parse`] or [`crate::Status::InvalidArgument`], naming the entry that does not fit.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedHeld> {
         // Each effect takes its own entries out, even if those of another are wrong.
         let flow = HeldFlow::read(world, state);
@@ -369,7 +370,8 @@ impl Effects {
         ]
     }
 
-    /// Lets each effect gather what exists of it around the camera, in the order of the outputs that they exchange.
+    /// Lets each effect find its visible parts around the camera, in the order of the outputs that the effects
+    /// exchange.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -9,7 +9,7 @@ use std::{borrow::Cow, fmt};
 pub enum Status {
     /// The call did what it says.
     Ok = 0,
-    /// More steps are due than one update may take; call again. Not an error.
+    /// Not a fault: more steps are due than one call may take, or a window shows nothing now. Call again.
     Pending = 1,
     /// A parameter is missing, not finite or outside its range; the message names it.
     InvalidArgument = -1,
@@ -29,7 +29,8 @@ pub enum Status {
     Poisoned = -8,
     /// The native queue or GL context already belongs to another device.
     AlreadyWrapped = -9,
-    /// A text (METAR report, planet file, plan) does not parse; the message gives line and column.
+    /// A text or file (METAR report, planet, plan, saved state) does not parse; the message gives the line and column,
+    /// or the field.
     Parse = -10,
     /// A file could not be read or written.
     Io = -11,
@@ -192,7 +193,7 @@ const MOST_SHOWN: usize = 120;
 /// Largest size of a sentence that several errors are joined into, bytes. Everything that a host's device or image
 /// lacks is named in one error.
 const MOST_JOINED: usize = 1500;
-/// Largest number of characters of a numeral; the shortest form of a number of usual size has no more.
+/// Largest number of characters of a numeral; [`short_numerals`] rewrites longer ones.
 const MOST_NUMERAL: usize = 24;
 
 /// Rewrites long numerals of a sentence with an exponent: written out, the smallest number has 326 characters and the
@@ -264,7 +265,8 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     format!("TOML parse error at line {line}, column {column}: {}", toml_message(e))
 }
 
-/// Returns the parser's message, with the accepted range where the parser's own has none.
+/// Returns the parser's message. For a number that is too large, the parser names no range; then the message is that
+/// range.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
     let says = |words: &str| e.message().contains(words);
     shown(if ["` as i128", "` as u128", "integer number overflowed"].into_iter().any(says) {

@@ -59,9 +59,10 @@
 //! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
 //!
 //! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`],
-//! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`], [`sea`].
-//! [`heights`] reads elevation files for [`terrain`]. The manual is `docs/README.md`. C and C++ hosts use the same
-//! types and functions through `include/welkin.h`, which [`capi`] implements as a thin layer.
+//! [`snow`], [`snowpack`], [`soil`], [`ground`], [`glass`], [`lightning`], [`bow`], [`wind`], [`flow`], [`sea`],
+//! [`land`]. [`heights`] reads elevation files for [`terrain`], which [`land`] draws. [`regions`] give parts of the
+//! world a weather of their own. The manual is `docs/README.md`. C and C++ hosts use the same types and functions
+//! through `include/welkin.h`, which [`capi`] implements as a thin layer.
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
 // Items that only the lab calls are public under its feature; tests and clippy check them with that feature.
 #![cfg_attr(not(feature = "lab"), allow(dead_code, unused_imports, unreachable_pub))]
