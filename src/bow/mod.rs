@@ -20,10 +20,10 @@
 //! value, and the columns under rain areas do the same with their own light. Clouds, air and fog in front of a bow
 //! therefore dim it like everything else there.
 //!
-//! * *Drops*: rain by its drop sizes ([`crate::falling::sizes`]); fog by droplets of 15 micrometres on the mean, whose
-//!   bow is white and wide. Snow, hail and dust make no bow.
+//! * *Drops*: rain by its drop sizes ([`crate::falling::sizes`]); fog by droplets with a mean diameter of 15
+//!   micrometres, whose bow is white and wide. Snow, hail and dust make no bow.
 //! * *Settings*: none.
-//! * *Cost*: one look-up a pixel, and nothing where no drops stand in direct light. The table is computed only for
+//! * *Cost*: one look-up per pixel, and nothing if no drops stand in direct light. The table is computed only for
 //!   pictures whose field of view reaches the bows.
 //! * *Error*: angle within 0.25 degrees, light within 15 % and width within 25 % of Mie's theory. Drops count as
 //!   spheres; in nature drops beyond 1 mm are flat and leave the top of a bow fainter. The light on the drops is the

@@ -15,7 +15,7 @@ use crate::numerics::smooth;
 pub const ENTRIES: usize = 160;
 /// Angle between neighbouring entries, rad: 0.4 degrees.
 pub const STEP_RAD: f64 = 0.4 * PI / 180.0;
-/// Difference that bows make to the phase function of drops, 1/sr a channel, over the angle from the antisolar point.
+/// Difference that bows make to the phase function of drops, 1/sr per channel, over the angle from the antisolar point.
 pub type Table = [[f64; 3]; ENTRIES];
 
 /// Number of angles in one step of a table before smoothing by the disc of the light.
@@ -39,9 +39,9 @@ pub(super) const CLASSES: usize = 6;
 /// Diameters that separate the classes of rain, mm.
 pub(super) const RAIN_EDGES_MM: [f64; CLASSES] = [0.1, 0.2, 0.4, 0.8, 1.6, 6.0];
 
-/// Returns the drops of a class. Class 0 is fog with a mean diameter of 15 micrometres by extinction and a gamma
-/// distribution with effective variance 0.1. The others are rain, spread evenly over the logarithm of the class's
-/// diameters.
+/// Returns the drops of a class. Class 0 is fog: a gamma distribution with a mean diameter of 15 micrometres by
+/// extinction and an effective variance of 0.1 (Hansen and Travis 1974). The others are rain, spread evenly over the
+/// logarithm of the class's diameters, of the largest class up to 3.2 mm.
 fn class(i: usize) -> Class {
     if i == 0 {
         let radii_um = [4.0, 5.8, 7.5, 9.4, 12.0];
@@ -138,7 +138,8 @@ pub(super) fn mixed(shares: &[f64; CLASSES]) -> Table {
     sum
 }
 
-/// Returns a table's value in `direction`, with the light at `to_light` (unit vectors), 1/sr a channel.
+/// Returns a table's value in `direction`, with the light at `to_light` (unit vectors), 1/sr per channel; 0 beyond the
+/// table.
 pub fn phase_in(table: &Table, direction: DVec3, to_light: DVec3) -> DVec3 {
     let angle = 2.0 * (0.5 * (direction + to_light).length()).min(1.0).asin();
     let place = angle / STEP_RAD;

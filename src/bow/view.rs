@@ -22,8 +22,8 @@ pub(crate) struct BowView {
     /// Shares of each class of drops in the extinction of the low air and of rain areas; `None` without drops.
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
-    /// Cache of the extinctions by class, by rate. It and `tables`, the cache of tables by shares, save sums that most
-    /// frames have in common.
+    /// Cache of each class's extinction, by rain and factor of fall speed ([`in_rain`]). `tables` caches tables by the
+    /// shares of the classes. Most frames need the same entries.
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// Tables of the last draw: for the low air and for rain areas.
@@ -42,7 +42,7 @@ impl Default for BowView {
     }
 }
 
-/// Number of rates that are cached: that of the low air and those of some areas.
+/// Number of cached rains: that of the low air and those of some areas.
 const RAINS: usize = 8;
 
 impl BowView {
