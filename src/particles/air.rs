@@ -1,4 +1,4 @@
-//! Air in which things fall near the camera, and the share of them that has left the cloud.
+//! Air in which drops and flakes fall near the camera, and the share of precipitation that has left the cloud.
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ impl MovingAir {
     /// Returns the air of a moment, with the wind that carries precipitation.
     ///
     /// # Errors
-    /// Fails for a time for which the weather is not known, as [`SceneMoment::carrying`] does.
+    /// The errors of [`SceneMoment::carrying`]: the weather is not known at this time.
     pub fn of(now: &SceneMoment<'_>) -> Result<Self> {
         let (wind, c) = (now.carrying()?, &now.scene.conditions);
         Ok(Self {
@@ -33,7 +33,7 @@ impl MovingAir {
     }
 }
 
-/// Number of steps between which the share of rain and snow that has left the cloud is rounded.
+/// Number of steps to which the share of precipitation that has left the cloud is rounded.
 const ONSET_STEPS: f64 = 32.0;
 
 /// Rounds the share of precipitation that has left the cloud up to the next step, so that drops or flakes are not

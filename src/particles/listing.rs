@@ -1,4 +1,4 @@
-//! List of the things (drops, flakes, splashes) that are in the picture: a few in a hundred of those around the camera.
+//! List of the things (drops, flakes, splashes) that are in the picture: a few percent of those around the camera.
 //!
 //! There are three compute passes. The first marks each thing that can be in the picture, with one bit. The second
 //! assigns the marked things their places in the list, in the order of their numbers (`shaders/falling/order.wgsl`,
@@ -17,7 +17,7 @@ const MARK_THINGS: u32 = 64 * 32;
 const FOUND_BYTES: u64 = 32;
 /// Offset of the number of workgroups in `Found`, bytes.
 const GROUPS_AT: u64 = 16;
-/// Smallest capacity of a list, if [`room`] would give less.
+/// Smallest capacity that [`room`] returns, unless the device's limit is lower.
 const LEAST_ROOM: u64 = 16_384;
 
 /// List of things, and the buffers in which it is computed.

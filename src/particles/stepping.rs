@@ -73,7 +73,7 @@ pub(crate) struct Stepped<'a> {
     pub counts: [u32; SHELLS],
     /// Side of each shell's cell, m.
     pub sides_m: [f64; SHELLS],
-    /// Smallest capacity of each shell, because more particles may come soon.
+    /// Smallest capacity of each shell, for particles that may come soon.
     pub least_room: u32,
     /// Position of the camera, m: east, north, up of a point fixed to the world.
     pub position_m: DVec3,
@@ -89,9 +89,9 @@ pub(crate) struct Stepped<'a> {
     pub wind: (WindView, Option<WindMap>),
 }
 
-/// Returns whether the particles within `reach_m` of the camera are stepped: if the wind varies in space there.
-/// Particles that were stepped in the last frame (`was`) stay so, unless the picture must not depend on earlier frames
-/// (`is_pure`): otherwise they would jump.
+/// Returns whether the particles within `reach_m` of the camera are stepped: if the wind varies in space there and the
+/// device has compute (tier 1). Particles that were stepped in the last frame (`was`) stay so, unless the picture must
+/// not depend on earlier frames (`is_pure`): otherwise they would jump.
 pub(crate) fn is_due(now: &SceneMoment<'_>, device: &Device, reach_m: f64, was: bool, is_pure: bool) -> bool {
     let varies = || now.wind_volume.is_some_and(|volume| volume.distance_m(now.eye) <= reach_m);
     device.caps().tier > 0 && ((was && !is_pure) || varies())
@@ -199,7 +199,7 @@ pub(crate) struct StepPass {
     block: UniformBlock,
     /// Capacities of the shells, and the buffer of the states.
     states: Option<(ShellCapacities, wgpu::Buffer)>,
-    /// State at the end of the last step; `None` before it.
+    /// State at the end of the last step; `None` before the first.
     left: Option<LastStep>,
     /// Bound texture of the wind; one texel if there is no wind that varies in space.
     wind: Option<WindView>,

@@ -194,8 +194,9 @@ impl StreakContrast {
 
     /// Returns two numbers for pixel `i` with the exposed luminance Y = `picture` (1 is white). The first is the
     /// pixel's relative change dY / (Y + 0.01) by drops or flakes of the exposed luminance L, the second their contrast
-    /// (L - Y) / (Y + 0.01). L follows from `radiance`(direction). The change is a sample from the distribution over
-    /// the pixels of a picture, so only the statistics of many pixels are meaningful.
+    /// (L - Y) / (Y + 0.01). L follows from `radiance`(direction); with lamps the contrast counts as 1000. The change
+    /// is a sample from the distribution over the pixels of a picture, so only the statistics of many pixels are
+    /// meaningful.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {
         let d = self.rays.view_ray(DVec2::new(ndc.x, ndc.y * self.y_sign)).direction;
         let at = d.cross(self.axis).length().min(1.0) * (ANGLES - 1) as f64;
