@@ -1,5 +1,5 @@
-//! The composition, the one full-screen draw of a call: what each effect contributes to it, and how the frame merges
-//! that.
+//! The composition: the one full-screen draw of a call. Each effect returns a contribution to it, and the frame merges
+//! these contributions.
 
 use super::{
     stages::Stages,
@@ -18,7 +18,7 @@ pub(crate) fn flag(b: bool) -> f64 {
     f64::from(u8::from(b))
 }
 
-/// Most constants that all effects together may add.
+/// Most constants that the effects and the frame together may add.
 const MOST: usize = 56;
 
 /// A list of constants, without allocation.

@@ -29,11 +29,12 @@ pub(crate) struct FrameContext<'a> {
     pub held: HeldEffects<'a>,
     /// Stages that the call asks for.
     pub asked: Stages,
-    /// Planet under the weather to which the present one is changing; `None` while it rests.
+    /// Planet under the weather to which the present weather is changing, some seconds ahead; `None` while the weather
+    /// does not change.
     pub planet_ahead: Option<Planet>,
     /// Work on tables in this frame, as a share of the work that builds all of them.
     pub table_share: f32,
-    /// Whether to draw with the tables of the planet that exist, even if they belong to another weather.
+    /// Whether to draw with the existing tables of the planet, even if these belong to another weather.
     pub keeps_tables: bool,
 }
 

@@ -8,7 +8,7 @@ use super::stages::Stages;
 /// The call that has the number's stage draws it; other calls of the frame draw nothing. The colours are display
 /// colours: linear in float and sRGB formats and where the host's colour is display-linear, otherwise encoded by the
 /// sRGB curve. In multisampled images the first sample of a pixel stands for all. Masked pixels keep the host's colour.
-/// If the frame contains nothing of the number, all is black.
+/// If nothing in the frame has this number, the picture is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
     /// The normal picture.
@@ -17,8 +17,9 @@ pub enum Diagnostic {
     /// Distance along the ray to what the host drew, on a logarithmic scale: black is 1 m or less; white is 100 km or
     /// more, and the sky. Stage MEDIUM.
     Distance = 1,
-    /// Optical depth, for luminance, of air, fog and precipitation between the eye and the surface that the pixel
-    /// shows: black is 0, a step is 1, white is 5 or more. The columns of rain areas are left out. Stage MEDIUM.
+    /// Optical depth, for luminance, of air, fog, precipitation and clouds in front of what the host drew; in the sky,
+    /// of air, fog and precipitation up to the edge of the atmosphere. Black is 0, a step is 1, white is 5 or more. The
+    /// columns of rain areas are left out. Stage MEDIUM.
     OpticalDepth = 2,
     /// Share of a surface under a water film, standing water or clear ice: black is 0, a step is 0.2, white is 1. Stage
     /// SURFACE.

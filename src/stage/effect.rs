@@ -15,7 +15,7 @@ use crate::{
     plan::{StepWork, parts::Part},
 };
 
-/// The finished picture, for an effect on the lens to draw over.
+/// The composed picture, for an effect on the lens to draw over.
 #[derive(Clone, Copy)]
 pub(crate) struct LensPicture<'a> {
     /// Copy of the picture, to read.
@@ -27,8 +27,10 @@ pub(crate) struct LensPicture<'a> {
 /// Callback that takes a part, whether a picture has it, and the work of each of its steps.
 pub(crate) type PutPart<'a> = dyn FnMut(&Part, bool, &[StepWork]) + 'a;
 
-/// One effect of a view. The frame calls these functions in the order given here. Each function reads its context and
-/// returns what the effect adds. An effect sees other effects only through the outputs that it names.
+/// One effect of a view. A call of the frame asks [`DrawnEffect::check`] first, and then calls the other functions in
+/// the order given here. It may ask [`DrawnEffect::has_opaque`] and [`DrawnEffect::has_lens`] at any time after
+/// [`DrawnEffect::gather`]. Each function reads its context and returns what the effect adds. An effect sees other
+/// effects only through the outputs that it names.
 pub(crate) trait DrawnEffect {
     /// Names the outputs that [`DrawnEffect::gather`] takes from other effects, and those that it gives to them.
     fn gathers(&self) -> Exchange {
@@ -58,7 +60,7 @@ pub(crate) trait DrawnEffect {
     /// target.
     fn hold(&mut self, _device: &Device, _color: &wgpu::Texture, _stages: Stages) {}
 
-    /// Updates the effect's tables and textures for this moment.
+    /// Updates the effect's tables and textures for this moment. Only the first call of a frame does that.
     fn prepare(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
         Ok(())
     }
@@ -107,12 +109,12 @@ pub(crate) trait DrawnEffect {
         None
     }
 
-    /// Whether the effect has anything to draw over the finished picture.
+    /// Whether the effect has anything to draw over the picture.
     fn has_lens(&self) -> bool {
         false
     }
 
-    /// Draws over the finished picture; `toned` says that this call has tone-mapped it.
+    /// Draws over the picture; `toned` says that this call has tone-mapped it.
     fn draw_lens(
         &mut self,
         _frame: &Frame<'_>,

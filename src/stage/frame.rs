@@ -25,7 +25,8 @@ pub enum ColorSpace {
 
 /// Access that Welkin has to a host's depth.
 ///
-/// The sea ([`crate::sea`]) is drawn only into depth that may be written. Without a sea both give the same picture.
+/// The sea ([`crate::sea`]) and the terrain ([`crate::land`]) are drawn only into depth that may be written. Without
+/// them both kinds of access give the same picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
     /// Read only. Welkin changes no bit of the depth and draws nothing opaque
@@ -97,7 +98,8 @@ pub struct Frame<'a> {
     /// with [`DepthAccess::ReadWrite`]. It has as many samples as `color`; if `color` is resolved to one sample, the
     /// depth may have any number, and Welkin reads the first.
     pub depth: Option<&'a wgpu::Texture>,
-    /// Mask in the red channel: 1 keeps the host's pixel (cab, HUD), 0 draws weather.
+    /// Mask in the red channel: 1 keeps the host's pixel (cab, HUD), 0 draws weather. One sample; needs
+    /// TEXTURE_BINDING.
     pub mask: Option<&'a wgpu::Texture>,
     /// Material of the surface that each pixel shows. Red is the number of a
     /// [`SurfaceClass`](crate::ground::SurfaceClass) over 255; where it is 0, the host's terrain or the context's

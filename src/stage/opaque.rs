@@ -1,4 +1,4 @@
-//! Opaque drawing by effects: into the host's own colour and depth, before the composition of what lies on surfaces.
+//! Opaque drawing by effects: into the host's own colour and depth, before the composition of stage SURFACE.
 
 use glam::DMat4;
 

@@ -3,7 +3,7 @@
 //!
 //! A cost is the wall time around a submission of one effect that the CPU waits for. It is right on every driver
 //! (timestamps of software drivers are not), at the price of a wait. It includes the CPU's part and the driver's own
-//! hand-over, some tens of microseconds an effect on a GPU. Frames that are not measured submit once and wait for
+//! hand-over, some tens of microseconds per effect on a GPU. Frames that are not measured submit once and wait for
 //! nothing.
 
 use std::{
@@ -32,15 +32,16 @@ pub enum CostItem {
     Medium = 3,
     /// Exposure, tone curve, encoding.
     Tone = 4,
-    /// Several stages in one draw, where the format of this target does not let them be drawn one by one.
+    /// Several stages in one draw, where the format of this target does not let them be drawn one by one; a diagnostic
+    /// picture.
     Composition = 5,
-    /// Textures for the host's own transparent shaders.
+    /// Textures for the host's own transparent shaders, and the cube map.
     Veil = 6,
     /// Import of the host's context and images, and their return to the host.
     HandOver = 7,
     /// Rain, hail, snow and lightning channels, if their stage is drawn alone.
     Particles = 8,
-    /// Water and snow on surfaces.
+    /// Water and snow on surfaces; the opaque sea and terrain.
     Surface = 9,
     /// Water on the windscreen: its simulation steps and the lens.
     Windscreen = 10,
@@ -114,9 +115,9 @@ impl Costs {
 /// Report on the cost and the content of a view's last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Report {
-    /// The host's frame number ([`Frame::frame_id`](crate::frame::Frame::frame_id)).
+    /// The host's frame number ([`Frame::frame_id`](crate::frame::Frame::frame_id)); `u64::MAX` before the first frame.
     pub frame_id: u64,
-    /// Full-screen draws recorded for this frame_id so far.
+    /// Render passes recorded for this frame_id so far, without those that build tables.
     pub passes: u32,
     /// Tables built, refined or faded for this frame_id so far. It is 0 when only the camera turned and the sky has its
     /// final quality.
@@ -132,7 +133,8 @@ pub struct Report {
     /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// Number of effects whose opaque parts were not drawn because the host's depth may only be read
-    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)): the sea, if one is seen.
+    /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)): the sea if it is in view, and the terrain if the
+    /// context draws it.
     pub opaque_left_out: u32,
     /// The plan's prediction for the frame.
     pub prediction: Prediction,
@@ -141,10 +143,10 @@ pub struct Report {
     pub reported_ms: Option<f64>,
 }
 
-/// Drops and stones drawn around the camera, and those left out for lack of room.
+/// Drops and hailstones drawn around the camera, and those left out for lack of room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainReport {
-    /// Number of drops and stones around the camera; those in the picture were drawn.
+    /// Number of drops and hailstones around the camera; those in the picture were drawn.
     pub drops: u32,
     /// Number of real drops for which each drop stood: 1 unless more fell than
     /// [`crate::rain::RainSettings::most_drops`]; 0 without drops.
@@ -153,7 +155,7 @@ pub struct RainReport {
     pub contrast_gain: f64,
     /// Splashes of the smallest drops left out for lack of room, per second and m^2 of level ground.
     pub splashes_left_out_per_m2_s: f64,
-    /// Smallest stones that did not bounce for lack of room, per second and m^2 of level ground.
+    /// Smallest hailstones that did not bounce for lack of room, per second and m^2 of level ground.
     pub stones_left_out_per_m2_s: f64,
 }
 
@@ -188,7 +190,7 @@ pub(crate) struct Recording<'a> {
     pub encoder: &'a mut wgpu::CommandEncoder,
     /// The view's blocks, which are uploaded before every submission.
     pub blocks: &'a Blocks,
-    /// Full-screen draws recorded by this call so far.
+    /// Render passes recorded by this call so far, without those that build tables.
     pub passes: u32,
     /// Tables built, refined or faded by this call.
     pub tables_rebuilt: u32,

@@ -45,7 +45,7 @@ pub(crate) fn can_copy(color: &wgpu::Texture) -> bool {
 /// Checks that a depth texture can be read and matches the colour target.
 ///
 /// # Errors
-/// As [`check_color`].
+/// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming size, samples or usage.
 pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     check_depth_format(texture.format())?;
     if (texture.width(), texture.height()) != (color.width(), color.height()) {
@@ -68,7 +68,7 @@ pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
 /// Checks that a depth texture can be attached beside the colour target and written.
 ///
 /// # Errors
-/// As [`check_color`].
+/// The errors of [`check_depth`].
 pub(crate) fn check_written(depth: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     let format = depth.format();
     if !format.has_depth_aspect() {
@@ -86,7 +86,7 @@ pub(crate) fn check_written(depth: &wgpu::Texture, color: &wgpu::Texture) -> Res
 /// Checks the optional mask (red channel: 0 draws weather, 1 leaves the host's pixel).
 ///
 /// # Errors
-/// As [`check_color`].
+/// The errors of [`check_depth`].
 pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
@@ -99,7 +99,7 @@ pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Resu
 /// Checks the optional surface classes of the pixels.
 ///
 /// # Errors
-/// As [`check_color`].
+/// The errors of [`check_depth`].
 pub(crate) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Bgra8Unorm) {
@@ -112,7 +112,7 @@ pub(crate) fn check_classes(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
 /// Checks the optional normals of the pixels.
 ///
 /// # Errors
-/// As [`check_color`].
+/// The errors of [`check_depth`].
 pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
     let format = texture.format();
@@ -125,7 +125,7 @@ pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
     check_of_one_sample("normals", texture, color)
 }
 
-/// Checks that a texture read together with `color` has the same size, one sample, and the usage.
+/// Checks that a texture that is read together with `color` has the same size, one sample, and the usage for it.
 fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
         return Err(Error::range(
@@ -170,7 +170,7 @@ fn check_usage(name: &str, texture: &wgpu::Texture, needed: wgpu::TextureUsages)
     Err(Error::range(&format!("{name}.usage"), &format!("one with {needed:?}"), format!("{:?}", texture.usage())))
 }
 
-/// Number of samples a pixel in colour and depth.
+/// Number of samples per pixel in colour and in depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Sampling {
     /// One sample in both.

@@ -7,7 +7,7 @@ use crate::{
     scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
 };
 
-/// One source of a lightning flash's light, as shaders read it.
+/// One source of a lightning flash's light (`FlashSource` of `shaders/common/frame.wgsl`, which has the units).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FlashUniform {
@@ -40,6 +40,7 @@ pub(crate) struct FrameUniform {
     pub encode: u32,
     pub medium_share: f32,
     pub direct_share: f32,
+    /// Extinction of the rain that the drawn drops replace, 1/m, and the distance up to which they replace it, m.
     pub drops: [f32; 2],
     /// Drawn shares of air, fog, clear sky, and falling drops and flakes.
     pub drawn: [f32; 4],
@@ -70,9 +71,10 @@ pub(crate) struct FrameUniform {
     pub clouds_over: f32,
     /// Mean light of the clouds that may be drawn as a volume, cd/m^2, and their cover; 0 without such clouds.
     pub mean_cloud: [f32; 4],
-    /// Values for flakes, as `drops` for drops.
+    /// Extinction of the falling snow that the drawn flakes replace, 1/m, and the distance up to which they replace it,
+    /// m.
     pub flakes: [f32; 2],
-    /// Factor, a power of two, that scales light so that white is about 1.
+    /// Factor for light in the coarse grid, a power of two with which white is about 1.
     pub even_scale: f32,
     pub pad: f32,
     /// Light that bows add to the phase function of drops, 1/sr per channel, tabulated over the scattering angle: for
@@ -106,13 +108,12 @@ pub(crate) enum FrameBlock<'a> {
     Fog { share: f32 },
     /// [`FrameUniform::behind`].
     Stars { behind: [f32; 2] },
-    /// Share drawn as a volume; mean light with cover, and height above the camera, where the plan gauges; cloud
-    /// shadows where they are cast.
+    /// Share drawn as a volume; if the plan gauges, mean light with cover, and height above the camera; cloud shadows
+    /// if the clouds cast them.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
-    /// `hidden`: extinction that the drawn drops replace, 1/m, and the distance up to which they do, m. `share`: drawn
-    /// share of the drops.
+    /// `hidden`: [`FrameUniform::drops`]. `share`: drawn share of the drops.
     Rain { hidden: [f32; 2], share: f32 },
-    /// Values for flakes, as `Rain` has them for drops.
+    /// `hidden`: [`FrameUniform::flakes`]. `share`: drawn share of the flakes.
     Snow { hidden: [f32; 2], share: f32 },
     /// Lightning flashes that shine now.
     Flashes(&'a FlashBlock),
