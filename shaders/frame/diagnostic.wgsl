@@ -7,7 +7,7 @@
 
 // Quantity to draw, numbered as in src/stage/diagnostic.rs.
 override DIAGNOSTIC: u32 = 1u;
-// Whether the frame has nothing of the quantity.
+// Whether nothing in the frame has the quantity.
 override ABSENT: bool = false;
 
 const DISTANCE: u32 = 1u;
@@ -23,7 +23,8 @@ fn log10(x: f32) -> f32 {
     return log2(x) * 0.30103;
 }
 
-// Optical depth of all air, clouds and fog between the eye and the surface, including the part that is drawn as drops.
+// Optical depth of air, clouds, fog and precipitation between the eye and the surface. It includes the precipitation
+// that is drawn as single drops and flakes.
 fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     drawn = vec4f(1.0, 1.0, 1.0, 0.0);
     let air = Veil(vec3f(0.0), exp(-sky_path(ray.direction, seen.range).depth));

@@ -6,10 +6,9 @@
 
 @group(0) @binding(0) var even_weather: texture_2d_array<f32>;
 
-// Limits of the error: MOST_ERROR (light + LEAST_LIGHT) for light, where LEAST_LIGHT is 1/200 of white; MOST_ERROR for
-// transmittance.
+// Light that is added to a texel's before the limit is taken from it: 1/200 of white.
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
-// Limit of the error, as a share of the light plus LEAST_LIGHT; and of the transmittance.
+// Limit of the interpolation's error: a share of light + LEAST_LIGHT; for the transmittance, absolute.
 const MOST_ERROR: f32 = 1e-3;
 
 // Findings about four texels in a row.
@@ -29,7 +28,7 @@ fn texel(at: vec2i) -> array<vec4f, 2> {
     return array(textureLoad(even_weather, p, 0, 0), textureLoad(even_weather, p, 1, 0));
 }
 
-// Reads four texels in a row, from the one before `at`.
+// Reads four texels in a row in the direction `along`, from the one before `at`.
 fn row(at: vec2i, along: vec2i) -> Row {
     let a = texel(at - along);
     let b = texel(at);

@@ -6,7 +6,7 @@
 fn froxels(in: FullscreenVarying) -> Froxel {
     let at = froxel_place(in.position.xy);
     var veil = froxel_veil(at);
-    // In order from far to near, in which the pass before the picture also blends them.
+    // From far to near, as the pass that draws the layer in front of the picture blends them too.
     for (var k = 0u; k < column_count(); k++) {
         if shaft.rects[k].z <= shaft.rects[k].x {
             // The other columns are not in the picture.

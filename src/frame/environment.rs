@@ -16,14 +16,14 @@ pub struct Environment {
     /// Factor from texels to cd/m^2; 0 before the first frame.
     pub cd_m2_per_unit: f64,
     /// Factor from texels to the last frame's colour of a scene-linear host; for other hosts, to display values before
-    /// the tone curve.
+    /// the tone curve. 0 before the first frame.
     pub light_scale: f64,
 }
 
 impl View {
     /// Returns a cube map of the surroundings of the camera, for reflections in the host's own objects. From this
     /// function's first call on, the first call of every frame with [`Stages::BACKGROUND`] or [`Stages::MEDIUM`] draws
-    /// it.
+    /// one of its faces. It draws all six after a jump of light or weather, and with CUT or NO_HISTORY.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

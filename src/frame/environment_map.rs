@@ -18,8 +18,9 @@ use crate::{
     stage::{ColorSpace, Constants, DrawContext, Recording, Sampling},
 };
 
-/// Edge of a face in texels, and number of levels down to one texel.
+/// Edge of a face, texels.
 const SIZE: u32 = 64;
+/// Number of levels, down to one texel.
 const LEVELS: u32 = 7;
 /// Number of sample directions of the filter for a texel of each level; narrow lobes need few.
 const SAMPLES: [f32; LEVELS as usize] = [0.0, 16.0, 32.0, 64.0, 64.0, 64.0, 64.0];
@@ -76,15 +77,17 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
 /// Light and weather at the camera, compared from frame to frame to find jumps.
 #[derive(Clone, Copy, PartialEq)]
 struct EnvironmentInputs {
-    /// Logarithms of quantities that change by factors; altitude in km; cover of a closed layer.
+    /// Logarithms of quantities that change by factors (illuminances, luminance, visibility); altitude, km; cover of
+    /// the deck.
     sizes: [f64; 6],
     /// Unit vector towards the brighter one of sun and moon.
     to_lamp: DVec3,
     world_to_enu: DMat3,
 }
 
-/// Smallest changes from one frame to the next that count as a jump: of one of the `sizes`, and of a direction (rad).
+/// Change of one of the `sizes` from one frame to the next above which it counts as a jump.
 const LEAP: f64 = 0.05;
+/// Change of a direction from one frame to the next above which it counts as a jump, rad.
 const LEAP_RAD: f64 = 0.02;
 /// Ratios of adaptation luminance to the map's scale for which half floats are precise enough.
 const SCALES: std::ops::Range<f64> = 0.1..10.0;

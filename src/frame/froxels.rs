@@ -20,12 +20,13 @@ const TILES: (u32, u32) = (8, 4);
 /// Textures for a host's transparent shaders; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct FrameTextures {
-    /// Light that air and fog add, RGB, in units of [`light_scale`](Self::light_scale). If the host's colour is
-    /// tone-mapped, this light is tone-mapped and linear.
+    /// Light that air and fog add, RGB, linear and exposed; tone-mapped too if the host's colour is. Times
+    /// [`light_scale`](Self::light_scale) it is in units of the host's colour.
     pub light: wgpu::Texture,
     /// Transmittance of air and fog for the light behind them, RGB.
     pub through: wgpu::Texture,
-    /// Factor from `light` to units of the host's colour.
+    /// Factor from `light` to units of the host's colour in the last frame; 1 if that colour is tone-mapped, 0 before
+    /// the first frame.
     pub light_scale: f32,
 }
 

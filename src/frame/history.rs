@@ -8,7 +8,7 @@ use crate::{
     world::KeptScene,
 };
 
-/// Data of the last frame's calls.
+/// Data of the last frame's calls so far.
 pub(super) struct FrameHistory {
     /// Frame for which the plan was made.
     pub planned_for: Option<u64>,

@@ -1,5 +1,5 @@
-//! Weather's light in the host's own units: values for the host's lamps and ambient light, so that its scene is lit
-//! like Welkin's sky.
+//! Light of the weather in the host's own units: values for the host's directional and ambient light, so that its scene
+//! is lit like Welkin's sky.
 //!
 //! A surface of albedo a in sun and sky reflects the luminance L = a / pi (E_sun max(n.l, 0) + E_sky) (Lambert 1760). A
 //! scene-linear host computes this in its own unit. A display host has no luminance: its values are T(e L), where T is
@@ -29,7 +29,7 @@ pub struct FrameLight {
     pub direction: DVec3,
     /// Direct light of the sun or moon on a surface that faces it, after air, clouds and fog.
     pub direct: [f64; 3],
-    /// Light of sky, clouds and fog on level ground.
+    /// Light of sky, clouds and fog, and of the fainter one of sun and moon, on level ground.
     pub ambient: [f64; 3],
     /// Light from the ground on a surface that faces down, for hosts with one ambient light from above and one from
     /// below.

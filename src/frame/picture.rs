@@ -31,7 +31,7 @@ impl View {
             + effects
     }
 
-    /// Creates the colour copy anew if it does not fit the host's colour; returns whether it did.
+    /// Creates the colour copy anew if it does not fit the host's colour. Returns whether it created one.
     pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
         let fits = self.cache.copy.as_ref().is_some_and(|c| match &reading {

@@ -1,4 +1,4 @@
-//! Budget and plan of a view: the parts that its pictures may leave out, and those that they have left out.
+//! Budget and plan of a view: the parts that its pictures may leave out, and the parts that they do leave out.
 
 use glam::DVec3;
 
@@ -39,10 +39,11 @@ pub(super) fn situation(frame: &Frame<'_>, scene: &Scene) -> Situation {
 
 impl View {
     /// Sets the limits for the view's pictures: their error and their time. After a few frames the view leaves out the
-    /// parts that its pictures do not need. After an error the budget is unchanged. Default: everything is drawn.
+    /// parts that its pictures do not need. Default: everything is drawn.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`], which names the field and its range.
+    /// [`Status::InvalidArgument`], which names the field and its range; the budget is then unchanged.
+    /// [`Status::DeviceLost`], or a GPU fault.
     pub fn set_budget(&mut self, budget: Budget) -> Result<()> {
         let device = self.device.clone();
         let _entered = device.enter()?;
@@ -76,11 +77,12 @@ impl View {
     }
 
     /// Pins a plan that [`View::save_plan`] wrote ([`plan::PartWish::rung`]). The rest of the budget stays, and limits
-    /// that the plan breaks are reported. After an error the budget is unchanged.
+    /// that the plan breaks are reported.
     ///
     /// # Errors
     /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;
-    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context.
+    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After both the
+    /// budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();

@@ -1,5 +1,5 @@
-//! Rehearsal of a view: it draws weathers to come into images of its own, so that their pipelines are compiled and
-//! their first tables made before they are needed.
+//! Rehearsal of a view: the view draws the weathers to come into images of its own. Their pipelines are then compiled,
+//! and their first tables built, before they are needed.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: in a scene lit without units white
-//! is 1. With 1 cd/m^2 per unit that white is black in daylight, and only this warning says why.
+//! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: in a scene that is lit without
+//! units, white is 1. With 1 cd/m^2 per unit that white is black in daylight, and only this warning says why.
 //!
 //! In formats whose values end at 1 the largest value is known. From float formats a few rows of the host's picture are
 //! read back without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged
@@ -20,11 +20,11 @@ const ROWS: u32 = 8;
 /// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// Ratio of two luminances from which on the unit is taken for wrong: that of white in the weather's light, divided by
-/// that of the picture's brightest pixels. In a room with its lamps off the ratio is smaller.
+/// Ratio of the luminance of white in the weather's light to that of the picture's brightest pixels above which the
+/// unit counts as wrong. A room with its lamps off has a smaller ratio.
 const DARKER: f64 = 2000.0;
-/// Ratio from which on the unit is taken for wrong by day: the luminance of the picture's brightest pixels, divided by
-/// that of white in the weather's light. It is day if that white has at least `DAY_CD_M2`.
+/// Ratio of the luminance of the picture's brightest pixels to that of white in the weather's light above which the
+/// unit counts as wrong by day. It is day if that white has more than `DAY_CD_M2`.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -52,7 +52,7 @@ struct WatchedPicture {
 /// Check of one view's luminance unit.
 #[derive(Default)]
 pub(super) struct LuminanceUnitCheck {
-    /// Number of frames so far.
+    /// Number of frames of a scene-linear host so far.
     frames: u64,
     has_warned: bool,
     buffer: Option<wgpu::Buffer>,
@@ -171,7 +171,8 @@ impl LuminanceUnitCheck {
 }
 
 /// Returns the luminance of the brightest pixels, cd/m^2; `None` if all pixels are black. If the sky is in the picture,
-/// returns the 20th percentile of the pixels that are not black, because these are not sky.
+/// returns the 20th percentile of the pixels that are not black, because pixels as dark as that are not sky. The green
+/// channel stands for the luminance.
 fn brightest(bytes: &[u8], looked: &WatchedPicture) -> Option<f64> {
     let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
     let float =

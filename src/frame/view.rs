@@ -85,8 +85,8 @@ impl View {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] and [`crate::Status::Unsupported`], which name the field;
-    /// [`crate::Status::WrongOrder`] if a stage comes twice or late; [`crate::Status::DeviceLost`]. After an error this
-    /// call has drawn nothing.
+    /// [`crate::Status::WrongOrder`] if a stage comes twice or late; [`crate::Status::DeviceLost`] or a GPU fault.
+    /// After a GPU fault the picture may be drawn in part; after any other error this call has drawn nothing.
     pub fn record(&mut self, context: &Context, frame: &Frame<'_>, stages: Stages) -> Result<()> {
         match self.rehearses() {
             true => self.record_rehearsed(frame, |view, own| view.record_frame(context, own, stages)),
@@ -196,8 +196,9 @@ impl View {
     /// Records as [`View::record`] does, into a Rust host's own encoder, which the host submits.
     ///
     /// # Errors
-    /// The errors of [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE`: timing needs the submission,
-    /// which the host makes here.
+    /// The errors of [`View::record`]; [`crate::Status::Unsupported`] with `MEASURE` (timing needs the submission,
+    /// which the host makes here), and for images that Welkin would have to copy between submissions: a colour without
+    /// COPY_SRC, or a written depth that is a renderbuffer.
     pub fn record_into(
         &mut self,
         context: &Context,

@@ -24,8 +24,8 @@ use crate::{
     surroundings::layout as around_layout,
 };
 
-/// Most cached pipelines of a device: those of some stages and weathers. Views with the same formats share them. On a
-/// software driver one pipeline may take more than 10 MB.
+/// Most cached pipelines of a device. Views with the same formats share them. On a software driver one pipeline may
+/// take more than 10 MB.
 const MOST_PIPELINES: usize = 96;
 
 /// Most cached pipelines of the coarse grid and of the pixels interpolated from it: two or three for each weather.
@@ -44,11 +44,11 @@ struct KindsPipeline {
     with_even: bool,
 }
 
-/// Composition of a device, for all its views, on any thread.
+/// Composition of a device, for all its views; any thread may lock it.
 pub(in crate::frame) struct SharedComposite(Mutex<Composite>);
 
 impl SharedComposite {
-    /// Creates what every view needs.
+    /// Creates the layouts and placeholders that every view needs.
     ///
     /// # Errors
     /// A GPU fault.

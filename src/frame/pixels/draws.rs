@@ -64,7 +64,8 @@ impl From<Error> for PipelineNotReady {
 
 impl Draws {
     /// Returns the draws of a variant. Unless `at_once`, each call compiles one large pipeline, and until all are
-    /// compiled the result is a single draw of all pixels ([`PipelineNotReady`]). `splits` is that of [`kinds::draws`].
+    /// compiled the result is a single draw of all pixels ([`PipelineNotReady`]). `splits` is passed on to
+    /// [`kinds::draws`].
     ///
     /// # Errors
     /// The single draw; a missing shader file.

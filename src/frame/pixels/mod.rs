@@ -3,13 +3,14 @@
 //!
 //! A GPU skips, by a branch, the shader steps that a pixel does not need. A software driver executes both sides of
 //! every branch, and so pays for each step of the shader at every pixel. The division by kinds of pixels is therefore
-//! for software drivers; the coarse grid serves both.
+//! for software drivers; the coarse grid serves both. There are three divisions:
 //!
-//! | division | when it is used | where |
-//! |---|---|---|
-//! | one draw of all pixels | targets whose samples have depths of their own; a march through the air in its own pass; while the pipelines of the other divisions are not compiled | [`composite`] |
-//! | draws by what pixels show: sky, ground below the sky, the host's objects | on software drivers ([`Caps::software`](crate::gpu::Caps)) | [`kinds`] |
-//! | the coarse grid: sky, air and fog at every fourth pixel, interpolated in between | on every device, for weather that has no detail from pixel to pixel, in pictures of at least 64 pixels a side | [`even`] |
+//! - *One draw of all pixels* ([`composite`]): on multisampled targets, in weather in which every pixel marches a ray,
+//!   and while the pipelines of the other divisions are not compiled.
+//! - *Draws by what pixels show* ([`kinds`]): sky, ground below the sky, the host's objects. On software drivers
+//!   ([`Caps::software`](crate::gpu::Caps)).
+//! - *The coarse grid* ([`even`]): sky, air and fog at every fourth pixel, interpolated in between. On every device,
+//!   for weather that has no detail from pixel to pixel, in pictures of at least 64 pixels a side.
 //!
 //! Five caches keep what the draws need. Compiling a pipeline takes tens of milliseconds, and searching all of a
 //! device's pipelines for one takes longer than recording a draw.
