@@ -12,8 +12,8 @@ pub(super) struct BlitEnd {
     pub(super) hosts: bool,
 }
 
-/// Copies `mask` of the whole image from `source` to `destination`, texel by texel. Resolves or replicates samples
-/// where the sample counts differ. Copies encoded values unchanged.
+/// Copies the buffers in `mask` from `source` to `destination`, the whole image texel by texel. Resolves or replicates
+/// samples where the sample counts differ. Copies encoded values unchanged.
 ///
 /// # Errors
 /// The OpenGL error, by name, if OpenGL refuses the copy.

@@ -183,8 +183,8 @@ impl TargetBuilder<'_> {
         let es = self.ask.info.is_es();
         match multisample {
             _ if samples == 1 => Ok(false),
-            // wgpu's shaders do not compile there: its translator takes gl_SampleID for unsigned, and only GLSL 4.00
-            // converts it implicitly. OpenGL ES cannot copy to multisampled images either.
+            // On OpenGL ES wgpu's shaders for samples do not compile: its translator takes gl_SampleID for unsigned,
+            // and only GLSL 4.00 converts it implicitly. OpenGL ES cannot copy to multisampled images either.
             _ if es => {
                 let rest = format!("must have 1 sample on OpenGL ES, got {samples}: resolve it before this call");
                 Err(Error::about(Status::Unsupported, "target.color", rest))

@@ -24,8 +24,8 @@ const COUNTING: [(u32, &str); 4] = [
 pub(super) struct Counting {
     /// Query targets that this context has.
     targets: Vec<(u32, &'static str)>,
-    /// Ended query for the trial; 0 if there is no conditional rendering, or if trials are not reliable with this
-    /// driver.
+    /// Ended query for the trial. 0 on OpenGL ES, which has no conditional rendering; if a query was active when the
+    /// device was created; or if trials are not reliable with this driver.
     trial: u32,
 }
 

@@ -31,7 +31,7 @@ pub(super) struct Backend {
     pub(super) copy_framebuffer: u32,
 }
 
-/// Context that this device uses of the host's OpenGL.
+/// Context in which the device uses the host's OpenGL.
 pub(super) enum Sharing {
     /// A second context, and the functions of the host's own.
     Shared { switch: Switch, host: Box<Api>, handover: Handover, windows: Windows },
@@ -125,7 +125,8 @@ impl GlHost {
         outcome
     }
 
-    /// Returns, once, the error that occurred when the host was last left, where none could be returned.
+    /// Reports an error that occurred when the host was last left, where it could not be returned. Each error is
+    /// reported once.
     ///
     /// # Errors
     /// That error.
@@ -158,8 +159,8 @@ impl GlHost {
 }
 
 impl GlHost {
-    /// Returns a host's depth texture or renderbuffer alone, for reading, as [`GlHost::target`] would give it. It must
-    /// have one sample.
+    /// Returns a host's depth texture or renderbuffer alone, for reading, as [`GlHost::target`] would give it. The
+    /// image must have one sample.
     ///
     /// # Errors
     /// The errors of [`GlHost::target`].

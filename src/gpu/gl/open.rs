@@ -49,7 +49,7 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 
 /// Creates a device on the OpenGL context that is current on this thread, or on one that shares objects with it.
 ///
-/// The host's context is current before and after. Its state is restored in either mode.
+/// The host's context must be current. On return it is current again, with its state restored, in either mode.
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] for callbacks that are missing or return NULL; [`Status::WrongOrder`] if no context or

@@ -3,7 +3,7 @@
 
 use super::super::{api::Api, check::GlInfo, names::*};
 
-/// Largest number of texture units, samplers and buffer slots that wgpu's backend uses, counted from 0.
+/// Largest number of texture units, samplers and buffer slots that wgpu's backend uses; it uses the first ones.
 const SLOTS: u32 = 16;
 /// Largest number of storage images that it binds.
 const IMAGES: u32 = 8;

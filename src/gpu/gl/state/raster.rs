@@ -35,10 +35,11 @@ struct Stencil {
     ops: [u32; 3],
 }
 
-/// Queries of a colour buffer's four factors; below, of its two equations.
+/// Queries of a colour buffer's four blend factors.
 const FUNC_NAMES: [u32; 4] = [BLEND_SRC_RGB, BLEND_DST_RGB, BLEND_SRC_ALPHA, BLEND_DST_ALPHA];
+/// Queries of a colour buffer's two blend equations.
 const EQUATION_NAMES: [u32; 2] = [BLEND_EQUATION_RGB, BLEND_EQUATION_ALPHA];
-/// Queries of the front face's stencil state, in the order of the fields; below, of the back face's.
+/// Queries of the front face's stencil state, in the order of the fields of [`Stencil`].
 const FRONT_NAMES: [u32; 7] = [
     STENCIL_FUNC,
     STENCIL_REF,
@@ -48,6 +49,7 @@ const FRONT_NAMES: [u32; 7] = [
     STENCIL_PASS_DEPTH_FAIL,
     STENCIL_PASS_DEPTH_PASS,
 ];
+/// Queries of the back face's stencil state, in the same order.
 const BACK_NAMES: [u32; 7] = [
     STENCIL_BACK_FUNC,
     STENCIL_BACK_REF,
