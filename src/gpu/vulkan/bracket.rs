@@ -1,5 +1,6 @@
-//! Barriers around a submission, recorded once: they depend only on the images and layouts, which repeat from frame to
-//! frame. They go into the same `vkQueueSubmit` as wgpu's commands, before and after these.
+//! Brackets: command buffers with barriers before and after a submission. They are recorded once, because they depend
+//! only on the images and layouts, which repeat from frame to frame. They go into the same `vkQueueSubmit` as wgpu's
+//! commands.
 
 use ash::vk;
 
@@ -50,7 +51,7 @@ impl Brackets {
         Ok(self.recorded.last().map_or([vk::CommandBuffer::null(); 2], |b| b.buffers))
     }
 
-    /// Records the two buffers of a hand-over; reuses the oldest buffers if there are too many.
+    /// Allocates and records the two command buffers of a hand-over.
     ///
     /// # Safety
     /// The requirements of [`Self::of`].
@@ -60,8 +61,7 @@ impl Brackets {
         family: u32,
         lent: &[Lent],
     ) -> std::result::Result<[vk::CommandBuffer; 2], vk::Result> {
-        // SAFETY: the caller vouches for device and family; the buffers come from this pool, and reused ones are no
-        // longer pending once the device is idle.
+        // SAFETY: the caller vouches for device and family; the buffers are new and come from this pool.
         unsafe {
             let pool = match self.pool {
                 Some(pool) => pool,
@@ -88,7 +88,7 @@ impl Brackets {
         }
     }
 
-    /// Whether a new hand-over must first free brackets, which needs an idle queue.
+    /// Whether brackets must be freed before another one is recorded; freeing needs an idle queue.
     pub(super) fn is_full(&self) -> bool {
         self.recorded.len() >= MAX_BRACKETS
     }

@@ -60,8 +60,8 @@ pub(super) struct LoadedInstance {
     get_features2: Option<vk::PFN_vkGetPhysicalDeviceFeatures2>,
 }
 
-/// Loads the instance's functions. A Vulkan 1.0 function that the host's loader lacks is an error (calling it would
-/// abort the process).
+/// Loads the instance's functions. A Vulkan 1.0 function that the host's loader does not find is an error, because a
+/// call of it would abort the process.
 ///
 /// # Safety
 /// `handles` and `desc.instance` must be the host's, as [`VulkanHostDesc`] demands.
@@ -75,7 +75,6 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
     let mut missing = Vec::new();
     let v1_0 = ash::InstanceFnV1_0::load(|name| {
         let found = address(name);
-        // Welkin never creates or destroys the host's objects, and does not use sparse images.
         if found.is_null() {
             missing.push(name.to_string_lossy().into_owned());
         }
@@ -115,8 +114,8 @@ pub(super) unsafe fn load_instance(desc: &VulkanHostDesc<'_>, handles: &Handles)
     Ok(LoadedInstance { instance, entry, plain, get_features2 })
 }
 
-/// Checks that the physical device belongs to the instance, and returns the version in force: the lower of the two
-/// versions.
+/// Checks that the physical device belongs to the instance. Returns the version in force: the lower one of the
+/// instance's and the physical device's.
 ///
 /// # Safety
 /// The requirements of [`load_instance`].

@@ -318,9 +318,9 @@ impl EnabledFeatures {
     }
 }
 
-/// Device extensions that wgpu may see on a host's device, each with the core version that includes it. All others stay
-/// hidden: for them wgpu would enable code that a host's device need not be prepared for (ray tracing, mesh shaders,
-/// external memory).
+/// Device extensions that wgpu may see on a host's device, each with the core version that includes it (`u32::MAX` if
+/// none does, 0 if wgpu always sees the extension). All others stay hidden: for them wgpu would enable code that a
+/// host's device need not be prepared for (ray tracing, mesh shaders, external memory).
 const DEVICE_EXTENSIONS: &[(&CStr, u32)] = &[
     (ash::khr::swapchain::NAME, u32::MAX),
     (ash::khr::swapchain_mutable_format::NAME, u32::MAX),

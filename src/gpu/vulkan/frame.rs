@@ -39,8 +39,9 @@ impl VulkanHost {
     ///
     /// # Errors
     /// [`Status::InvalidArgument`], which names a semaphore that is null or of a kind that the host did not enable;
-    /// nothing is then submitted. [`Status::Internal`] or [`Status::DeviceLost`] for a GPU fault in the commands; if
-    /// they were refused for it, the semaphores are neither waited for nor signalled.
+    /// nothing is then submitted. [`Status::OutOfMemory`], if there is no memory for the barriers. [`Status::Internal`]
+    /// or [`Status::DeviceLost`] for a GPU fault in the commands; if they were refused for it, the semaphores are
+    /// neither waited for nor signalled.
     ///
     /// # Safety
     /// The images' descriptions must be true, and the semaphores live and of the kind that `value` says. The queue must

@@ -28,7 +28,7 @@ pub enum ImageRole {
 /// 2-D image of the host, handed over for one submission. The host remains its owner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostImage {
-    /// Image. It belongs to the queue's family (or is shared concurrently) and one of its mip levels is used.
+    /// Image. It belongs to the queue's family (or is shared concurrently); its mip level 0 is used.
     pub image: vk::Image,
     /// Format that the image was created with.
     pub format: vk::Format,
@@ -40,7 +40,7 @@ pub struct HostImage {
     pub samples: u32,
     /// Usage that the image was created with.
     pub usage: vk::ImageUsageFlags,
-    /// Number of array layers; 1 for a plain image.
+    /// Number of array layers, \[1, 2048\]; 1 for a plain image.
     pub array_layers: u32,
     /// Index of the layer that is handed over, from 0.
     pub layer: u32,

@@ -11,7 +11,8 @@ use super::{layouts, names};
 use crate::error::{Error, Result, Status};
 
 impl VulkanHost {
-    /// Returns the texture of a host's image. The same image gives the same texture every time.
+    /// Returns the texture of a host's image. The same image in the same role gives the same texture, as long as it is
+    /// among the 64 that were used last.
     ///
     /// `name` is the parameter's name in messages. The texture may be drawn to or read only between this call and the
     /// [`VulkanHost::submit`] of the same image. The host must call [`VulkanHost::forget_image`] before or after it

@@ -14,8 +14,8 @@
 //! what the host submits afterwards waits for Welkin's work. Work on other queues is ordered by semaphores.
 //!
 //! # What the host must have enabled
-//! Nothing beyond Vulkan 1.1 and a queue for graphics and compute, except `VK_KHR_swapchain` for images in
-//! `PRESENT_SRC_KHR`, and `sampleRateShading` for multisampled colour. Timeline semaphores, robust access, 16-bit
+//! The host needs nothing beyond Vulkan 1.1 and a queue for graphics and compute, except `VK_KHR_swapchain` for images
+//! in `PRESENT_SRC_KHR`, and `sampleRateShading` for multisampled colour. Timeline semaphores, robust access, 16-bit
 //! storage and similar features are used only where the host says that it enabled them ([`EnabledFeatures`]): wgpu sees
 //! only what is enabled. On Vulkan 1.0 the device needs `VK_KHR_maintenance1` and
 //! `VK_KHR_storage_buffer_storage_class`.
