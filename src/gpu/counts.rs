@@ -28,7 +28,7 @@ pub(crate) enum DeviceWork {
     CloudTableTime,
 }
 
-/// Totals since a device was created. Any thread.
+/// Totals since a device was created. Any thread may add and read them.
 #[derive(Default)]
 pub(crate) struct WorkTotals([AtomicU64; WorkTotals::NAMES.len()]);
 

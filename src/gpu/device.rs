@@ -20,7 +20,8 @@ pub struct Caps {
     pub adapter_name: String,
     /// Name and version that the driver reports.
     pub driver: String,
-    /// Feature tier: 0 without compute (GL 3.3 to 4.2, macOS GL), 1 with compute and draw counts that stay on the GPU.
+    /// Feature tier: 0 without compute (GL 3.3 to 4.2, macOS GL, or [`DeviceOptions::force_tier0`]), 1 with compute and
+    /// draw counts that stay on the GPU. Compute needs workgroups of 128 threads and 3 storage buffers per stage.
     pub tier: u32,
     /// Whether the driver computes on the CPU.
     pub software: bool,
@@ -31,11 +32,12 @@ pub struct Caps {
 /// Options for a device that Welkin creates.
 #[derive(Clone, Debug)]
 pub struct DeviceOptions {
-    /// Native graphics APIs that may be used; `noop` draws nothing and needs no GPU.
+    /// Native graphics APIs that may be used. Default Vulkan, Metal, Direct3D 12 and OpenGL. `NOOP` draws nothing and
+    /// needs no GPU.
     pub backends: wgpu::Backends,
-    /// Whether to use no compute shaders even where there are any, as on a GL 3.3 host.
+    /// Whether to use no compute shaders even if the driver has them, as on a GL 3.3 host. Default no.
     pub force_tier0: bool,
-    /// Whether to use the software driver.
+    /// Whether to use the software driver. Default no.
     pub force_software: bool,
 }
 
@@ -55,8 +57,8 @@ pub struct AttachedDepth {
     pub is_copied: bool,
 }
 
-/// Hooks that a host-owned device needs around every batch of GPU calls: to make the host's context current, to wait
-/// for fences, to save and restore state.
+/// Hooks that a device in an OpenGL host's context needs around every batch of GPU calls: to make the context current,
+/// to wait for fences, to save and restore state.
 pub trait HostBinding: Send + Sync {
     /// Called before the first GPU call of a batch.
     ///
@@ -102,8 +104,9 @@ pub trait HostBinding: Send + Sync {
     fn forsaken(&self);
 }
 
-/// First field of a device to be dropped: enters the host's context so that the fields after it are released in it. If
-/// the context cannot be entered, nothing is released, because a driver may crash at a call without a context.
+/// First field of a device to be dropped: enters the host's context so that the fields after it are released in it, and
+/// calls the binding's `closing`. If the context cannot be entered, it calls `forsaken`, and nothing is released,
+/// because a driver may crash at a call without a context.
 struct Entrance {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -123,7 +126,8 @@ impl Drop for Entrance {
     }
 }
 
-/// Last field of a device to be dropped: leaves the host's context, and calls the binding's `closed` or `forsaken`.
+/// Last field of a device to be dropped: calls the binding's `closed` and leaves the host's context, if [`Entrance`]
+/// has entered it.
 struct Exit {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -168,7 +172,8 @@ pub(crate) struct Shader {
     pub overrides: Arc<[String]>,
 }
 
-/// One native queue or GL context, with its capabilities and faults. Contexts and views share it.
+/// One native queue or GL context, with its capabilities and faults. Contexts and views share it. Any thread may use
+/// it; an OpenGL host's context is entered by one thread at a time.
 pub struct Device {
     // Fields are dropped in this order: see `Entrance`.
     _entrance: Option<Entrance>,
@@ -192,7 +197,7 @@ pub struct Device {
     pub(crate) counts: WorkTotals,
     /// Window images that are acquired but not yet presented or given back.
     of_windows: Mutex<Vec<wgpu::Texture>>,
-    /// Hooks of the host that owns the device; `None` for an own device.
+    /// Hooks of the OpenGL host in whose context the device lives; `None` for all other devices.
     binding: Option<Arc<dyn HostBinding>>,
     _exit: Option<Exit>,
 }
@@ -259,7 +264,8 @@ impl Device {
         self.caps.software = false;
     }
 
-    /// Makes the host's context current until the returned value is dropped. Does nothing for own devices.
+    /// Makes the host's context current until the returned value is dropped. Does nothing for a device without a
+    /// [`HostBinding`].
     ///
     /// # Errors
     /// Any reason for which the host's context cannot be entered, and [`Status::DeviceLost`].
@@ -329,7 +335,7 @@ impl Device {
         self.faults.first.lock().map_or(None, |mut f| f.take())
     }
 
-    /// Fails with the first GPU fault since the last check.
+    /// Returns the first GPU fault since the last check as an error.
     ///
     /// # Errors
     /// The fault.
@@ -337,8 +343,8 @@ impl Device {
         self.take_fault().map_or(Ok(()), Err)
     }
 
-    /// Checks as [`Device::check`] does, and reads OpenGL's error flag: without that, OpenGL does not report that there
-    /// was no memory for an image. Called while entered, after images were created.
+    /// Checks as [`Device::check`] does, and reads OpenGL's error flag: only this flag says that there was no memory
+    /// for an image. Called while entered, after images were created.
     ///
     /// # Errors
     /// The fault.
@@ -351,7 +357,7 @@ impl Device {
         .map_or(Ok(()), Err)
     }
 
-    /// Reads the error flag of an own device on OpenGL.
+    /// Reads the error flag of OpenGL on a device without a [`HostBinding`].
     #[cfg(not(any(target_os = "macos", target_os = "ios")))]
     fn raised_in_own(&self) -> Option<Error> {
         if self.caps.backend != wgpu::Backend::Gl || self.is_lost() {
@@ -380,7 +386,7 @@ impl Device {
     /// Assembles the shader file `name` and creates its module, unless it is cached.
     ///
     /// # Errors
-    /// [`Status::Internal`] if an include is missing.
+    /// [`Status::Internal`] if the file or an include is missing.
     pub fn shader(&self, name: &str) -> Result<wgpu::ShaderModule> {
         self.shader_and_overrides(name).map(|shader| shader.module)
     }
@@ -391,7 +397,7 @@ impl Device {
         if let Some(known) = shaders.get(name) {
             return Ok(known.clone());
         }
-        // Builds for tests make a NaN visible; other builds draw it as black or white.
+        // Debug builds make a NaN visible; other builds draw it as black or white.
         let text =
             if cfg!(debug_assertions) { super::shader::assemble_checked(name) } else { super::shader::assemble(name) }?;
         let overrides = super::shader::overrides(&text);

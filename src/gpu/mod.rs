@@ -1,13 +1,14 @@
-//! Devices, surfaces, targets, shader assembly, timing and readback: everything that goes beyond plain use of wgpu.
+//! Devices, surfaces, hosts' images, shader assembly, pipelines, counters of work and readback: everything that goes
+//! beyond plain use of wgpu.
 //!
 //! A [`Device`] is one native queue or GL context. Welkin creates it (headless or for a window), adopts it from an
 //! OpenGL or Vulkan host, or gets it from a Rust host. The rooms of the effects see only `wgpu` objects, and need not
 //! know where these come from.
 
-// For Apple hosts wgpu builds its OpenGL backend only on another library (ANGLE); the backend there is Metal.
 pub(crate) mod bind;
 pub(crate) mod blocks;
 pub(crate) mod counts;
+// For Apple hosts wgpu builds its OpenGL backend only on another library (ANGLE); the backend there is Metal.
 #[cfg(not(any(target_os = "macos", target_os = "ios")))]
 pub mod gl;
 pub mod pass;

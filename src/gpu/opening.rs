@@ -9,10 +9,10 @@ use super::{
 use crate::error::{Error, Result, Status};
 
 impl Device {
-    /// Creates an own device without a window.
+    /// Creates a device without a window.
     ///
     /// # Errors
-    /// [`Status::NoAdapter`] if no driver meets the request.
+    /// [`Status::InvalidArgument`] if `backends` is empty; [`Status::NoAdapter`] if no driver meets the request.
     pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
         let mut answer = Err(instance::none_wanted(options.backends));
         for backends in instance::attempts(options.backends) {
@@ -24,7 +24,7 @@ impl Device {
         answer
     }
 
-    /// Creates an own device on `instance` that can present to `surface`, if one is given.
+    /// Creates a device on `instance`. It can present to `surface`, if one is given.
     ///
     /// # Errors
     /// [`Status::NoAdapter`] if no driver meets the request.

@@ -87,12 +87,13 @@ fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::E
     Ok(packed)
 }
 
-/// Reads the texels of mip 0 as RGBA in f32. Missing colour channels are 0, a missing alpha is 1. 8-bit values are
-/// divided by 255 and not linearised.
+/// Reads the texels of mip 0 as RGBA in f32, from a texture with four channels of 8 bits, or of format R32Float,
+/// Rg16Float, Rgba16Float or Rgba32Float. Missing colour channels are 0, a missing alpha is 1. 8-bit values are divided
+/// by 255 and not linearised.
 ///
 /// # Errors
-/// The errors of [`bytes`]. With debug assertions also [`Status::Internal`] if a float texture holds a value that is
-/// not finite.
+/// The errors of [`bytes`]. With debug assertions also [`Status::Internal`] if an Rgba16Float or Rgba32Float texture
+/// holds a value that is not finite.
 pub fn rgba(device: &Device, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>> {
     use wgpu::TextureFormat as F;
     let raw = bytes(device, texture, 0)?;

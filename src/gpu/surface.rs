@@ -181,11 +181,11 @@ impl rwh::HasDisplayHandle for Display {
     }
 }
 
-/// Creates an own device that can present to `window`, and to other windows of the same connection.
+/// Creates a device that can present to `window`, and to other windows of the same connection.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`], which names a null handle; [`Status::NoAdapter`] if no driver can present to the
-/// window.
+/// [`Status::InvalidArgument`], which names a null handle or empty `backends`; [`Status::SurfaceOutdated`] if the
+/// window does not exist; [`Status::NoAdapter`] or [`Status::Unsupported`] if no driver can present to it.
 ///
 /// # Safety
 /// The window's connection (display) must outlive the device. With X11, if the host or Welkin calls from several
@@ -235,7 +235,7 @@ pub enum Pacing {
     /// At the screen's refresh, without tearing: [`Surface::acquire`] waits for it.
     #[default]
     Refresh,
-    /// As soon as possible.
+    /// As soon as possible; the picture may tear.
     Immediate,
 }
 
@@ -288,8 +288,9 @@ impl Surface {
     /// Creates a surface on `window`, presented to by `device`. It gives images only after [`Surface::configure`].
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`], which names a null handle; [`Status::Unsupported`] if the device cannot present to
-    /// this window (create the device with [`device_for_window`]).
+    /// [`Status::InvalidArgument`], which names a null handle; [`Status::SurfaceOutdated`] if the window does not
+    /// exist; [`Status::Unsupported`] if the device cannot present to this window (create the device with
+    /// [`device_for_window`]); [`Status::DeviceLost`].
     ///
     /// # Safety
     /// The window must outlive the surface, and its connection must outlive the device.
