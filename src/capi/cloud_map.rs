@@ -66,8 +66,9 @@ impl wk_cloud_map {
 }
 
 /// Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
-/// state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+/// state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_cloud_map(
     context: *mut wk_context,

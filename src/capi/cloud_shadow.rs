@@ -87,8 +87,10 @@ impl wk_cloud_shadows {
 /// updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
 /// and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
 /// calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
-/// last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on a
-/// device that Welkin made itself (wk_device_create), on which the host's shaders cannot run.
+/// last frame, or record WK_STAGE_PREPARE first.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_UNSUPPORTED on a device that Welkin made itself (wk_device_create), on which the host's shaders
+/// cannot run.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_cloud_shadows(
     view: *mut wk_view,

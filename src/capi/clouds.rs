@@ -38,7 +38,9 @@ pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
 /// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
-/// Part of the saved state. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
+/// Part of the saved state.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_cloud_model(
     context: *mut wk_context,

@@ -295,9 +295,10 @@ pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: 
 /// the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of the sky,
 /// within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY in a frame
 /// builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen
-/// times, the last time with 1. An aborted build leaves the context as it was and writes no file. Thread: exclusive on
-/// the context. For a device on an OpenGL context the rule of wk_view_record applies; while `progress` runs, Welkin has
-/// given that context back to the host. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+/// times, the last time with 1. An aborted build leaves the context as it was and writes no file.
+/// Thread: exclusive on the context. For a device on an OpenGL context the rule of wk_view_record applies; while
+/// `progress` runs, Welkin has given that context back to the host.
+/// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_build_sky(
     context: *mut wk_context,

@@ -132,9 +132,10 @@ pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
 }
 
 /// Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
-/// handle, which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors:
-/// WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels wrong or
-/// does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
+/// handle, which you destroy with `wk_device_destroy`; else it stays untouched.
+/// Thread: any.
+/// Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels
+/// wrong or does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_device: *mut *mut wk_device) -> wk_status {
     guard("wk_device_create", |_| {

@@ -66,8 +66,9 @@ impl wk_environment {
 /// Gets the native texture of the cube map. From the first call on, the first call of each frame with
 /// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
 /// same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
-/// wk_view_record call. Call this after each frame for its scales. Thread: exclusive on the view. Errors:
-/// WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+/// wk_view_record call. Call this after each frame for its scales.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_environment(
     view: *mut wk_view,

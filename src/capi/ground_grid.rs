@@ -150,8 +150,10 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
 /// Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights. `cell_size` is
 /// sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
 /// once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
-/// nothing has changed. Thread: concurrent. Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT
-/// for a capacity other than 0 that is too small.
+/// nothing has changed.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too
+/// small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_cells(
     context: *const wk_context,

@@ -87,8 +87,10 @@ impl wk_ground_texture {
 /// SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
 /// context and stays the same until another grid, or none, is set or loaded; before that, wait for GPU work that
 /// samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy
-/// from it. It has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without
-/// a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+/// from it. It has no mipmaps; choose filter and wrap yourself.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no
+/// shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_texture(
     context: *mut wk_context,
@@ -113,8 +115,9 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
 /// Call it after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if
 /// nothing has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context
 /// lives.
-/// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
-/// reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
+/// window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_texture(
     context: *mut wk_context,

@@ -266,8 +266,10 @@ pub unsafe extern "C" fn wk_context_set_lightning(
 }
 
 /// Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time.
-/// Unchanged after an error. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range;
-/// WK_ERROR_WRONG_ORDER for a time before the present.
+/// Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the
+/// present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_trigger_flash(
     context: *mut wk_context,
@@ -295,8 +297,9 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
 /// 3600 s apart. Flashes count within the horizontal distance `most_distance_m`, at most 50000 m, of a place of the
 /// host's world. `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and
 /// the call fails; with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose
-/// weather the timeline has dropped, the earliest weather that it still has applies. Thread: concurrent. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// weather the timeline has dropped, the earliest weather that it still has applies.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flashes(
     context: *const wk_context,
@@ -332,7 +335,8 @@ pub unsafe extern "C" fn wk_context_get_flashes(
 
 /// Gets the light of flashes at a place of the host's world, averaged over the `exposure_s`, [0, 1], before `time_s`;
 /// with 0, at that instant. Use it to light the host's own scene, with the time since its last frame as exposure.
-/// Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_flash_light(
     context: *const wk_context,

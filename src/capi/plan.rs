@@ -378,7 +378,8 @@ pub unsafe extern "C" fn wk_view_get_plan(view: *mut wk_view, out_plan: *mut wk_
 }
 
 /// Gets how much of one part the view's last frame drew, and why. The part's name can be read before any frame too.
-/// Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_part_plan(
     view: *mut wk_view,
@@ -418,9 +419,11 @@ pub unsafe extern "C" fn wk_view_save_plan(
 }
 
 /// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
-/// budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
-/// that are no saved plan or one of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT
-/// naming the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+/// budget stays; wk_view_set_budget removes the pins.
+/// Thread: exclusive on the view.
+/// Errors: WK_ERROR_PARSE for bytes that are no saved plan or one of another version, naming line and column or the
+/// field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error
+/// the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {

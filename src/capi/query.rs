@@ -264,7 +264,8 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
 /// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
 /// a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the
 /// distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
-/// lights. Thread: concurrent.
+/// lights.
+/// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
     context: *const wk_context,
@@ -331,7 +332,8 @@ unsafe fn light(
 
 /// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
 /// haze, fog, precipitation and clouds drawn as a volume, but neither clouds drawn as a deck nor the host's objects.
-/// `segment_size` and `between_size` are the sizes of an element in your header. Thread: concurrent.
+/// `segment_size` and `between_size` are the sizes of an element in your header.
+/// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_between(
     context: *const wk_context,
@@ -403,8 +405,9 @@ unsafe fn way(
 /// Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
 /// along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
 /// rain, snow and clouds drawn as a volume in front of the object leave 5 % of its contrast, that is 5 % of light at
-/// 550 nm. Infinite if more is left at the end of the air or at the planet's ground. Thread: concurrent. Errors: as
-/// wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+/// 550 nm. Infinite if more is left at the end of the air or at the planet's ground.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_visibility_at(
     context: *const wk_context,
@@ -442,7 +445,8 @@ pub unsafe extern "C" fn wk_context_get_ambient(
 }
 
 /// Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
-/// the air in the present tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record.
+/// the air in the present tables; its brightness, clouds and fog are those of `time_s`.
+/// Thread: as wk_view_record.
 /// Errors: as wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient_at(

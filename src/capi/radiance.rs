@@ -36,8 +36,9 @@ pub struct wk_sky_radiance {
 /// Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
 /// vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the
 /// distances from one element to the next, bytes: 24 or more for directions, sizeof(wk_sky_radiance) of your header for
-/// radiances. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction;
-/// nothing is written then.
+/// radiances.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sky_radiance(
     context: *const wk_context,

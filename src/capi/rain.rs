@@ -167,7 +167,8 @@ impl wk_shelter_shape {
     }
 }
 
-/// Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
+/// Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
+/// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model that the device
 /// cannot draw, or for more drops than it can draw with the model.
 #[unsafe(no_mangle)]

@@ -224,9 +224,11 @@ impl wk_metar {
 /// the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
 /// `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
 /// there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
-/// from a list of airports. Thread: any. Errors: WK_ERROR_PARSE for a text without a station, without an observation
-/// (NIL) or without any group of the weather, with line and column, what was expected there and what was found;
-/// WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+/// from a list of airports.
+/// Thread: any.
+/// Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
+/// weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
+/// do not fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_metar(
     report: *const c_char,

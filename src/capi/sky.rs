@@ -114,8 +114,10 @@ impl wk_sky_settings {
 /// Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
 /// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
 /// first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
-/// model are compiled in that frame. Setting the same values again changes nothing. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they were.
+/// model are compiled in that frame. Setting the same values again changes nothing.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they
+/// were.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sky_settings(
     context: *mut wk_context,

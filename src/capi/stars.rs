@@ -101,8 +101,9 @@ unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
 }
 
 /// Sets how the night sky is drawn; NULL returns to the default. Part of the saved state, except the list of stars: a
-/// context that loads a state keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+/// context that loads a state keeps its own list. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *const wk_stars) -> wk_status {
     guard("wk_context_set_stars", |call| {
@@ -116,8 +117,9 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
 
 /// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
 /// a simulation time. It falls with the brightness of the sky, and with the extinction of the star's light in air, fog
-/// and clouds. Minus infinity where no starlight gets through. Thread: concurrent. Errors: as
-/// wk_context_get_conditions.
+/// and clouds. Minus infinity where no starlight gets through.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_limiting_magnitude_at(
     context: *const wk_context,

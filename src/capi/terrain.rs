@@ -293,8 +293,9 @@ pub unsafe extern "C" fn wk_context_set_terrain_tile(
 
 /// Changes the heights, the classes, or both, of a rectangle of a tile's cells. Water that stands there flows as the
 /// new ground allows: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
-/// that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
-/// wk_context_set_terrain_tile, and for the key of no tile.
+/// that it touches, not with the tile or the terrain. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: as wk_context_set_terrain_tile, and for the key of no tile.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update_terrain(
     context: *mut wk_context,
@@ -327,8 +328,9 @@ pub unsafe extern "C" fn wk_context_remove_terrain_tile(
 }
 
 /// Sets whether and how Welkin draws the tiles into frames whose depth it may write, in WK_STAGE_SURFACE. NULL, the
-/// default, leaves them to the host. Settings are not saved. Unchanged after an error. Thread: exclusive. Errors:
-/// WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+/// default, leaves them to the host. Settings are not saved. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_terrain_drawing(
     context: *mut wk_context,
@@ -369,7 +371,8 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
 
 /// Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
 /// `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
-/// sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
+/// sizeof(wk_terrain_point) of your header for points.
+/// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_at(
     context: *const wk_context,
@@ -402,8 +405,9 @@ pub unsafe extern "C" fn wk_context_get_terrain_at(
 
 /// Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
 /// sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on
-/// the terrain changes; with capacity 0 the call returns only this number. Thread: concurrent. Errors:
-/// WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+/// the terrain changes; with capacity 0 the call returns only this number.
+/// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_water(
     context: *const wk_context,

@@ -85,7 +85,8 @@ pub unsafe extern "C" fn wk_context_set_weather(
 /// wk_context_get_state_time, and settings and later times take effect only after the remaining steps. The state
 /// therefore does not depend on the number of calls. A leap of more than a day starts the ground a day before its end,
 /// as wet as the weather reports it then.
-/// Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
+/// Thread: exclusive.
+/// Returns WK_PENDING, which is no error, while steps remain.
 /// Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64) -> wk_status {
@@ -128,7 +129,8 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
 
 /// Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
 /// `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
-/// next day, as in Unix time. Thread: any.
+/// next day, as in Unix time.
+/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(
     year: i32,
@@ -241,10 +243,12 @@ pub unsafe extern "C" fn wk_context_save(
 /// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
 /// geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
 /// tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
-/// the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
-/// are no saved state, for a truncated or changed state, and for a state of another format, which the message names
-/// (this version reads format 2; save states of format 1 again, because they did not record their place);
-/// WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
+/// the call, set them as they were when the state was saved.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
+/// another format, which the message names (this version reads format 2; save states of format 1 again, because they
+/// did not record their place); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
+/// stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_load(context: *mut wk_context, state: *const c_void, size: usize) -> wk_status {
     guard("wk_context_load", |call| {

@@ -174,7 +174,9 @@ impl wk_rain_on {
 /// have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
 /// station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
 /// query the station's altitude plus the height above its own ground. At and below the roughness length there is no
-/// wind. Thread: concurrent. Errors: as wk_context_get_conditions.
+/// wind.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_wind_at(
     context: *const wk_context,
@@ -201,7 +203,8 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
 
 /// Gets the precipitation at a place of the host's world and a simulation time. It begins in the lower half of the
 /// clouds, at most 500 m above their bases, averaged over the clouds that cover the sky; above that nothing falls.
-/// Thread: concurrent. Errors: as wk_context_get_conditions.
+/// Thread: concurrent.
+/// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_rainfall_at(
     context: *const wk_context,

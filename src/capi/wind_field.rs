@@ -221,8 +221,8 @@ impl wk_wind_field_report {
 /// other field begins anew. wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so
 /// it is the same on every channel. It begins with the steady field of its first moment. Part of the saved state.
 /// Unchanged after an error.
-/// Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
-/// that has passed.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_wind_field(
     context: *mut wk_context,
