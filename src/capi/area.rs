@@ -1,10 +1,10 @@
 //! Rain areas
 //!
 //! Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
-//! area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
-//! Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each place has
-//! as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans because
-//! the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
+//! area's rain replaces the weather's rain and drizzle; the change is smooth over the rim, a band inside the region's
+//! border. Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each
+//! place has as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans
+//! because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
 //! ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
 //! above it. wk_context_save keeps the areas.
 
@@ -79,7 +79,7 @@ pub struct wk_rain_area {
     /// Width of the band inside the border over which the rain fades, m. Range [1, 1e6]; at most the smaller half
     /// extent of an ellipse, or the radius of the largest circle in a polygon. Default 500.
     pub rim_m: f64,
-    /// Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
+    /// Rain rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
     /// Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
     /// the weather's falls. Range [-1000, 20 000], default 1500.
@@ -144,7 +144,7 @@ impl wk_rain_area {
     }
 }
 
-/// Replaces the list of rain areas; count 0 removes all. At most 16. Areas move by themselves: set them again only to
+/// Replaces the list of rain areas, at most 16; count 0 removes all. Areas move by themselves: set them again only to
 /// change them. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.

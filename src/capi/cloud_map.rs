@@ -21,8 +21,8 @@ include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
 
 /// Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
 /// layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
-/// Clouds drift through it with their wind, and grow and dissolve as the map says. Values are interpolated linearly
-/// between the centres of cells, and constant beyond the outermost centres.
+/// Clouds drift across it with their wind, and grow and dissolve until the cover is that of the map. Values are
+/// interpolated linearly between the centres of cells, and constant beyond the outermost centres.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_map {
@@ -41,8 +41,8 @@ pub struct wk_cloud_map {
     /// Lowest and highest base of the layers that follow the map, above the station, m. Range [-1000, 20 000], the
     /// lower one first, default -1000, 20 000: all layers.
     pub base_m: [f64; 2],
-    /// Numbers in [0, 1], one for each cell: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
-    /// from south to north. Copied by the call.
+    /// Share of the layer's cover in each cell, in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west
+    /// to east, rows from south to north. Copied by the call.
     pub cover: *const f32,
     /// Number of cells in `cover`: the product of `cells`.
     pub cover_count: u32,

@@ -4,10 +4,10 @@
 //! views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
 //! and errors.
 //!
-//! Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). From
-//! the host's depth, the stage SURFACE multiplies each pixel by the ratio of the light at its place to the mean light.
-//! A host that lights an object separately, such as the view out of a cab, can query the share at the object's place
-//! (wk_context_get_sun_share).
+//! Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). The
+//! stage SURFACE then finds the place of each pixel from the host's depth, and multiplies the pixel by the ratio of the
+//! light there to the mean light. A host that lights an object separately, such as the view out of a cab, can query the
+//! share at the object's place (wk_context_get_sun_share).
 
 use std::{ffi::c_void, ptr::null};
 
@@ -56,10 +56,10 @@ pub unsafe extern "C" fn wk_context_set_cloud_model(
 }
 
 /// Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
-/// place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at the very
-/// place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the mean,
-/// wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
-/// of a second.
+/// place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at exactly
+/// this place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
+/// mean, wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some
+/// tenths of a second.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -82,11 +82,11 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
     })
 }
 
-/// Optional effects of clouds that a view draws.
+/// Flags of the optional effects of clouds in a view.
 pub type wk_clouds_flags = u32;
 /// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
 /// shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
-/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has its mean brightness
+/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without this flag the air has its mean brightness
 /// everywhere.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 

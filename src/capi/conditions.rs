@@ -2,7 +2,7 @@
 //!
 //! The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
 //! answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
-//! is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
+//! is continuous in time while the weather changes, even the heights of a layer that appears or dissolves.
 //!
 //! Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
 //! [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
@@ -66,11 +66,11 @@ pub struct wk_conditions {
     pub aerosol_asymmetry: f64,
     /// Scale height of the particles, m: over it the density falls to 1/e.
     pub aerosol_scale_height_m: f64,
-    /// Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none.
+    /// Extinction inside the layer at the ground (fog, mist, lifted matter), at 550 nm, 1/m; 0 if there is none.
     pub fog_extinction_per_m: f64,
-    /// Base of the layer at the ground, m.
+    /// Base of the layer at the ground, m above the station.
     pub fog_base_m: f64,
-    /// Top of the layer at the ground, m.
+    /// Top of the layer at the ground, m above the station.
     pub fog_top_m: f64,
     /// Depth of the layer's soft upper edge, m.
     pub fog_softness_m: f64,
@@ -91,7 +91,7 @@ pub struct wk_conditions {
     pub hail_mm_h: f64,
     /// Fraction of rain and drizzle that freezes where it lands.
     pub freezing: f64,
-    /// Convectiveness of the precipitation: 0 steady, 1 showers.
+    /// Degree to which the precipitation is convective: 0 steady, 1 showers.
     pub showers: f64,
     /// Presence of thunder, 0 to 1.
     pub thunder: f64,
@@ -264,7 +264,7 @@ impl wk_conditions {
 pub struct wk_cloud_slab {
     /// Fraction of the sky covered.
     pub cover: f64,
-    /// Base, m.
+    /// Base above the station, m.
     pub base_m: f64,
     /// Thickness, m.
     pub thickness_m: f64,
@@ -302,8 +302,8 @@ impl wk_cloud_slab {
 /// visibility_m include that precipitation. All other fields are those of the station's height unless they say
 /// otherwise.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
-/// forgotten every time before the end of the last change of weather that was over at the last update.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
+/// before the end of the latest change of weather that had ended by the last update.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,
@@ -327,6 +327,7 @@ pub unsafe extern "C" fn wk_context_get_conditions(
 /// `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
 /// header.
 /// Thread: concurrent.
+/// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_cloud_slabs(
     context: *const wk_context,

@@ -3,11 +3,11 @@
 //! A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
 //! description, its timeline and its time: two contexts with the same input give the same answers on every machine.
 //!
-//! The kind of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT: east-north-up at the
-//! origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat
-//! and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world).
-//! Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are degrees clockwise from
-//! true north.
+//! There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
+//! east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
+//! coordinates. Axes of flat and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the
+//! usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
+//! degrees clockwise from true north.
 //!
 //! Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
 //! of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
@@ -70,7 +70,7 @@ pub const WK_EXPOSURE_AUTO: wk_exposure_mode = 0;
 pub const WK_EXPOSURE_EV100: wk_exposure_mode = 1;
 /// Factor: exposure_value is display units per cd/m^2, (0, 1e6].
 pub const WK_EXPOSURE_FACTOR: wk_exposure_mode = 2;
-/// Exposure of the context, for a wk_frame; exposure_value is not used.
+/// The exposure of the context. For a wk_frame only; exposure_value is not used.
 pub const WK_EXPOSURE_OF_CONTEXT: wk_exposure_mode = 3;
 
 /// Curve from exposed luminance to display values.
@@ -226,7 +226,7 @@ unsafe fn description(desc: &wk_context_desc) -> Result<ContextDesc> {
 }
 
 /// Creates a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
-/// `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
+/// `wk_context_destroy`. The weather is a clear standard day (WK_WEATHER_INIT) until you set another.
 /// Thread: exclusive on the device.
 /// Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]
@@ -287,17 +287,17 @@ pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, cur
 
 /// Receives the completed share of a long operation, from 0 to 1, never less than before. Return 0 to go on; anything
 /// else ends the operation with WK_ERROR_ABORTED. The function must not call Welkin and must not unwind. It may draw by
-/// the host's own means, also with an OpenGL context.
+/// the host's own means, even with the OpenGL context that Welkin uses.
 pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: f64) -> i32>;
 
-/// Builds the sky's tables completely for the context's planet and present weather, so that no frame has to. Call it at
-/// load time, behind a progress bar. It reuses tables that another context of the device already shows or that lie in
-/// the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of the sky,
-/// within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY in a frame
-/// builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen
-/// times, the last time with 1. An aborted build leaves the context as it was and writes no file.
-/// Thread: exclusive on the context. For a device on an OpenGL context the rule of wk_view_record applies; while
-/// `progress` runs, Welkin has given that context back to the host.
+/// Builds the sky's tables completely for the context's planet and present weather, so that no frame has to build them.
+/// Call it at load time, behind a progress bar. It reuses tables that another context of the device already shows or
+/// that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of
+/// the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
+/// in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
+/// sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
+/// Thread: exclusive on the context; with an OpenGL host, the thread where its context is (or can be made) current.
+/// While `progress` runs, that context is the host's.
 /// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_build_sky(

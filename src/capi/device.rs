@@ -30,7 +30,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_device.rs"));
 
-/// Native graphics interfaces.
+/// Native graphics interfaces, as flags.
 pub type wk_backend_flags = u32;
 /// No graphics: draws nothing and needs no GPU, for tests of your own code.
 pub const WK_BACKEND_NOOP: wk_backend_flags = 1;
@@ -42,14 +42,14 @@ pub const WK_BACKEND_METAL: wk_backend_flags = 4;
 pub const WK_BACKEND_DX12: wk_backend_flags = 8;
 /// OpenGL or OpenGL ES.
 pub const WK_BACKEND_GL: wk_backend_flags = 16;
-/// Any interface that works, the best one first.
+/// Any of Vulkan, Metal, Direct3D 12 and OpenGL; Welkin takes the best one that works.
 pub const WK_BACKEND_ANY: wk_backend_flags = 30;
 
 /// Flags of an own device.
 pub type wk_device_flags = u32;
-/// Use no compute shaders, even where the device has them. Welkin then draws as on an OpenGL 3.3 machine.
+/// Use no compute shaders, even where the device has them. Welkin then draws as on a device with OpenGL 3.3.
 pub const WK_DEVICE_FORCE_TIER0: wk_device_flags = 1;
-/// Use the software driver.
+/// Use a software driver, which draws on the CPU.
 pub const WK_DEVICE_FORCE_SOFTWARE: wk_device_flags = 2;
 
 /// Settings for an own device.
@@ -169,8 +169,8 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 }
 
 /// Destroys a device. NULL does nothing.
-/// Thread: any, except for a device on an OpenGL context. Destroy that on a thread where the context is (or can be
-/// made) current; elsewhere, or when the context is already gone, its GPU objects are abandoned.
+/// Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
+/// can be made) current. Elsewhere, or when the context is already gone, Welkin abandons its GPU objects.
 /// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {

@@ -8,8 +8,8 @@
 //! roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
 //! specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
 //! filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
-//! with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. Views whose hosts never ask for the cube
-//! map do not draw it.
+//! with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. A view draws the cube map only if its
+//! host has asked for it.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -45,8 +45,8 @@ pub struct wk_environment {
     pub level_count: u32,
     /// Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces.
     pub cd_m2_per_unit: f64,
-    /// Factor from texels to units of the last frame's colour for a scene-linear host, or else to display values before
-    /// the tone curve.
+    /// Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these are the host's
+    /// units, in the display spaces display values before the tone curve.
     pub light_scale: f64,
 }
 

@@ -35,7 +35,7 @@ include!(concat!(env!("OUT_DIR"), "/init_frame.rs"));
 
 /// Relation of depth to distance.
 pub type wk_depth_kind = u32;
-/// As the projection matrix says: perspective (finite or infinite far) or orthographic.
+/// Depth of the projection matrix: perspective (with a finite or infinite far plane) or orthographic.
 pub const WK_DEPTH_PROJECTION: wk_depth_kind = 0;
 /// ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders.
 pub const WK_DEPTH_LOGARITHMIC: wk_depth_kind = 1;
@@ -56,22 +56,22 @@ pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 /// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
-/// Access of Welkin to the target's depth. The sea is drawn only into depth that may be written. Without a sea both
-/// values give the same picture.
+/// Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
+/// depth that may be written. Without these, both values give the same picture.
 pub type wk_depth_access = u32;
-/// Read it: Welkin leaves every bit as it is, and draws nothing opaque of its own.
+/// Welkin reads the depth and leaves every bit as it is. It draws nothing opaque of its own.
 pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
-/// Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
-/// Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
-/// DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, nor on
-/// an own device, whose depth is WK_FORMAT_R32_FLOAT.
+/// Welkin tests and writes the depth where it draws opaque things: the sea, and terrain (stage SURFACE, before the
+/// water on surfaces). Stencil stays. Needs depth that can be attached: a depth format, as many samples as the colour,
+/// and in Vulkan DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several
+/// samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
 pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
 /// A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
 /// from black over blue, green, yellow and red to white. The call with the quantity's stage draws it; other calls of
 /// the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity, all is black.
 pub type wk_diagnostic = u32;
-/// The picture itself.
+/// The picture itself, not in false colours.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
 /// Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
 /// Stage MEDIUM.
@@ -110,8 +110,8 @@ pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
 /// so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
 /// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
-/// The target's normals are in the camera's axes (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal),
-/// not in those of the host's world.
+/// The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix *
+/// gl_Normal), not in those of the host's world.
 pub const WK_FRAME_NORMALS_IN_EYE_SPACE: wk_frame_flags = 32;
 
 /// One frame of one view.

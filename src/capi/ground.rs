@@ -3,8 +3,8 @@
 //! The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
 //! the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
 //! the display spaces Welkin takes the displayed colour for the ground's albedo. Ground without a wk_surface_class is
-//! natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's
-//! objects, only shelters and occluder maps appear in them, as dark shapes.
+//! natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. The mirrored picture is the sky's. Of
+//! the host's objects, only shelters and occluder maps appear in it, as dark shapes.
 //!
 //! Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
 //! wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
@@ -125,11 +125,11 @@ pub struct wk_ground {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Depth of the water, mm, as tyres meet it: the film, plus standing water in a hollow.
+    /// Depth of the water on the ground, mm, as a tyre meets it: the film, plus standing water in a hollow.
     pub water_mm: f64,
-    /// Depth of the film on level ground outside hollows, mm; on the host's terrain, that of the film at the place.
+    /// Depth of the film on level ground outside hollows, mm; on the host's terrain, depth of the film at the place.
     pub film_mm: f64,
-    /// Wetness of the ground everywhere, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness of level, open ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
     /// Share of all ground, or of the host's terrain, that is under standing water.
     pub puddles: f64,

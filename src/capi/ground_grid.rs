@@ -82,14 +82,14 @@ impl wk_ground_grid {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_cell {
-    /// Film: water between and on the grains, mm; 0 under standing water.
+    /// Film: water on and between the grains of the surface, mm; 0 under standing water.
     pub film_mm: f32,
     /// Water in the pores, as a share of their capacity, 0 to 1.
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share of the cell under ice, by the weather of the moment; freezing rain leaves no ice where standing boxes keep
-    /// it off.
+    /// Share of the cell under ice, 0 to 1, by the weather of the moment. Where standing boxes keep freezing rain off,
+    /// it leaves no ice.
     pub ice: f32,
 }
 
@@ -99,9 +99,9 @@ impl wk_ground_cell {
     }
 }
 
-/// Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
-/// same grid again keeps its water, even with other classes; a different grid starts as wet as level ground is. May
-/// take some tenths of a second for the largest grids. Unchanged after an error.
+/// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before; NULL leaves
+/// level ground everywhere. Setting the same grid again keeps its water, even with other classes; a different grid
+/// starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -147,13 +147,13 @@ pub unsafe extern "C" fn wk_context_set_ground_grid(
     })
 }
 
-/// Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights. `cell_size` is
-/// sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
-/// once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
-/// nothing has changed.
+/// Copies the water of the cells of a wk_ground_grid as of wk_context_get_state_time, in the order of the heights. For
+/// tiles use wk_context_get_terrain_water. `cell_size` is sizeof(wk_ground_cell) of your header. `out_revision` gets a
+/// number that changes whenever the cells change, at most once every 10 s of simulation time. With capacity 0 the call
+/// returns only this number, so you can skip uploads when nothing has changed.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too
-/// small.
+/// Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is
+/// too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_cells(
     context: *const wk_context,

@@ -1,8 +1,8 @@
 //! Water on the host's terrain as a texture
 //!
-//! A native texture for the host's own materials, with the water of the terrain's cells. A grid
-//! (wk_context_set_ground_grid) is uploaded once for both the host and the stage SURFACE; of tiles
-//! (wk_context_set_terrain) the texture has those around a place. Each cell is one texel; the first one is the
+//! A native texture for the host's own materials, with the water of the terrain's cells. The cells of a grid
+//! (wk_context_set_ground_grid) are uploaded once for both the host and the stage SURFACE. For tiles
+//! (wk_context_set_terrain) the texture covers a window around a place. Each cell is one texel; the first one is the
 //! south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
 //! how the wet surface looks.
 
@@ -53,9 +53,9 @@ pub struct wk_ground_texture {
     pub generation: u64,
     /// Revision of the texture's contents, as in wk_context_get_ground_cells.
     pub revision: u64,
-    /// Width, texels: the grid's number of nodes east.
+    /// Width, texels: the number of nodes of a grid to the east, or 512 for tiles.
     pub width: u32,
-    /// Height, texels: the grid's number of nodes north.
+    /// Height, texels: the number of nodes of a grid to the north, or 512 for tiles.
     pub height: u32,
     /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
     /// (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
@@ -82,14 +82,14 @@ impl wk_ground_texture {
     };
 }
 
-/// Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
-/// if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a wk_view_record with
-/// SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
-/// context and stays the same until another grid, or none, is set or loaded; before that, wait for GPU work that
-/// samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy
-/// from it. It has no mipmaps; choose filter and wrap yourself.
+/// Gets the native texture of the water on a wk_ground_grid, up to date: call it after each wk_context_update. It costs
+/// nothing if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a
+/// wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue or context. The
+/// texture belongs to the context and stays the same until you set or load another grid, or none; before you do so,
+/// wait for GPU work that samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+/// calls, and you may copy from it. It has no mipmaps; choose filter and wrap yourself.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no
+/// Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_UNSUPPORTED on an own device, where the host has no
 /// shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ground_texture(
@@ -111,10 +111,10 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
 
 /// Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
 /// The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
-/// middle quarter. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow.
-/// Call it after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if
-/// nothing has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context
-/// lives.
+/// middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
+/// neither water nor snow. Call it after each wk_context_update; with several cameras, call it before you draw each
+/// one. The call costs nothing if nothing has changed; after a move it uploads the whole window. Both textures stay the
+/// same as long as the context lives.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
 /// window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.

@@ -40,7 +40,8 @@ pub struct wk_light {
     pub intensity_cd: [f64; 3],
     /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.
     pub inner_deg: f64,
-    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; 180: no end.
+    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; with 180 the beam has
+    /// no end.
     pub outer_deg: f64,
 }
 
@@ -57,8 +58,8 @@ impl wk_light {
     };
 }
 
-/// Sets the host's lamps and replaces those set before; set moving ones again in every frame. count 0 removes all. At
-/// most 64. Unchanged after an error.
+/// Sets the host's lamps, at most 64, and replaces those set before; count 0 removes all. Set moving lamps again in
+/// every frame. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

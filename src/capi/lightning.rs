@@ -66,9 +66,9 @@ pub struct wk_lightning {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default 0: the weather's rate.
+    /// Flags of the settings that are set. Default 0: the rate of the weather.
     pub flags: wk_lightning_flags,
-    /// Default WK_FLICKER_AS_IN_NATURE.
+    /// Flicker of the drawn flashes. Default WK_FLICKER_AS_IN_NATURE.
     pub flicker: wk_flicker,
     /// Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
     /// 60], default 0.
@@ -117,7 +117,7 @@ pub struct wk_flash_trigger {
     pub position_m: [f64; 3],
     /// Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random.
     pub peak_ka: f64,
-    /// Default WK_FLASH_KIND_TO_GROUND.
+    /// Place where the flash ends. Default WK_FLASH_KIND_TO_GROUND.
     pub kind: wk_flash_kind,
     /// Number of strokes. Range [0, 26], default 0: random.
     pub strokes: u32,
@@ -150,7 +150,7 @@ pub struct wk_flash {
     pub strokes: u32,
     /// Largest peak current of its strokes, kA.
     pub peak_ka: f64,
-    /// Position of what it struck, or of the middle of its path in the cloud, in the host's world, m.
+    /// Position where it struck, or of the middle of its path in the cloud, in the host's world, m.
     pub position_m: [f64; 3],
     /// Distance to the nearest point of its channel, m.
     pub distance_m: f64,
@@ -247,7 +247,7 @@ unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
     })
 }
 
-/// Sets how often it flashes, where, and how views draw the flashes; NULL returns to the default. Part of the saved
+/// Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. Part of the saved
 /// state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
@@ -265,11 +265,11 @@ pub unsafe extern "C" fn wk_context_set_lightning(
     })
 }
 
-/// Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time.
-/// Unchanged after an error.
+/// Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after it; there are at most
+/// 64 such flashes at a time. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time before the
-/// present.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or for too many flashes; WK_ERROR_WRONG_ORDER for
+/// a time before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_trigger_flash(
     context: *mut wk_context,
@@ -294,10 +294,10 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
 }
 
 /// Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
-/// 3600 s apart. Flashes count within the horizontal distance `most_distance_m`, at most 50000 m, of a place of the
-/// host's world. `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and
-/// the call fails; with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose
-/// weather the timeline has dropped, the earliest weather that it still has applies.
+/// 3600 s apart. Only flashes within the horizontal distance `most_distance_m`, in [0, 50000] m, of the position count.
+/// `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and the call fails;
+/// with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline
+/// has dropped, the earliest weather that it still has applies.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
@@ -333,8 +333,9 @@ pub unsafe extern "C" fn wk_context_get_flashes(
     })
 }
 
-/// Gets the light of flashes at a place of the host's world, averaged over the `exposure_s`, [0, 1], before `time_s`;
-/// with 0, at that instant. Use it to light the host's own scene, with the time since its last frame as exposure.
+/// Gets the light of flashes at a place of the host's world, averaged over the time `exposure_s`, in [0, 1] s, that
+/// ends at `time_s`; with 0, at that instant. Use it to light the host's own scene, with the time since its last frame
+/// as exposure.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]

@@ -28,31 +28,34 @@
 //!
 //! ERRORS
 //!
-//! Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
-//! output, changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
-//! parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
-//! wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. If a fault in Welkin
-//! itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the device returns
-//! WK_ERROR_POISONED, except those that destroy.
+//! Every call that can fail returns a wk_status: 0 and positive values mean success, negative ones failure. A failed
+//! call writes no output, changes nothing and draws nothing. Only a list that does not fit into its buffer is an
+//! exception: the call fails, but still writes the number of elements or bytes needed. wk_last_error_message() has the
+//! calling thread's message, which names the parameter and what is accepted, as in `wk_view_record: frame.projection[5]
+//! must be finite, got NaN`; wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or
+//! throws. If a fault in Welkin itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the
+//! device returns WK_ERROR_POISONED, except those that destroy.
 //!
 //! STRUCTS
 //!
-//! Structs begin with struct_size, struct_type and next. Only elements of arrays that calls read or fill in bulk, such
-//! as wk_flash, have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init, which writes the
-//! same bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore
-//! accepts structs of older headers, whose missing fields get their defaults, and structs of newer headers if the
-//! fields that it does not know are zero. `next` points to extension structs where a call names them; an unknown one is
-//! refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has
-//! a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are
-//! doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+//! Structs begin with struct_size, struct_type and next. Some structs are elements of arrays that calls read or fill in
+//! bulk, such as wk_flash. They have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init,
+//! which writes the same bytes) and change fields. Later versions append fields for which zero means "as before". A
+//! library therefore accepts structs of older headers, whose missing fields get their defaults, and structs of newer
+//! headers if the fields that it does not know are zero. `next` points to extension structs where a call names them; an
+//! unknown one is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An
+//! optional field has a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your
+//! header. Reals are doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
 //!
 //! THREADS
 //!
-//! You may call functions from any thread. `const T *` is shared: any number of calls may use the handle at the same
-//! time. `T *` is exclusive: one call at a time with that handle, and no `const` call with it at the same time. Calls
-//! that break this rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw,
-//! create or destroy on the thread where its context is (or can be made) current; what you destroy on another thread is
-//! released at the device's next call. Call no Welkin function inside a callback: it would return WK_ERROR_WRONG_ORDER.
+//! You may call functions from any thread. The line "Thread:" of a function says which calls may run at the same time.
+//! "any": no rule. "concurrent": the handle is a `const T *`, and any number of such calls may use it at the same time.
+//! "exclusive": the handle is a `T *`; make one call at a time with it, and no concurrent call with it at the same
+//! time. "exclusive on the view" names the handle. Calls that break this rule wait for each other. Welkin starts no
+//! threads. With an OpenGL host, make all calls that draw, create or destroy on the thread where its context is (or can
+//! be made) current; what you destroy on another thread is released at the device's next call. Call no Welkin function
+//! inside a callback: it would return WK_ERROR_WRONG_ORDER.
 //!
 //! UNITS AND COORDINATES
 //!
@@ -71,10 +74,11 @@
 //! WHAT COMES LATER, AND HOW
 //!
 //! Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
-//! major version, and later versions add new ones. Settled for planned features, so that a host can prepare:
-//! - Snow in rain areas is wk_rain_area.snow.
-//! - Base colour and motion are images appended to the target structs.
-//! - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
+//! major version, and later versions add new ones. These points are settled for planned features, so that a host can
+//! prepare:
+//! - Snow in rain areas will be wk_rain_area.snow.
+//! - Images of base colour and motion will be appended to the target structs.
+//! - Callbacks for memory and files will be extensions of wk_device_desc through `next`.
 //!
 //! A field, a bit or a value that this version does not draw yet is refused by name where it is set.
 //!

@@ -1,7 +1,7 @@
 //! Maps of objects that keep rain off
 //!
-//! For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
-//! from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
+//! For shelter that boxes cannot describe, give up to four depth images of your world, with standing or moving objects,
+//! seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
 //!
 //! A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s, the path of
 //! the median drop. Then the hidden parts do not matter for half of the rain, and matter little for the other half.
@@ -26,7 +26,7 @@ use crate::{error::Status, rain::MAX_OCCLUDER_MAPS};
 
 include!(concat!(env!("OUT_DIR"), "/init_occluder.rs"));
 
-/// Sets the maps of objects that keep rain off and replaces those set before. count 0 removes them. At most 4. After an
+/// Sets the maps of objects that keep rain off, at most 4, and replaces those set before; count 0 removes all. After an
 /// error the previous maps stay. They are not part of a saved state, because each channel may have its own.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;

@@ -32,9 +32,9 @@ pub struct wk_occluder_map {
     /// Matrix from the host's world to clip space, invertible: parallel rays or perspective, column-major. Default
     /// identity.
     pub clip_from_world: [f64; 16],
-    /// Default 0.
+    /// Flags of the map. Default 0.
     pub flags: wk_occluder_map_flags,
-    /// Default WK_CLIP_ZERO_TO_ONE.
+    /// Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE.
     pub clip_space: wk_clip_space,
     /// Simulation time at which the objects stood as the map shows them, s. Default 0.
     pub time_s: f64,

@@ -8,7 +8,7 @@
 //! sample what Welkin drew into it, as OpenGL requires between contexts.
 //!
 //! HOST_CONTEXT: Welkin draws in the host's own context. It saves every piece of state that it touches, sets it, and
-//! restores it. Any framebuffer can be a target, also the window's (0), by copies in and out.
+//! restores it. Any framebuffer can be a target, even that of the window (0); Welkin copies its images in and out.
 //!
 //! In SHARED mode one device serves all windows whose contexts share objects, with one view for each. In HOST_CONTEXT
 //! mode a device belongs to one context.

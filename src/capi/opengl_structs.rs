@@ -22,8 +22,8 @@ pub type wk_opengl_make_current_fn = Option<unsafe extern "C" fn(user: *mut c_vo
 
 /// A context that Welkin asks for.
 pub type wk_opengl_context = u32;
-/// The context that the host draws in. With several windows: the one that was current when Welkin was called (store it
-/// for each thread).
+/// The context that the host draws in. With several windows, this is the context that was current when the host called
+/// Welkin; the host stores it for each thread.
 pub const WK_OPENGL_CONTEXT_HOST: wk_opengl_context = 0;
 /// The context that the host made for Welkin, sharing objects with its own.
 pub const WK_OPENGL_CONTEXT_WELKIN: wk_opengl_context = 1;
@@ -54,14 +54,15 @@ pub struct wk_opengl_host_desc {
     pub next: *const c_void,
     /// Finds functions. Default NULL; must be given.
     pub get_proc: wk_opengl_get_proc_fn,
-    /// Makes contexts current. Required in shared mode. In the host's context it may be NULL (the default); Welkin then
-    /// uses the current context as it is.
+    /// Makes contexts current. Required in WK_OPENGL_SHARED. In WK_OPENGL_HOST_CONTEXT it may be NULL (the default);
+    /// Welkin then uses the current context as it is.
     pub make_current: wk_opengl_make_current_fn,
-    /// Passed to both callbacks. Welkin calls them on the thread that calls it, one at a time. Default NULL.
+    /// Pointer that is passed to both callbacks. Welkin calls them on the thread that calls Welkin, one at a time.
+    /// Default NULL.
     pub user: *mut c_void,
-    /// Default WK_OPENGL_SHARED.
+    /// Context that Welkin draws in. Default WK_OPENGL_SHARED.
     pub mode: wk_opengl_mode,
-    /// Default WK_OPENGL_FENCE.
+    /// Order of the two contexts' commands. Default WK_OPENGL_FENCE.
     pub handover: wk_opengl_handover,
     /// WK_DEVICE_FORCE_TIER0 or 0, the default; WK_DEVICE_FORCE_SOFTWARE has no meaning here.
     pub flags: wk_device_flags,
@@ -92,14 +93,14 @@ pub const WK_OPENGL_NONE: wk_opengl_image_kind = 0;
 pub const WK_OPENGL_TEXTURE: wk_opengl_image_kind = 1;
 /// A renderbuffer.
 pub const WK_OPENGL_RENDERBUFFER: wk_opengl_image_kind = 2;
-/// The attachments of a framebuffer; 0 is the window's. Only in the host's own context.
+/// The attachments of a framebuffer; 0 is the window's. Only in WK_OPENGL_HOST_CONTEXT.
 pub const WK_OPENGL_FRAMEBUFFER: wk_opengl_image_kind = 3;
 
 /// A host's image, embedded in wk_opengl_target and wk_occluder_map.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_opengl_image {
-    /// Default WK_OPENGL_NONE.
+    /// Type of the object. Default WK_OPENGL_NONE.
     pub kind: wk_opengl_image_kind,
     /// Its OpenGL name. Default 0.
     pub name: u32,
@@ -144,7 +145,7 @@ pub struct wk_opengl_target {
     pub height: u32,
     /// Increase this number when you create an object again under an old name. It must never fall. Default 0.
     pub generation: u64,
-    /// Default WK_OPENGL_MULTISAMPLE_EACH.
+    /// Handling of multisampled images. Default WK_OPENGL_MULTISAMPLE_EACH.
     pub multisample: wk_opengl_multisample,
     /// Must be 0.
     pub reserved0: u32,
@@ -152,8 +153,8 @@ pub struct wk_opengl_target {
     /// wk_ground_grid or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
     pub surface_classes: wk_opengl_image,
     /// A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE):
-    /// (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel is no
-    /// unit vector (a cleared pixel), Welkin uses the host's terrain or depth. Default none.
+    /// (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel holds
+    /// no unit vector (a cleared pixel), Welkin uses the normal of the host's terrain or depth. Default none.
     pub normals: wk_opengl_image,
 }
 

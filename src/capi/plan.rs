@@ -81,7 +81,7 @@ pub const WK_PLAN_REASON_EVERYTHING_ASKED: wk_plan_reason = 0;
 pub const WK_PLAN_REASON_NOT_GAUGED: wk_plan_reason = 1;
 /// The weather does not have this part, or the recorded stages do not draw it.
 pub const WK_PLAN_REASON_ABSENT: wk_plan_reason = 2;
-/// With less of the part the error would exceed the tolerance.
+/// The error would exceed the tolerance with less of the part.
 pub const WK_PLAN_REASON_NEEDED: wk_plan_reason = 3;
 /// The error with less of the part is within the tolerance.
 pub const WK_PLAN_REASON_WITHIN_TOLERANCE: wk_plan_reason = 4;
@@ -90,14 +90,13 @@ pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
 /// The budget of time allows no more of the part.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// Limit of a budget that the picture exceeds, by the estimates.
+/// Limit of a budget that the picture exceeds, according to the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
 /// The tolerance: a better picture would take longer than the budget.
 pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
-/// Time and the tolerance: even with every part left out, or with the pinned parts, the picture takes longer than the
-/// budget.
+/// Time and the tolerance: the picture takes longer than the budget even with all parts left out that are not pinned.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
 /// A host's wish for one part.
@@ -110,15 +109,15 @@ pub struct wk_part_wish {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Flags of the optional fields that are set.
+    /// Flags of the optional fields that are set. Default 0.
     pub has: wk_part_wish_has_flags,
-    /// Part that the wish is about.
+    /// Part that the wish is about. Default WK_PART_AIR.
     pub part: wk_part,
     /// Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
     /// same. Range: below the part's wk_part_plan.rung_count. wk_plan.gave_way still says whether the tolerance or the
     /// time is exceeded.
     pub rung: u32,
-    /// 0.
+    /// Must be 0.
     pub reserved: u32,
     /// Optional: importance of the part to viewers. A budget of time leaves out the less important parts first. Range
     /// [0, 1], default wk_part_plan.importance.
@@ -150,13 +149,13 @@ pub struct wk_budget {
     pub next: *const c_void,
     /// Flags of the optional fields that are set. Default 0: everything is drawn.
     pub has: wk_budget_has_flags,
-    /// Length of `wishes`. Default 0. Parts that are not in the list are planned with their default importance.
+    /// Number of wishes. Default 0. Parts without a wish are planned with their default importance.
     pub wish_count: u32,
-    /// sizeof(wk_part_wish) of your header.
+    /// Bytes from one wish to the next: sizeof(wk_part_wish) of your header, which is the default.
     pub wish_stride: u32,
-    /// 0.
+    /// Must be 0.
     pub reserved: u32,
-    /// Wishes for single parts, at most one for each part.
+    /// Wishes for single parts, at most one for each part; read during the call only. Default NULL.
     pub wishes: *const wk_part_wish,
     /// Optional: largest error that leaving parts out may cause. Range (0, 1]; an error of 0.01 is not visible.
     pub tolerance: f64,
@@ -241,7 +240,7 @@ pub struct wk_part_plan {
     pub rung: u32,
     /// Number of its rungs.
     pub rung_count: u32,
-    /// 0.
+    /// Always 0.
     pub reserved: u32,
     /// Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
     pub name: *const c_char,
@@ -251,7 +250,8 @@ pub struct wk_part_plan {
     pub reason_text: *const c_char,
     /// Importance of the part where a budget does not set it.
     pub importance: f64,
-    /// Share of the part that is drawn: 1 all of it, 0 its last rung, between them while it fades or on a rung between.
+    /// Share of the part that is drawn: 1 all of it, 0 its last rung; between these while the part fades, or on a rung
+    /// in between.
     pub share: f64,
     /// Error of the picture with this part alone at its last rung, as of the last gauge.
     pub error: f64,
@@ -335,8 +335,9 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
     })
 }
 
-/// Reports the time that the weather took in the last frame, ms, measured as for the budget (your GPU timer, or a call
-/// that you wait for). Under a budget of time the plan uses the median of the last five reports.
+/// Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure it as you chose the budget: with
+/// a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses the median of the last
+/// five reports.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
 #[unsafe(no_mangle)]
@@ -400,8 +401,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 /// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
 /// else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
-/// frames after each jump of camera, sun or weather.
+/// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
+/// each jump of camera, sun or weather.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_save_plan(
     view: *mut wk_view,

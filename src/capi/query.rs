@@ -1,8 +1,8 @@
 //! Queries: light and visibility
 //!
 //! These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
-//! or future simulation time that the timeline still knows. The answers are in closed form and need no device. If the
-//! host has placed the sun or the moon, it stands there at all times. Only wk_context_get_ambient and
+//! or future simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or
+//! moon that the host has placed stands at that direction at all times. Only wk_context_get_ambient and
 //! wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
 //! Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
 //! is the photometric value.
@@ -42,7 +42,7 @@ pub struct wk_celestial {
     pub direction: [f64; 3],
     /// Direction to the body as it appears, lifted by refraction.
     pub apparent: [f64; 3],
-    /// Direction in the disc's plane towards the middle of the lit limb, for the moon.
+    /// Direction in the plane of the disc towards the middle of the lit limb; for the moon.
     pub bright_limb: [f64; 3],
     /// Illuminance above the air on a surface facing it, lux per channel.
     pub illuminance_lux: [f64; 3],
@@ -52,7 +52,7 @@ pub struct wk_celestial {
     pub elevation_deg: f64,
     /// Elevation above the horizon as it appears, degrees.
     pub apparent_elevation_deg: f64,
-    /// Angular radius, rad.
+    /// Angular radius of the disc, rad.
     pub angular_radius: f64,
     /// Lit fraction of the disc.
     pub lit: f64,
@@ -261,10 +261,10 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
     Ok(time_s)
 }
 
-/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
-/// a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the
-/// distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
-/// lights.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Of the clouds,
+/// only those above a place count, with their mean effect over all places at its height. `position_size` and
+/// `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
+/// sizeof(wk_ground_light) of your header for lights.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
@@ -331,7 +331,7 @@ unsafe fn light(
 }
 
 /// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
-/// haze, fog, precipitation and clouds drawn as a volume, but neither clouds drawn as a deck nor the host's objects.
+/// haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the host's objects.
 /// `segment_size` and `between_size` are the sizes of an element in your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
@@ -404,8 +404,8 @@ unsafe fn way(
 
 /// Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
 /// along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
-/// rain, snow and clouds drawn as a volume in front of the object leave 5 % of its contrast, that is 5 % of light at
-/// 550 nm. Infinite if more is left at the end of the air or at the planet's ground.
+/// rain, snow and clouds drawn as a volume leave 5 % of the object's contrast, which is 5 % of the light at 550 nm.
+/// Infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]
@@ -432,8 +432,8 @@ pub unsafe extern "C" fn wk_context_get_visibility_at(
 
 /// Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
 /// frame has done so yet, and waits for the GPU once after every change of the air.
-/// Thread: as wk_view_record.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
+/// Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient(
     context: *mut wk_context,
@@ -446,7 +446,7 @@ pub unsafe extern "C" fn wk_context_get_ambient(
 
 /// Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
 /// the air in the present tables; its brightness, clouds and fog are those of `time_s`.
-/// Thread: as wk_view_record.
+/// Thread: as wk_context_get_ambient.
 /// Errors: as wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_ambient_at(

@@ -1,10 +1,10 @@
 //! Queries: the sky's light by direction
 //!
-//! For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as the
-//! picture shows it where the host drew nothing. It includes the clear air, clouds as the model draws them, fog with
-//! precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the discs of
-//! sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host
-//! drew.
+//! For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as a
+//! picture shows it in pixels that the host did not draw. It includes the clear air, clouds as the model draws them,
+//! fog with precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the
+//! discs of sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the
+//! host drew.
 //!
 //! The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
 //! query in a new state of the air solves the reference, which takes a second or two; other threads that query
@@ -29,7 +29,7 @@ use crate::error::{Error, Status};
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sky_radiance {
-    /// Radiance, cd/m^2, three channels of linear Rec. 709, none below 0.
+    /// Radiance, cd/m^2, three channels of linear Rec. 709, never negative.
     pub radiance_cd_m2: [f64; 3],
 }
 

@@ -44,13 +44,15 @@ pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 /// Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
 
-/// wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and faint.
+/// Value of wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and
+/// faint.
 pub const WK_RAIN_SHUTTER_EYE_S: f64 = 0.05;
-/// wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the default.
+/// Value of wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the
+/// default.
 pub const WK_RAIN_SHUTTER_CAMERA_60_S: f64 = 0.016_666_666_666_666_666;
-/// wk_rain.shutter_s for a camera in good light. Streaks are short.
+/// Value of wk_rain.shutter_s for a camera in good light. Streaks are short.
 pub const WK_RAIN_SHUTTER_CAMERA_500_S: f64 = 0.002;
-/// wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film.
+/// Value of wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film.
 pub const WK_RAIN_GAIN_TRAINER: f64 = 4.0;
 
 /// Settings for drawing rain, hail and splashes in a view. The precipitation itself does not depend on them.
@@ -71,8 +73,8 @@ pub struct wk_rain {
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.
     pub model: wk_rain_model,
-    /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, a
-    /// streak, stone or splash hides as much of the background as g of them one behind another. This departs from
+    /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, one
+    /// streak, stone or splash hides as much of the background as g of them one behind another would. This departs from
     /// physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
     /// water and queries do not depend on it. Set the same value on all channels of a simulator.
     pub contrast_gain: f64,
@@ -100,13 +102,13 @@ pub struct wk_shelter {
     pub struct_type: wk_struct_type,
     /// NULL (the default), or a wk_shelter_shape.
     pub next: *const c_void,
-    /// Its centre, m, within 1e12 m of the origin. Default 0, 0, 0.
+    /// Centre, m, within 1e12 m of the origin. Default 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Its three axes, one after the other: unit vectors at right angles. Default: the world's axes.
+    /// Three axes, one after the other: unit vectors at right angles. Default: the world's axes.
     pub axes: [f64; 9],
-    /// Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
+    /// Half the size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
     pub half_size_m: [f64; 3],
-    /// Its velocity, m/s; its length is at most 2000. Default 0, 0, 0.
+    /// Velocity, m/s; its length is at most 2000. Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
 }
 
@@ -122,8 +124,8 @@ impl wk_shelter {
     };
 }
 
-/// Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
-/// any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
+/// Planes that cut a wk_shelter to another convex shape. An extension: put it into wk_shelter.next. The part of the box
+/// beyond any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_shelter_shape {
@@ -197,8 +199,8 @@ pub unsafe extern "C" fn wk_view_set_rain(view: *mut wk_view, rain: *const wk_ra
     })
 }
 
-/// Sets the boxes that keep rain off and replaces those set before; set moving ones again in every frame. count 0
-/// removes all. At most 32. Unchanged after an error.
+/// Sets the boxes that keep rain off, at most 32, and replaces those set before; count 0 removes all. Set moving boxes
+/// again in every frame. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

@@ -1,16 +1,16 @@
 //! Weather regions
 //!
 //! Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
-//! ground plan, a perimeter outside it over which its weather fades into what is around it, and a wk_weather of which
-//! `has` names the parts that it takes. At each place, every query and the picture of a camera there see the merged
-//! weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity,
-//! never with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the
-//! same on every channel.
+//! ground plan, a perimeter outside it over which its weather fades into the weather around, and a wk_weather. The
+//! region's field `has` names the parts of that weather that the region takes. At each place, every query and the
+//! picture of a camera there see the merged weather. Queries between two points integrate the extinction of all regions
+//! on the way. Regions move at their own velocity, never with the wind; a host may also set them again in every frame.
+//! wk_context_save keeps them, and they are the same on every channel.
 //!
 //! Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
 //! them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
-//! weights. docs/regions.md has the rules, and a table of what differs by place and what does not yet: a camera's
-//! picture shows the weather at the camera, so a region is not seen from outside.
+//! weights. A camera's picture shows the weather at the camera, so a region is not visible from outside.
+//! docs/regions.md has the rules, and a table of what differs by place and what does not yet.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -37,7 +37,8 @@ include!(concat!(env!("OUT_DIR"), "/init_region.rs"));
 pub type wk_weather_part_flags = u32;
 /// Haze: visibility_m without fog and precipitation, and the aerosol fields.
 pub const WK_WEATHER_PART_HAZE: wk_weather_part_flags = 0x1;
-/// Low layer: fog or mist with its top, matter that the wind lifts. Alone, it lies in the haze around the region.
+/// Low layer: fog or mist with its top, or matter that the wind lifts. Without WK_WEATHER_PART_HAZE it lies in the haze
+/// of the weather around the region.
 pub const WK_WEATHER_PART_FOG: wk_weather_part_flags = 0x2;
 /// Precipitation of all kinds.
 pub const WK_WEATHER_PART_PRECIPITATION: wk_weather_part_flags = 0x4;
@@ -192,8 +193,9 @@ impl wk_weather_region {
     }
 }
 
-/// Replaces the list of weather regions; count 0 removes all. At most 64. Regions move by themselves; set them again to
-/// change them, or in every frame at their new places. Unchanged after an error. Copied during the call.
+/// Replaces the list of weather regions, at most 64; count 0 removes all. Regions move at their velocity by themselves.
+/// Set them again to change them; you may also do so in every frame, at their new places. Unchanged after an error.
+/// Copied during the call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
 /// corner radius beyond the smaller half extent.

@@ -1,10 +1,10 @@
 //! Weather reports and presets
 //!
-//! Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that are present, in
-//! any order up to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or get
-//! values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind (00000KT) and one
-//! that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of the code change
-//! nothing and are counted.
+//! These functions turn a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that
+//! are present, in any order up to the pressure. Fields that the report leaves out or marks as missing keep their
+//! defaults, or get values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind
+//! (00000KT) and one that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of
+//! the code change nothing and are counted.
 //!
 //! No report contains the altitude of its station: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up
 //! in your list of airports and set the altitude, because cloud bases, visibility and temperature refer to that height.
@@ -136,9 +136,9 @@ pub struct wk_metar {
     /// Lowest visibility in some direction, m, where the report states one besides the prevailing visibility
     /// (`4000 1500NE`, `9999 3100`), else 0. For information: the weather has the prevailing visibility.
     pub lowest_visibility_m: f64,
-    /// Offset of the runway visual ranges.
+    /// Offset of the first runway visual range.
     pub runways_offset: u32,
-    /// Bytes from the first to the last of them.
+    /// Length of the runway visual ranges, from the first to the last, bytes.
     pub runways_length: u32,
     /// Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included.
     pub trend_offset: u32,
@@ -154,7 +154,7 @@ pub struct wk_metar {
     pub unread_length: u32,
     /// Number of such words.
     pub unread_count: u32,
-    /// Must be 0.
+    /// Always 0.
     pub reserved0: u32,
 }
 
@@ -334,10 +334,10 @@ pub unsafe extern "C" fn wk_weather_from_preset(
     })
 }
 
-/// Gets name and one-line description of the preset `index`, from 0 in the order of a menu. Both texts live as long as
-/// the process. Either pointer may be NULL.
+/// Gets the name and the one-line description of the preset `index`. Indices count from 0, in an order that suits a
+/// menu. Both texts live as long as the process. Either pointer may be NULL.
 /// Thread: any.
-/// Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an index beyond the last preset.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_preset(
     index: u32,

@@ -1,11 +1,11 @@
 //! The sea: settings and queries
 //!
-//! Say what your sea is like, and ask at any time where its surface is, how steep it is and how the water moves; a hull
-//! can float by the answers. Without settings a context has no sea. What you set here replaces the wave height and the
-//! swell of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m); what you leave out follows the
-//! weather: its wind raises waves by fetch and duration. Heights keep what was asked within 1 %, no two places look
-//! alike, and the same time gives the same bits on every machine. Regions say where there is no water, where a harbour
-//! shelters it, and where a lake has a level of its own.
+//! Describe your sea, and query for any time the height and slope of its surface and the motion of the water; a hull
+//! can float by the answers. Without settings a context has no sea. A wave height or swell that you set here replaces
+//! that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else follows the weather:
+//! its wind raises waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
+//! repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
+//! places, sheltered harbours, and lakes with a level of their own.
 //!
 //! ```text
 //! wk_sea sea = WK_SEA_INIT;
@@ -91,8 +91,8 @@ unsafe fn settings_of(sea: *const wk_sea) -> Result<SeaSettings> {
     Ok(settings)
 }
 
-/// Sets the sea; NULL removes it. Part of the state that wk_context_save keeps. Set it before the first update: what
-/// it says about fetch holds for all weather that the timeline still knows. Unchanged after an error.
+/// Sets the sea; NULL removes it. Part of the saved state. Set it before the first update, because its fetch applies to
+/// all past weather that the timeline still knows. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
 #[unsafe(no_mangle)]
@@ -106,11 +106,11 @@ pub unsafe extern "C" fn wk_context_set_sea(context: *mut wk_context, sea: *cons
     })
 }
 
-/// Replaces the list of regions; count 0 removes all. At most 64. Regions that move at a constant velocity and rate of
-/// turn move by themselves: set them again when these change. Later regions count before earlier ones, dry ones before
-/// all. Part of the state that wk_context_save keeps. Unchanged after an error.
+/// Replaces the list of regions, at most 64; count 0 removes all. Regions move at their velocity and rate of turn by
+/// themselves: set them again when these change. Where regions overlap, the later one in the list counts, but a dry one
+/// counts before all others. Part of the saved state. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range: outlines that cross themselves, too.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for an outline that crosses itself.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sea_regions(
     context: *mut wk_context,
@@ -138,13 +138,14 @@ pub unsafe extern "C" fn wk_context_set_sea_regions(
 }
 
 /// Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
-/// them. Only the place on the ground of a position counts, not its height. There is no water where the terrain's tiles
-/// lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other
-/// fields are those of the water around, by which a hull floats. `shortest_wave_m`, range [0, 10000], leaves out waves
-/// shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are the distances from one element
-/// to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for points. The first call for a
-/// time costs some milliseconds; the sums of the last two times are kept, and each place then costs some microseconds.
-/// No device is needed, and nothing is allocated after the first calls.
+/// them. The height of a position does not count. There is no water where the terrain's tiles lie above the surface,
+/// except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of the
+/// water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of the
+/// shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+/// `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
+/// of your header for points. The first call for a time costs some milliseconds; the sums of the last two times are
+/// kept, and each place then costs some microseconds. No device is needed, and nothing is allocated after the first
+/// calls.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
 /// wk_context_get_conditions.
@@ -198,14 +199,15 @@ pub struct wk_sea_state {
     pub level_m: f64,
     /// Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
     pub significant_height_m: f64,
-    /// Period of the strongest waves, s; 0 without waves.
+    /// Period of the strongest waves, s; that of the highest single wave if there are no others; 0 without waves.
     pub peak_period_s: f64,
     /// Mean direction that the waves come from, degrees clockwise from true north, weighted by variance; 0 without
     /// waves.
     pub mean_from_deg: f64,
     /// Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
     pub mean_square_slope: f64,
-    /// Part of it that the waves of the surface have; the rest is in waves too short for it.
+    /// Part of mean_square_slope that belongs to the waves in the computed surface. The rest belongs to waves too short
+    /// for it.
     pub drawn_square_slope: f64,
     /// Height of the largest wave expected in an hour, m, crest to trough (Longuet-Higgins 1952), plus the heights of
     /// all single waves.

@@ -87,7 +87,7 @@ pub struct wk_sea_swell {
     pub period_s: f64,
     /// Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
-    /// Directional width, degrees. Range [1, 60]; 0, the default, is 15.
+    /// Directional width, degrees. Range [1, 60]; 0, the default, means 15.
     pub spread_deg: f64,
 }
 
@@ -108,7 +108,7 @@ impl wk_sea_swell {
     }
 }
 
-/// A regular wave of infinite crests, added to all others.
+/// A regular wave with infinitely long crests, added to all others.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sea_wave {
@@ -121,14 +121,14 @@ pub struct wk_sea_wave {
     /// Height from trough to crest, m. Range [0, 40], default 0. The steepnesses of all such waves together are at most
     /// 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
     pub height_m: f64,
-    /// Wave length, m. Range [0.1, 2000]; 0, the default, where period_s says it.
+    /// Wave length, m. Range [0.1, 2000]; 0, the default, if you set period_s instead.
     pub length_m: f64,
-    /// Period, s. Range [0.25, 40]; 0, the default, where length_m says it. One of the two must be set.
+    /// Period, s. Range [0.25, 40]; 0, the default, if you set length_m instead. Set exactly one of the two.
     pub period_s: f64,
     /// Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
-    /// Time of a crest at the world's origin, in degrees of the period after simulation time 0. Range [-360, 360],
-    /// default 0.
+    /// Time after simulation time 0 at which a crest passes the world's origin, in degrees of the period (360 is one
+    /// period). Range [-360, 360], default 0.
     pub phase_deg: f64,
 }
 
@@ -174,7 +174,7 @@ pub struct wk_sea {
     /// Mean level, m above mean sea level. Range [-500, 9000], default 0.
     pub level_m: f64,
     /// Depth of the water below the mean level, m, the same everywhere. Range [0.5, 12000], default 4000. It sets the
-    /// lengths and speeds of waves; where the terrain has a bed, answers have the depth above that.
+    /// lengths and speeds of waves. Over the host's terrain tiles, queries return the depth above the terrain instead.
     pub depth_m: f64,
     /// Height of high water above the mean level, m; the tide has the period of the moon's half-day, 12.4206 h. Range
     /// [0, 10]; 0, the default, is no tide.
@@ -190,7 +190,8 @@ pub struct wk_sea {
     pub peak_period_s: f64,
     /// Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without.
     pub peak_gamma: f64,
-    /// Optional: Beaufort number. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch.
+    /// Optional: Beaufort number B. Range [0, 12]. The sea is the one that a steady wind of 0.836 B^1.5 m/s sustains
+    /// over the fetch.
     pub beaufort: f64,
     /// Optional: direction that the wind sea comes from, degrees clockwise from true north. Range [0, 360]; else that
     /// of the wind that raised it.
@@ -199,17 +200,18 @@ pub struct wk_sea {
     pub temperature_c: f64,
     /// Salinity, g/kg. Range [0, 45], default 35.
     pub salinity_g_kg: f64,
-    /// Optional: share of downward blue light (450 nm) that a metre of water leaves, percent. Range [41.1, 98.1], which
-    /// are types 7C and I; else by water_type.
+    /// Optional: share of downward blue light (450 nm) that passes a metre of water, percent. Range [41.1, 98.1]: from
+    /// type 7C to type I; else by water_type.
     pub clarity_percent: f64,
     /// Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice.
     pub ice_cover: f64,
-    /// Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them.
+    /// Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than this do not lift them.
     pub ice_floe_m: f64,
-    /// Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by
-    /// Meylan, Bennetts and Kohout (2014).
+    /// Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. They decay along it
+    /// (Meylan, Bennetts and Kohout 2014).
     pub ice_width_m: f64,
-    /// Optional: WMO sea state, code table 3700. Range 0 to 9: the middle of its range of heights, fully developed.
+    /// Optional: WMO sea state, code table 3700. Range 0 to 9. The sea is fully developed, with the middle of the
+    /// code's range of heights.
     pub sea_state: u32,
     /// Optical type of the water. Default WK_WATER_TYPE_IB.
     pub water_type: wk_water_type,
@@ -260,7 +262,7 @@ impl wk_sea {
         wave_stride: struct_size::<wk_sea_wave>(),
     };
 
-    /// Returns the settings but for the lists.
+    /// Returns the settings without the lists of swells and waves.
     pub(super) fn settings(&self) -> Result<SeaSettings> {
         let some = |bit: wk_sea_has_flags, value: f64| (self.has & bit != 0).then_some(value);
         let ice = SeaIce { cover: self.ice_cover, floe_m: self.ice_floe_m, width_m: self.ice_width_m };
@@ -286,7 +288,7 @@ impl wk_sea {
         })
     }
 
-    /// Returns the source of the wind sea: one at most.
+    /// Returns the source of the wind sea, after checking that there is at most one.
     pub(super) fn wind_sea(&self) -> Result<WindSea> {
         let has = |bit: wk_sea_has_flags| self.has & bit != 0;
         let some = |bit: wk_sea_has_flags, value: f64| has(bit).then_some(value);
@@ -326,19 +328,20 @@ pub struct wk_sea_region {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Corners of the outline, m to the right and ahead of the centre, in order, either way around, each within 1e6 m.
-    /// The outline must not cross or touch itself. Read during the call only.
+    /// Corners of the outline, in either direction around it. Each corner is two numbers: the distance from the centre
+    /// to the right of the heading, and along it, m, within 1e6. The outline must not cross or touch itself. Read
+    /// during the call only.
     pub corners_m: *const [f64; 2],
-    /// Number of corners. Range 3 to 64.
+    /// Number of corners, [3, 64]. Default 0; must be given.
     pub corner_count: u32,
     /// Kind of water inside. Default WK_SEA_REGION_DRY.
     pub kind: wk_sea_region_kind,
-    /// Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin. Its height does not
-    /// matter. Default 0, 0, 0.
+    /// Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no
+    /// effect. Default 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Heading of `ahead` at at_s, degrees clockwise from true north. Range [-360, 360], default 0.
+    /// Heading of the outline at the time at_s, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
-    /// Velocity east and north, m/s, of at most 60 m/s. Default 0, 0.
+    /// Velocity to the east and north, m/s; its length is at most 60. Default 0, 0.
     pub velocity_m_s: [f64; 2],
     /// Rate of turn, degrees clockwise a second. Range [-90, 90], default 0.
     pub turn_deg_s: f64,
@@ -349,10 +352,10 @@ pub struct wk_sea_region {
     /// Lakes: depth below that level, m. Range [0.1, 12000], default 10. Waves keep the lengths that they have over the
     /// sea's depth.
     pub depth_m: f64,
-    /// Lakes and sheltered regions: height of the waves over that on the open sea. Range [0, 1], default 1.
+    /// Lakes and sheltered regions: ratio of the height of the waves to that on the open sea. Range [0, 1], default 1.
     pub wave_share: f64,
-    /// Sheltered regions: width of the band inside the outline over which waves become lower, m. Range [0, 10000],
-    /// default 0: at once.
+    /// Sheltered regions: width of the band inside the outline over which the waves become lower, m. Range [0, 10000];
+    /// 0, the default, is a step at the outline.
     pub rim_m: f64,
 }
 
@@ -395,13 +398,15 @@ impl wk_sea_region {
 }
 
 /// The sea at a place and time. Element of an array, without struct_size; calls take its sizeof instead. Where there is
-/// no water, surface_m is the position that was asked about, normal is up, and all other numbers are 0.
+/// no water, surface_m is the queried position, normal is up, and all other numbers are 0. A dry region is an
+/// exception: there has_water is 0, and the other fields are those of the water around the region.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sea_point {
     /// Height of the surface above mean sea level, m.
     pub height_m: f64,
-    /// Largest error of the height, m: 4 standard deviations of the waves left out, and the tolerances of the sums.
+    /// Bound of the error of height_m, m: 4 standard deviations of the waves left out, plus the tolerance of the
+    /// computation.
     pub height_error_m: f64,
     /// Point of the surface above or below the position, in the host's world, m.
     pub surface_m: [f64; 3],
@@ -413,11 +418,12 @@ pub struct wk_sea_point {
     pub acceleration_m_s2: [f64; 3],
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left.
+    /// Share of the place under foam, 0 to 1: foam of waves that break now, and what is left of the foam of the last
+    /// 3.6 s.
     pub foam: f64,
     /// 1 where there is water, 0 where there is none or in a dry region.
     pub has_water: u32,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
 }
 

@@ -33,9 +33,9 @@ pub const WK_SNOW_FRICTION_BARE: wk_snow_friction = 0;
 pub const WK_SNOW_FRICTION_LOOSE: wk_snow_friction = 1;
 /// Snow above 350 kg/m^3: pressed, or packed by wind.
 pub const WK_SNOW_FRICTION_PACKED: wk_snow_friction = 2;
-/// Slush: more than half of the water that it can hold.
+/// Slush: snow with more than half of the liquid water that it can hold.
 pub const WK_SNOW_FRICTION_SLUSH: wk_snow_friction = 3;
-/// Above 650 kg/m^3: frozen hard.
+/// Snow above 650 kg/m^3: frozen hard.
 pub const WK_SNOW_FRICTION_ICE: wk_snow_friction = 4;
 
 /// Snow at a place. Element of an array, without struct_size; calls take its sizeof instead.
@@ -59,7 +59,7 @@ pub struct wk_lying_snow {
     pub surface_m: [f64; 3],
     /// Grip of a wheel.
     pub friction: wk_snow_friction,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
 }
 
@@ -187,7 +187,7 @@ pub unsafe extern "C" fn wk_context_take_snow(
     })
 }
 
-/// Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+/// Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense, as a wheel does.
 /// Thread: exclusive.
 /// Errors: as wk_context_take_snow.
 #[unsafe(no_mangle)]
@@ -201,10 +201,10 @@ pub unsafe extern "C" fn wk_context_press_snow(context: *mut wk_context, strip: 
     })
 }
 
-/// Advances time by `hours`, in (0, 720], and simulates the snow of that time in steps of ten minutes, so that a lesson
-/// can begin after a night's snowfall. The laws are those of ordinary steps. The resulting state differs from theirs by
-/// up to some percent, and records that it was made in this way (wk_context_state_hash). Everything else is advanced as
-/// by wk_context_update, to the end: with the largest terrain this may take some seconds.
+/// Advances time by `hours`, in (0, 720], with the snow in steps of ten minutes, so that a lesson can begin after a
+/// night's snowfall. The laws are those of ordinary steps, but the resulting state differs by up to some percent from
+/// the state after ordinary steps. The state records that it was made in this way (wk_context_state_hash). Everything
+/// else advances as with wk_context_update, but in this one call: with the largest terrain it may take some seconds.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
 #[unsafe(no_mangle)]

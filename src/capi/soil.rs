@@ -1,11 +1,11 @@
 //! Soil
 //!
 //! Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
-//! undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_at, water, snow and wind see the
-//! sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
-//! heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
-//! saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
-//! pose before the update that reaches its time.
+//! undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind use
+//! the sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond
+//! it, heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by
+//! wk_context_update, saved and hashed with the context. It depends on the timed poses of the tools, not on the frame
+//! rate: send each pose before the update that reaches its time.
 //!
 //! A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
 //! are 1/64 s long. docs/soil.md shows how to dig.
@@ -126,9 +126,9 @@ fn tool_named(e: Error) -> Error {
     })
 }
 
-/// Sets the soil of the terrain's tiles, at first undug; NULL takes the soil, and everything dug, away. Equal settings
-/// change nothing. Another lattice (wk_context_set_terrain) ends the soil. Part of the saved state. Unchanged after an
-/// error.
+/// Sets the soil of the terrain's tiles, at first undug; NULL removes the soil with all changes by digging. Setting
+/// equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the soil. Part of the
+/// saved state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
 /// WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
@@ -143,8 +143,8 @@ pub unsafe extern "C" fn wk_context_set_soil(context: *mut wk_context, soil: *co
     })
 }
 
-/// Adds a tool at its first pose, at most 64 at a time. `out_tool` gets its number, which no other tool of the state
-/// ever has. Unchanged after an error.
+/// Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which is never given to
+/// another tool of the state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
 /// remain, and for a pose before the last update.
@@ -180,8 +180,8 @@ pub unsafe extern "C" fn wk_context_add_soil_tool(
 }
 
 /// Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
-/// with each point at most 20 m from where it was. The tool moves evenly between its poses, and stands where the last
-/// one ends. Its edge must stay over tiles. Unchanged after an error.
+/// with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
+/// after the last one. Its edge must stay over tiles. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
 /// that has ended, without soil, and while steps of an update remain.
@@ -200,7 +200,8 @@ pub unsafe extern "C" fn wk_context_move_soil_tool(
     })
 }
 
-/// Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
+/// Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and counts as taken
+/// (wk_soil_balance).
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
 /// and while steps of an update remain.
@@ -213,7 +214,7 @@ pub unsafe extern "C" fn wk_context_end_soil_tool(context: *mut wk_context, tool
     })
 }
 
-/// Gets what a tool holds, and what it met in the last step, as of wk_context_get_state_time.
+/// Gets the content of a tool, and the soil that it met in the last step, as of wk_context_get_state_time.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
@@ -231,9 +232,10 @@ pub unsafe extern "C" fn wk_context_get_soil_tool(
     })
 }
 
-/// Gets the force on the edge of a tool that cuts as deep as it did in the last step, in the soil that it met there:
-/// P = w (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985). Closed form, for the physics of your
-/// machine; 0 where it does not cut.
+/// Gets the force on the edge of a tool that cuts as deep as in the last step, in the soil that it met there: P = w
+/// (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
+/// depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
+/// the physics of your machine; 0 where the tool does not cut.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
@@ -264,8 +266,9 @@ pub unsafe extern "C" fn wk_context_get_soil_resistance(
     })
 }
 
-/// Drops loose soil that the host brings onto a place of the host's world, at once: `mass_kg`, in [0, 1e6], of a kind.
-/// Its height does not matter. `out_lands`, which may be NULL, gets 1 if there is ground to take it, else 0.
+/// Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is its mass,
+/// in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if there is
+/// ground to land on, else 0.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
 /// update remain.
@@ -327,11 +330,11 @@ pub unsafe extern "C" fn wk_context_get_soil_points(
     })
 }
 
-/// Gets the rectangles in which soil has changed heights after a revision of the terrain
-/// (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case.
-/// If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size`
-/// is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
-/// heights to wk_context_update_terrain: the tiles are the undug ground.
+/// Gets the rectangles in which soil has changed heights since a revision of the terrain
+/// (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` gets their number
+/// in any case. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds.
+/// `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns their heights and kinds.
+/// Do not pass these heights to wk_context_update_terrain: the tiles are the undug ground.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
@@ -369,11 +372,11 @@ pub unsafe extern "C" fn wk_context_get_soil_changes(
 }
 
 /// Gets the ground of a rectangle of a tile's cells, by rows from the south-west: `cells[0]` cells east and `cells[1]`
-/// north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
+/// north from `first_cell` on, at most 2^20 in all. `points` must have room for all of them. `point_size` is
 /// sizeof(wk_soil_point) of your header.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too
-/// small; WK_ERROR_WRONG_ORDER without soil.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that leaves the tile, or a capacity that
+/// is too small; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_soil_cells(
     context: *const wk_context,

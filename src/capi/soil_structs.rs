@@ -5,11 +5,12 @@ use std::{ffi::c_void, ptr::null};
 use super::boundary::{layout::struct_size, numbers::*};
 use crate::soil::{MAX_SOIL_KINDS, SoilBooks, SoilPoint, SoilToolReport, laws::CuttingForce};
 
-/// Number of a kind of soil: a built-in one, or 7 and more for the kinds of a wk_soil, in their order.
+/// Number of a kind of soil: a constant below for a built-in kind, or 7 and more for the kinds in wk_soil.own_kinds, in
+/// their order.
 pub type wk_soil_kind_id = u32;
 /// Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees.
 pub const WK_SOIL_SAND: wk_soil_kind_id = 0;
-/// Dry gravel: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees.
+/// Dry gravel, with the same five values: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees.
 pub const WK_SOIL_GRAVEL: wk_soil_kind_id = 1;
 /// Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees.
 pub const WK_SOIL_CLAY: wk_soil_kind_id = 2;
@@ -21,12 +22,12 @@ pub const WK_SOIL_TOPSOIL: wk_soil_kind_id = 4;
 pub const WK_SOIL_ROCK: wk_soil_kind_id = 5;
 /// Hard coal: 1202 kg/m^3, 35 %, 37 degrees, 100 kPa, 35 degrees.
 pub const WK_SOIL_COAL: wk_soil_kind_id = 6;
-/// Number of the built-in kinds: the number of the first kind of a wk_soil.
+/// Number of the built-in kinds, and thus the number of the first kind in wk_soil.own_kinds.
 pub const WK_SOIL_BUILT_IN_KINDS: u32 = 7;
 /// Largest number of kinds, the built-in ones among them.
 pub const WK_SOIL_KINDS: u32 = 16;
 
-/// Shape of a tool, and what it does to the soil.
+/// Shape of a tool, which decides how it moves the soil.
 pub type wk_soil_tool_shape = u32;
 /// Bucket or shovel: cuts with its edge, fills, carries and pours.
 pub const WK_SOIL_TOOL_BUCKET: wk_soil_tool_shape = 0;
@@ -55,13 +56,13 @@ pub struct wk_soil_kind {
     pub swell: f64,
     /// Angle at which the loose soil rests, degrees. Range [5, 60], default 37.
     pub repose_deg: f64,
-    /// Cohesion of moist bank, kPa. Range [0, 10 000], default 2. From 100 on it counts as cemented, and water takes
-    /// nothing of it.
+    /// Cohesion of moist bank, kPa. Range [0, 10 000], default 2. Soil with 100 kPa or more counts as cemented: water
+    /// does not weaken it.
     pub cohesion_kpa: f64,
     /// Friction angle of the bank, degrees. Range [0, 60], default 30.
     pub friction_deg: f64,
-    /// 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries
-    /// them.
+    /// 1 if wheels and tracks sink into the soil, by the three numbers below (Bekker 1969); 0, the default, if it
+    /// carries them without sinking.
     pub sinks: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -111,13 +112,13 @@ pub struct wk_soil {
     pub horizon_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Depth of the upper side of each layer below the undug surface, m: 0 for the first, and more for each other than
-    /// for the one before, up to 1000. Copied. Default NULL.
+    /// Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
+    /// 1000. Copied. Default NULL.
     pub horizon_tops_m: *const f64,
     /// Kind of each layer, a wk_soil_kind_id. Copied. Default NULL.
     pub horizon_kinds: *const wk_soil_kind_id,
-    /// Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at
-    /// 0 (dry sand) and at 1 (below the water table) has no cohesion.
+    /// Share of the pores of the bank that water fills before rain and sun change it. Range [0, 1], default 0.3, moist.
+    /// Bank at 0 (dry sand) and at 1 (below the water table) has no cohesion.
     pub saturation: f64,
 }
 
@@ -147,14 +148,14 @@ pub struct wk_soil_tool {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default WK_SOIL_TOOL_BUCKET.
+    /// Shape of the tool. Default WK_SOIL_TOOL_BUCKET.
     pub shape: wk_soil_tool_shape,
     /// Must be 0.
     pub reserved0: u32,
     /// Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools.
     pub struck_m3: f64,
-    /// Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for
-    /// loaders (SAE J742). Range [0, 1]. Used by buckets and beds.
+    /// Slope of the rated heap of a bucket or bed, rise per unit of length: 1, the default, for excavators by SAE J296;
+    /// 0.5 by CECE and for loaders (SAE J742). Range [0, 1]. Not used by other tools.
     pub heap_rise: f64,
     /// Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools.
     pub diameter_m: f64,
@@ -176,7 +177,8 @@ impl wk_soil_tool {
     };
 }
 
-/// Pose of a tool at a time. Left and right are those of a viewer inside the tool who looks out of its opening.
+/// Pose of a tool at a time. Left and right are as seen by a viewer inside the tool who looks out of its opening. All
+/// points lie within 1e7 m of the world's origin.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_pose {
@@ -188,17 +190,20 @@ pub struct wk_soil_pose {
     pub next: *const c_void,
     /// Simulation time, s. Range [-1e10, 1e10], default 0.
     pub time_s: f64,
-    /// Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m.
+    /// Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. Default 0,
+    /// 0, 0.
     pub edge_left_m: [f64; 3],
-    /// Right end of it, 0.05 to 20 m away.
+    /// Right end of this edge or line, 0.05 to 20 m from the left end. Default 0, 0, 0.
     pub edge_right_m: [f64; 3],
-    /// Left end of the edge of the opening opposite to the cutting edge. Not used for wheels and tracks.
+    /// Left end of the upper edge of the opening, opposite to the cutting edge and 0.02 to 20 m from it. Not used for
+    /// wheels and tracks. Default 0, 0, 0.
     pub upper_left_m: [f64; 3],
-    /// Right end of it.
+    /// Right end of the upper edge, 0.05 to 20 m from the left end. Default 0, 0, 0.
     pub upper_right_m: [f64; 3],
-    /// Direction out of the opening in the host's world; need not have unit length. Not used for wheels and tracks.
+    /// Direction out of the opening in the host's world; any length in [1e-6, 1e6]. Not used for wheels and tracks.
+    /// Default 0, 0, 0; must be given for other tools.
     pub facing: [f64; 3],
-    /// Load of a wheel or track on the ground, N. Range [0, 1e7], default 0; 0 for other tools.
+    /// Load of a wheel or track on the ground, N. Range [0, 1e7], default 0. Not used by other tools.
     pub load_n: f64,
 }
 
@@ -217,7 +222,7 @@ impl wk_soil_pose {
     };
 }
 
-/// Content of a tool, and what it met in the last step of the soil (1/64 s).
+/// Content of a tool, and the soil that it met in the last step of the soil (1/64 s).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_tool_report {
@@ -233,26 +238,26 @@ pub struct wk_soil_tool_report {
     pub mass_kg: f64,
     /// Bulk volume held, m^3.
     pub bulk_m3: f64,
-    /// Share of the rated volume with its heap that is filled.
+    /// Bulk volume held over the rated volume with its heap.
     pub fill: f64,
-    /// Centre of what is held, in the host's world, m.
+    /// Centre of the soil held, in the host's world, m.
     pub centre_m: [f64; 3],
     /// Mass of each kind held, kg, by the kind's number.
     pub kinds_kg: [f64; 16],
-    /// Share of the pores of the soil held that water fills; 0 when empty.
+    /// Share of the pores of the held soil that water fills, 0 to 1; 0 when empty.
     pub saturation: f64,
     /// Mean depth of the cut, m.
     pub cut_depth_m: f64,
     /// Deepest sinkage of a wheel or track, m.
     pub sinkage_m: f64,
-    /// Kind of most of the soil that was cut.
+    /// Kind that makes up most of the soil that was cut.
     pub cut_kind: wk_soil_kind_id,
     /// 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
-    /// from a set of numbers that fits a small range only; else 0.
+    /// from sinkage numbers that hold for a small range only; else 0.
     pub sinkage_is_beyond_range: u32,
     /// 1 where the edge met frozen ground, which it cannot cut; else 0.
     pub is_stopped_by_frost: u32,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
 }
 
@@ -297,7 +302,7 @@ impl wk_soil_tool_report {
     }
 }
 
-/// Blade of a tool, as it meets the soil.
+/// Blade of a tool, for the force of the soil on it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_blade {
@@ -383,15 +388,16 @@ pub struct wk_soil_balance {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Bank that was loosened. Each number is limited to the range of its type, 9.2 million tonnes.
+    /// Bank that was loosened, micrograms. Each number of this struct is limited to the range of its type, 9.2 million
+    /// tonnes.
     pub dug_ug: i64,
-    /// Soil that the host brought.
+    /// Soil that the host brought, micrograms.
     pub brought_ug: i64,
-    /// Loose soil on the ground.
+    /// Loose soil on the ground, micrograms.
     pub lying_ug: i64,
-    /// Soil in buckets and beds.
+    /// Soil in buckets and beds, micrograms.
     pub held_ug: i64,
-    /// Soil that left with tools that ended.
+    /// Soil that left with tools that ended, micrograms.
     pub taken_ug: i64,
 }
 
@@ -419,9 +425,9 @@ impl wk_soil_balance {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_point {
-    /// Height of the surface above the terrain's origin, m: the host's height with the change.
+    /// Height of the surface above the terrain's origin, m: the host's height plus change_m.
     pub surface_m: f64,
-    /// Difference to the undug height, m; negative in a pit.
+    /// Change of the height by soil, m: the surface minus the undug height; negative in a pit.
     pub change_m: f64,
     /// Depth of loose soil, m.
     pub loose_m: f64,

@@ -41,13 +41,14 @@ pub struct wk_stars {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default 0: the catalogue's stars and the planets, at their positions over the Earth.
+    /// Flags of the settings that are set. Default 0: the stars of the catalogue and the planets, at their positions
+    /// over the Earth.
     pub flags: wk_stars_flags,
     /// Number of stars in `stars`, at most 1 000 000. Default 0.
     pub star_count: u32,
-    /// With WK_STARS_OWN: four numbers for each star: right ascension, degrees, and declination, degrees in [-90, 90],
-    /// both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a black body,
-    /// K, in [1000, 100000]. Copied. Default NULL.
+    /// With WK_STARS_OWN: four numbers for each star: right ascension, degrees in [-1e6, 1e6], and declination, degrees
+    /// in [-90, 90], both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a
+    /// black body, K, in [1000, 100000]. Copied. Default NULL.
     pub stars: *const f64,
     /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
     /// to (east, north, up), column-major. Default the identity.
@@ -116,8 +117,8 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
 }
 
 /// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
-/// a simulation time. It falls with the brightness of the sky, and with the extinction of the star's light in air, fog
-/// and clouds. Minus infinity where no starlight gets through.
+/// a simulation time. It decreases with the brightness of the sky, and with the extinction of the star's light in air,
+/// fog and clouds. Where no starlight gets through it is minus infinity.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

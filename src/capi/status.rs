@@ -1,8 +1,8 @@
 //! Status, versions, messages
 //!
-//! Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
-//! output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
-//! gives that parameter or field alone.
+//! Every call that can fail returns a wk_status: 0 and positive values mean success, negative ones failure.
+//! wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field() gives
+//! that parameter or field alone.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -10,8 +10,9 @@ pub use super::boundary::numbers::*;
 use super::boundary::{call, guard, input, layout, log_sink};
 use crate::error::Status;
 
-/// Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
-/// freed.
+/// Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL; lives
+/// as long as the library, and you must not free it.
+/// Thread: any.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
     NAMES.iter().find(|n| n.0 == status).map_or(c"unknown status", |n| n.1).as_ptr()
@@ -20,6 +21,7 @@ pub extern "C" fn wk_status_name(status: wk_status) -> *const c_char {
 /// Returns the message of the calling thread's last failed call: one sentence that begins with the function's name and
 /// names the parameter and the accepted range. Empty before the first failure; successful calls do not change it. Never
 /// NULL; valid until the next failing call of this thread.
+/// Thread: any; each thread has its own message.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_last_error_message() -> *const c_char {
     call::last_error()
@@ -30,6 +32,7 @@ pub extern "C" fn wk_last_error_message() -> *const c_char {
 /// `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
 /// WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
 /// Never NULL; valid until the next failing call of this thread.
+/// Thread: any; each thread has its own field.
 #[unsafe(no_mangle)]
 pub extern "C" fn wk_last_error_field() -> *const c_char {
     call::last_error_field()
@@ -37,6 +40,7 @@ pub extern "C" fn wk_last_error_field() -> *const c_char {
 
 /// Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
 /// major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
+/// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
     guard("wk_version", |_| {
@@ -58,7 +62,9 @@ pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mu
 
 /// Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
 /// They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
-/// severe level that is sent. `callback` must always return normally, even if it fails; Welkin ignores its failures.
+/// severe level that is sent. `callback` must return normally and must not unwind, even if it could not handle the
+/// message.
+/// Thread: any. When the call returns, the previous callback is no longer called.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_set_log_callback(

@@ -57,15 +57,15 @@ pub struct wk_window {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default WK_WINDOW_XLIB.
+    /// Window system. Default WK_WINDOW_XLIB.
     pub kind: wk_window_kind,
-    /// X11's screen number. Default 0.
+    /// Number of the screen, for X11. Default 0.
     pub screen: i32,
-    /// See wk_window_kind. Default NULL.
+    /// Display, connection or module; see wk_window_kind. Default NULL.
     pub display: *mut c_void,
-    /// See wk_window_kind. Default NULL.
+    /// Handle of the window; see wk_window_kind. Default NULL.
     pub handle: *mut c_void,
-    /// See wk_window_kind. Default 0.
+    /// Number of the window, for X11; see wk_window_kind. Default 0.
     pub id: u64,
 }
 
@@ -107,13 +107,15 @@ pub struct wk_surface_config {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Width of the window's drawable area, pixels; 0 (the default) while it is minimised.
+    /// Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
+    /// minimised.
     pub width: u32,
-    /// Height of the window's drawable area, pixels; 0 (the default) while it is minimised.
+    /// Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
+    /// minimised.
     pub height: u32,
-    /// Default WK_SURFACE_DISPLAY_LINEAR.
+    /// Encoding of the values drawn. Default WK_SURFACE_DISPLAY_LINEAR.
     pub encoding: wk_surface_encoding,
-    /// Default WK_PACING_REFRESH.
+    /// Time at which images reach the screen. Default WK_PACING_REFRESH.
     pub pacing: wk_pacing,
 }
 
@@ -158,7 +160,7 @@ fn in_window(e: Error) -> Error {
     })
 }
 
-/// Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
+/// Creates an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
 /// WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
 /// Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
 /// Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
@@ -185,7 +187,7 @@ pub unsafe extern "C" fn wk_device_create_for_window(
     })
 }
 
-/// Makes a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
+/// Creates a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
 /// `wk_surface_destroy`.
 /// Thread: exclusive on the device; on macOS the main one.
 /// Errors: WK_ERROR_UNSUPPORTED if the device cannot present to this window.
@@ -212,6 +214,7 @@ pub unsafe extern "C" fn wk_surface_create(
 }
 
 /// Destroys a surface; the window stays the host's. NULL does nothing.
+/// Thread: any; on macOS the main one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_status {
     guard("wk_surface_destroy", |_| {
@@ -227,8 +230,8 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
 /// is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
 /// surface is configured with an area.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if the window
-/// is gone.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the window has no format
+/// for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: *const wk_surface_config) -> wk_status {
     guard("wk_surface_configure", |call| {
@@ -253,8 +256,9 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
 
 /// Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
 /// Thread: exclusive.
-/// Returns WK_PENDING if the window shows nothing now: skip this frame.
-/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised.
+/// Returns WK_PENDING if the window shows nothing now, because it is hidden or the screen is busy: skip this frame.
+/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised;
+/// WK_ERROR_WRONG_ORDER before the first wk_surface_configure.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_acquire(surface: *mut wk_surface) -> wk_status {
     guard("wk_surface_acquire", |call| {

@@ -2,7 +2,7 @@
 //!
 //! The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
 //! aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
-//! and removed, and rectangles of their cells changed. The time of a change grows with the rectangle, so an excavator's
+//! and removed, and rectangles of their cells changed. The cost of a change grows with the rectangle, so an excavator's
 //! bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
 //! has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
 //! ground. A context has either tiles or one wk_ground_grid.
@@ -83,9 +83,9 @@ pub struct wk_terrain_drawing {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels. Range [0.25, 16],
-    /// default 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is
-    /// so rough that more would be needed is drawn with a larger error.
+    /// Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
+    /// default 1. It sets the distance that each level of detail reaches, in [40, 160] sides of its squares. Ground so
+    /// rough that it would need a longer reach is drawn with a larger error.
     pub error_px: f64,
 }
 
@@ -175,7 +175,8 @@ pub struct wk_terrain_point {
     pub tile: [i32; 2],
     /// Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none.
     pub surface_class: wk_surface_class,
-    /// 1 on the ground of a tile, else 0: on a triangle of which a cell is a hole or lies off all tiles.
+    /// 1 on the ground of a tile; 0 off all tiles, and on a triangle with a corner that is a hole or lies off all
+    /// tiles.
     pub has_ground: u32,
 }
 
@@ -292,10 +293,10 @@ pub unsafe extern "C" fn wk_context_set_terrain_tile(
 }
 
 /// Changes the heights, the classes, or both, of a rectangle of a tile's cells. Water that stands there flows as the
-/// new ground allows: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
+/// new ground allows: off a raised floor, into a new pit. The cost grows with the rectangle and with the standing water
 /// that it touches, not with the tile or the terrain. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: as wk_context_set_terrain_tile, and for the key of no tile.
+/// Errors: as wk_context_set_terrain_tile; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update_terrain(
     context: *mut wk_context,
@@ -312,7 +313,7 @@ pub unsafe extern "C" fn wk_context_update_terrain(
 
 /// Removes a tile and the water on it. Where it was, water of the other tiles runs off.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
+/// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_remove_terrain_tile(
     context: *mut wk_context,
@@ -373,6 +374,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_revision(
 /// `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
 /// sizeof(wk_terrain_point) of your header for points.
 /// Thread: concurrent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_at(
     context: *const wk_context,
@@ -407,7 +409,7 @@ pub unsafe extern "C" fn wk_context_get_terrain_at(
 /// sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on
 /// the terrain changes; with capacity 0 the call returns only this number.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, or a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_water(
     context: *const wk_context,

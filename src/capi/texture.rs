@@ -57,7 +57,7 @@ pub struct wk_texture_desc {
     pub width: u32,
     /// Height, pixels. Range [1, wk_caps.max_texture_size], default 1.
     pub height: u32,
-    /// Default WK_FORMAT_RGBA8_UNORM.
+    /// Texel format. Default WK_FORMAT_RGBA8_UNORM.
     pub format: wk_format,
     /// Must be 0.
     pub reserved0: u32,
@@ -94,9 +94,10 @@ fn format(format: wk_format) -> wgpu::TextureFormat {
     }
 }
 
-/// Makes a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
+/// Creates a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
 /// Thread: any.
-/// Errors: WK_ERROR_UNSUPPORTED if the device cannot make the format; WK_ERROR_OUT_OF_MEMORY.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the device cannot make the
+/// format; WK_ERROR_OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_create(
     device: *mut wk_device,
@@ -173,6 +174,7 @@ pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_stat
 /// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
 /// the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
 /// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_write(
     texture: *mut wk_texture,
@@ -203,7 +205,7 @@ pub unsafe extern "C" fn wk_texture_write(
 /// picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
 /// Slow: do not call it in every frame.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_read(
     texture: *mut wk_texture,

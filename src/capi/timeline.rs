@@ -78,16 +78,17 @@ pub unsafe extern "C" fn wk_context_set_weather(
 }
 
 /// Advances simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame
-/// before the views record. Weather and light are functions of time and change at once. A simulated ground
-/// (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
-/// step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
-/// loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
-/// wk_context_get_state_time, and settings and later times take effect only after the remaining steps. The state
-/// therefore does not depend on the number of calls. A leap of more than a day starts the ground a day before its end,
-/// as wet as the weather reports it then.
+/// before the views record. Weather and light are functions of time and change at once. Simulated states take steps:
+/// water (WK_GROUND_SIMULATED) every 10 s, snow (WK_LYING_SNOW_SIMULATED) every 60 s, soil every 1/64 s; a wind field
+/// has steps of its own. One call computes steps for at most 50 ms, and at least one step. If steps remain, as after a
+/// leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
+/// returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
+/// later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
+/// After a leap of more than a day, only the last day of the water is simulated; it starts as wet as the weather
+/// reports then.
 /// Thread: exclusive.
 /// Returns WK_PENDING, which is no error, while steps remain.
-/// Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64) -> wk_status {
     guard("wk_context_update", |call| {
@@ -96,7 +97,8 @@ pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64
 }
 
 /// Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
-/// returns WK_PENDING. The difference is how far the state lags behind. It never decreases, except by wk_context_load.
+/// returns WK_PENDING. The difference is the lag of the state. The state's time never decreases, except by
+/// wk_context_load.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_state_time(
@@ -195,8 +197,10 @@ unsafe fn given_direction(p: *const wk_given_direction) -> Result<Option<GivenDi
     Ok(Some(GivenDirection { azimuth_deg: c.azimuth_deg, elevation_deg: c.elevation_deg }))
 }
 
-/// Sets the exposure of frames that do not set their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
+/// Sets the exposure of frames that do not set their own. `value` has the meaning and range that wk_exposure_mode
+/// states for `mode`; WK_EXPOSURE_OF_CONTEXT is refused here.
 /// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_exposure(
     context: *mut wk_context,
@@ -215,12 +219,14 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 }
 
 /// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
-/// weather, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve, fog law, shelters,
-/// lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
-/// belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
-/// views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
-/// gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call fails; with
-/// `buffer` NULL and `capacity` 0 it succeeds.
+/// weather, weather regions, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve,
+/// fog law, cloud map and model, lightning, night sky, shelters, lamps, rain areas, wind grid and wind field, the
+/// terrain with its water, snow and soil, the default surface class, the sea with its regions, and the world, place,
+/// seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow and
+/// soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans, wk_terrain_drawing),
+/// the host's own list of stars, and the images of wk_context_set_occluder_maps, because each channel may have its own.
+/// `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
+/// fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
 #[unsafe(no_mangle)]
@@ -241,9 +247,9 @@ pub unsafe extern "C" fn wk_context_save(
 
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
 /// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
-/// geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
-/// tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
-/// the call, set them as they were when the state was saved.
+/// geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. A state of an earlier version
+/// without planet and tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a
+/// wk_terrain stay too: before the call, set them as they were when the state was saved.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
 /// another format, which the message names (this version reads format 2; save states of format 1 again, because they

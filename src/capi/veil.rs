@@ -1,8 +1,8 @@
 //! Textures for the host's transparent things
 //!
-//! Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
-//! the light that air, fog and rain add on the way to a point, and the transmittance up to it. The published sampling
-//! functions, GLSL and WGSL, map clip coordinates and distance to texels.
+//! Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them. Their shaders
+//! sample the frame's veil: the light that air, fog and rain add on the way to a point, and the transmittance up to it.
+//! The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -27,7 +27,8 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_veil.rs"));
 
-/// The veil of the view's last frame: air, clouds drawn as a volume, fog, the weather's rain, and rain areas.
+/// The veil of the view's last frame. It includes air, clouds drawn as a volume, fog, the rain of the weather, and rain
+/// areas.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_frame_textures {
@@ -37,9 +38,9 @@ pub struct wk_frame_textures {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage.
+    /// Light that air, fog and precipitation add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage.
     pub light: u64,
-    /// Transmittance: share of the light from behind that passes, RGB half floats: as `light`.
+    /// Transmittance: share of the light from behind that passes. A texture of the same kind as `light`.
     pub through: u64,
     /// Width of both textures, pixels.
     pub width: u32,
@@ -73,7 +74,7 @@ pub const WK_SHADING_WGSL: wk_shading_language = 1;
 /// the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
 /// between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+/// Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_frame_textures(
     view: *mut wk_view,

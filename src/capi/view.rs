@@ -5,11 +5,11 @@
 //!
 //!   PREPARE     tables and simulation textures; needs no target
 //!   BACKGROUND  the sky behind everything; before or after the opaque things
-//!   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
+//!   SURFACE     water and snow on surfaces, shadows of clouds, the sea, terrain; after the opaque things; needs depth
 //!   MEDIUM      fog and aerial perspective on all that was drawn so far
-//!   PARTICLES   particles that fall and fly
-//!   LENS        water on the windscreen
-//!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
+//!   PARTICLES   rain, hail and snow near the camera, channels of lightning
+//!   LENS        water and snow on the windscreen
+//!   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in display colour spaces
 //!
 //! The calls of one frame share frame_id and record stages in this order, each at most once. WK_STAGE_ALL does
 //! everything in one call and lets neighbouring stages share one pass. Stages with nothing to draw cost nothing. When
@@ -51,13 +51,14 @@ pub type wk_stage_flags = u32;
 pub const WK_STAGE_PREPARE: wk_stage_flags = 1;
 /// Sky behind everything: pixels at the far depth, or all pixels without depth.
 pub const WK_STAGE_BACKGROUND: wk_stage_flags = 2;
-/// Water on surfaces; after the host's opaque objects.
+/// Water and snow on surfaces, shadows of clouds, and the sea and terrain that Welkin draws; after the host's opaque
+/// objects.
 pub const WK_STAGE_SURFACE: wk_stage_flags = 4;
 /// Fog and aerial perspective on everything that the host has drawn.
 pub const WK_STAGE_MEDIUM: wk_stage_flags = 8;
-/// Particles that fall and fly.
+/// Rain, hail and snow near the camera, and the channels of lightning.
 pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
-/// Water on the windscreen.
+/// Water and snow on the windscreen.
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
 /// Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
 /// display-linear values, other formats get sRGB-encoded ones. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB
@@ -119,7 +120,7 @@ pub struct wk_report {
     pub bytes: u64,
     /// Flags of the following fields that are set.
     pub has: wk_report_flags,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
     /// Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
     /// (WK_FRAME_MEASURE).
@@ -137,15 +138,15 @@ pub struct wk_report {
     pub checked_error_bound: f64,
     /// Error that the gauge then measured in that picture.
     pub checked_error: f64,
-    /// Number of drops and stones around the camera; those in the picture were drawn.
+    /// Number of drops and hailstones around the camera; those inside the picture were drawn.
     pub drops: u32,
-    /// Number of flakes around the camera; those in the picture were drawn. 0 if none were.
+    /// Number of flakes around the camera; those inside the picture were drawn. 0 if none were.
     pub flakes: u32,
     /// Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
     pub drop_weight: f64,
-    /// Splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops.
+    /// Rate of splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops.
     pub splashes_left_out_per_m2_s: f64,
-    /// Stones that did not bounce for lack of room, 1/(m^2 s): the smallest ones.
+    /// Rate of stones that did not bounce for lack of room, 1/(m^2 s) on level ground: the smallest ones.
     pub stones_left_out_per_m2_s: f64,
     /// Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
     pub contrast_gain: f64,
@@ -194,15 +195,15 @@ pub const WK_EFFECT_BACKGROUND: wk_effect = 2;
 pub const WK_EFFECT_MEDIUM: wk_effect = 3;
 /// Exposure, tone curve, encoding.
 pub const WK_EFFECT_TONE: wk_effect = 4;
-/// Stages in one draw, where the target's format does not allow separate draws.
+/// Several stages in one draw, where the target's format does not allow separate draws.
 pub const WK_EFFECT_COMPOSITION: wk_effect = 5;
 /// Textures for the host's own shaders.
 pub const WK_EFFECT_VEIL: wk_effect = 6;
 /// Acquiring the host's context and images, and returning them.
 pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
-/// Rain, hail and snow near the camera.
+/// Rain, hail and snow near the camera, and the channels of lightning.
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
-/// Water on surfaces.
+/// Water and snow on surfaces, and the sea and terrain that Welkin draws.
 pub const WK_EFFECT_SURFACE: wk_effect = 9;
 /// Water on the windscreen: its steps (after the sky's tables) and the lens.
 pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
@@ -213,7 +214,7 @@ pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 pub struct wk_effect_cost {
     /// Effect whose cost this is.
     pub effect: wk_effect,
-    /// 0.
+    /// Always 0.
     pub reserved0: u32,
     /// Name of the effect in English; lives as long as the library.
     pub name: *const c_char,
@@ -221,7 +222,7 @@ pub struct wk_effect_cost {
     pub ms: f64,
 }
 
-/// Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
+/// Creates a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
 /// `wk_view_destroy`.
 /// Thread: exclusive on the context.
 #[unsafe(no_mangle)]
@@ -248,7 +249,7 @@ pub unsafe extern "C" fn wk_view_create(
 }
 
 /// Destroys a view. NULL does nothing.
-/// Thread: any; the GPU's part is released at the device's next call if it must be.
+/// Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
     guard("wk_view_destroy", |_| {
@@ -264,7 +265,8 @@ pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
 /// the frame before any work: after an error nothing is drawn, built or changed.
 /// Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
 /// Errors: WK_ERROR_WRONG_ORDER if a stage is repeated or out of order; WK_ERROR_UNSUPPORTED and
-/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST.
+/// WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST; with wk_own_target.surface also the statuses of
+/// wk_surface_acquire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_record(
     view: *mut wk_view,
@@ -292,22 +294,22 @@ pub unsafe extern "C" fn wk_view_record(
     })
 }
 
-/// Draws weathers that may come, into small images of Welkin's own, so that hardly a frame waits for a shader once they
-/// come.
-/// Each weather is drawn while the one before it (the context's own before the first) changes to it, once it lasts, and
-/// under several heights of the sun. Call it behind a loading screen, before the view's first frame: the next frame
-/// begins as a view's first one does. The context is as before afterwards.
+/// Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
+/// and hardly any later frame waits for one. Each weather is drawn during the change from the weather before it (for
+/// the first, the context's own), after the change, and with the sun at several heights. Call this function behind a
+/// loading screen, before the view's first frame: the next frame begins as a view's first one does. Afterwards the
+/// context is as before.
 ///
-/// `frame` is one like those to come: with their settings, and with images of their formats, samples and usages. These
-/// are neither drawn into nor waited for. `calls` are the stages of the calls of one frame in order, 1 to 7; NULL with
-/// `call_count` 0 means one call with WK_STAGE_ALL. `weathers` are 0 to 64, `weather_stride` bytes apart, each perhaps
-/// with a wk_weather_overrides in its chain. One call draws for about `most_s`, [0, 3600] s, and at least one moment of
-/// a weather. It returns WK_PENDING, which is no error, while moments remain: call it again with the same weathers.
-/// Others begin anew.
+/// `frame` stands for the later frames: it has their settings, and images with their formats, samples and usages.
+/// Welkin neither draws into these images nor waits for them. `calls` has the stages of each wk_view_record of one
+/// frame, in order: 1 to 7 elements; NULL with `call_count` 0 means one call with WK_STAGE_ALL. `weathers` has 0 to 64
+/// elements, `weather_stride` bytes apart; each may have a wk_weather_overrides in its chain. One call draws for about
+/// `most_s`, in [0, 3600] s, and at least one moment of a weather. It returns WK_PENDING, which is no error, while
+/// moments remain: call it again with the same weathers. Other weathers start from the beginning.
 /// Thread: exclusive on the view and on its context.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
 /// WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
-/// as before, and the same call goes on with the moment that failed.
+/// as before, and the same call continues with the moment that failed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_prepare(
     view: *mut wk_view,
@@ -350,7 +352,7 @@ pub unsafe extern "C" fn wk_view_prepare(
     })
 }
 
-/// Draws the context's moment in frames of a rehearsal, until none creates a pipeline.
+/// Draws the context's present moment in frames of a rehearsal until a frame creates no pipeline.
 ///
 /// # Safety
 /// As `host::record`.
@@ -453,10 +455,10 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
     })
 }
 
-/// Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
-/// number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small, nothing
-/// else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of your
-/// header. Later versions may have more effects.
+/// Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` gets
+/// their number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
+/// nothing else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of
+/// your header. Later versions may have more effects.
 /// Thread: exclusive on the view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_get_costs(

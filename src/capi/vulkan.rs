@@ -73,6 +73,7 @@ pub unsafe extern "C" fn wk_device_create_vulkan(
 /// when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
 /// vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
 /// Thread: exclusive on the device.
+/// Errors: WK_ERROR_UNSUPPORTED on a device that is not on a Vulkan host.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_forget_vulkan_image(device: *mut wk_device, image: u64) -> wk_status {
     guard("wk_device_forget_vulkan_image", |call| {

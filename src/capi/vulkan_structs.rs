@@ -162,7 +162,7 @@ pub struct wk_vulkan_semaphore {
     pub semaphore: u64,
     /// Value of a timeline semaphore to wait for or to signal. Default 0.
     pub value: u64,
-    /// Default WK_VULKAN_SEMAPHORE_BINARY.
+    /// Kind of semaphore. Default WK_VULKAN_SEMAPHORE_BINARY.
     pub kind: wk_vulkan_semaphore_kind,
     /// Must be 0.
     pub reserved0: u32,
@@ -193,12 +193,13 @@ pub struct wk_vulkan_target {
     /// The image to draw into. Default NULL.
     pub color: *const wk_vulkan_image,
     /// The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
-    /// depth may have more; the first of each pixel then counts. NULL (the default) shows the sky in every pixel.
+    /// depth may have more; the first of each pixel then counts. With NULL (the default) every pixel shows the sky.
     pub depth: *const wk_vulkan_image,
     /// A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
     /// sample, another image. Default NULL.
     pub mask: *const wk_vulkan_image,
-    /// Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16.
+    /// Semaphores to wait for before drawing, at most 16. The submission that signals a binary one must come before
+    /// this call.
     pub wait_semaphores: *const wk_vulkan_semaphore,
     /// Semaphores to signal when all is drawn and the images are in their final layouts. At most 16.
     pub signal_semaphores: *const wk_vulkan_semaphore,
@@ -214,8 +215,8 @@ pub struct wk_vulkan_target {
     /// default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
     pub surface_classes: *const wk_vulkan_image,
     /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
-    /// formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
-    /// or depth. As large as `color`, one sample. Default NULL.
+    /// formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the
+    /// host's terrain or depth. As large as `color`, one sample. Default NULL.
     pub normals: *const wk_vulkan_image,
 }
 

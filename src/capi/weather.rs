@@ -73,11 +73,11 @@ pub const WK_CLOUD_LAYER_HAS_WIND: wk_cloud_layer_has_flags = 8;
 
 /// Properties of precipitation.
 pub type wk_precipitation_flags = u32;
-/// From convective cloud (SH): fewer and larger drops, sharp onset and end.
+/// Precipitation from convective cloud (SH): fewer and larger drops, sharp onset and end.
 pub const WK_PRECIPITATION_SHOWERS: wk_precipitation_flags = 1;
-/// With thunder (TS).
+/// Precipitation with thunder (TS).
 pub const WK_PRECIPITATION_THUNDERSTORM: wk_precipitation_flags = 2;
-/// With hail besides the kind (GR, GS).
+/// Precipitation with hail in addition to its kind (GR, GS).
 pub const WK_PRECIPITATION_WITH_HAIL: wk_precipitation_flags = 4;
 
 /// One layer of cloud.
@@ -110,9 +110,9 @@ pub struct wk_cloud_layer {
     pub wind_m_s: f64,
     /// Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
     pub wind_from_deg: f64,
-    /// Typical distance between clouds, m. Range [50, 200000]; 0, the default, by kind and thickness.
+    /// Typical distance between clouds, m. Range [50, 200000]; 0, the default, lets kind and thickness decide.
     pub spacing_m: f64,
-    /// Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, is 1200.
+    /// Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, means 1200.
     pub life_s: f64,
 }
 
@@ -313,7 +313,7 @@ pub const WK_OVERRIDE_HUMIDITY_GROWTH: wk_override_flags = 0x10;
 pub const WK_OVERRIDE_RAYLEIGH_DENSITY: wk_override_flags = 0x20;
 /// rayleigh_scale_height_m
 pub const WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT: wk_override_flags = 0x40;
-/// Rain adds no cloud that the report lacks.
+/// No value: rain adds no cloud that the report lacks.
 pub const WK_OVERRIDE_RAIN_WITHOUT_CLOUD: wk_override_flags = 0x80;
 /// cloud_direct and cloud_diffuse
 pub const WK_OVERRIDE_CLOUD_LIGHT: wk_override_flags = 0x100;
@@ -337,17 +337,16 @@ pub struct wk_weather_overrides {
     pub set: wk_override_flags,
     /// Must be 0.
     pub reserved0: u32,
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
-    /// 10].
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
     pub aerosol_extinction_per_m: f64,
-    /// Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10].
     pub fog_extinction_per_m: f64,
-    /// Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10].
+    /// Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10].
     pub precipitation_extinction_per_m: f64,
     /// Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
     pub visibility_above_fog_m: f64,
-    /// Growth factor of particles by humidity, relative to their size at 80 %. Range [0.1, 20]; law: Haenel's; 1
-    /// switches growth off.
+    /// Growth of the particles' extinction with humidity, relative to that at 80 %. Range [0.1, 20]; law: Haenel
+    /// (1976); 1 switches growth off.
     pub humidity_growth: f64,
     /// Ratio of the air density at sea level to the standard's. Range [0, 10].
     pub rayleigh_density_ratio: f64,
@@ -357,9 +356,9 @@ pub struct wk_weather_overrides {
     pub cloud_direct: f64,
     /// Diffuse light below the clouds as a fraction of the light above. Range [0, 1].
     pub cloud_diffuse: f64,
-    /// Significant wave height, m, in place of what wind or sea state give. Range [0, 30].
+    /// Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30].
     pub wave_height_m: f64,
-    /// Wetness of the ground, in place of what precipitation gives. Range [0, 1].
+    /// Wetness of the ground, in place of that from the precipitation. Range [0, 1].
     pub wetness: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Kinds of weather
 //!
-//! Kinds that a report names by words. Their numbers never change.
+//! Kinds that a report names with words. Their numbers never change.
 
 /// Kind of the air's dry particles.
 pub type wk_aerosol_kind = u32;
@@ -29,15 +29,15 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 pub type wk_fog_kind = u32;
 /// No fog: all extinction that the reported visibility requires beyond the air's is aerosol.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
-/// Mist (METAR BR): droplets, 1 to 5 km.
+/// Mist (METAR BR): droplets, visibility 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;
-/// Shallow fog (METAR MIFG): up to 2 m, clear above.
+/// Shallow fog (METAR MIFG): fog up to 2 m high, clear above.
 pub const WK_FOG_SHALLOW: wk_fog_kind = 2;
 /// Patches of fog (METAR BCFG).
 pub const WK_FOG_PATCHES: wk_fog_kind = 3;
 /// Part of the aerodrome in fog (METAR PRFG).
 pub const WK_FOG_PARTIAL: wk_fog_kind = 4;
-/// Fog (METAR FG): below 1 km.
+/// Fog (METAR FG): visibility below 1 km.
 pub const WK_FOG_FOG: wk_fog_kind = 5;
 /// Freezing fog (METAR FZFG): supercooled droplets.
 pub const WK_FOG_FREEZING: wk_fog_kind = 6;

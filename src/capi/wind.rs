@@ -56,7 +56,8 @@ impl wk_wind {
     };
 }
 
-/// Precipitation at a place and time: rain and drizzle, hail and ice pellets; all 0 if nothing falls.
+/// Precipitation at a place and time: rain and drizzle, hail and ice pellets, but no snow. All fields are 0 if none
+/// falls.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rainfall {
@@ -157,9 +158,9 @@ pub struct wk_rain_surface {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_on {
-    /// Water, mm/h, which is litres per square metre and hour.
+    /// Rate of water, mm/h: litres per square metre and hour.
     pub rate_mm_h: f64,
-    /// Drops of 0.1 to 6 mm on the whole surface, 1/s.
+    /// Number of drops of 0.1 to 6 mm that land on the whole surface, 1/s.
     pub drops_per_s: f64,
 }
 
@@ -201,8 +202,9 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Gets the precipitation at a place of the host's world and a simulation time. It begins in the lower half of the
-/// clouds, at most 500 m above their bases, averaged over the clouds that cover the sky; above that nothing falls.
+/// Gets the precipitation at a place of the host's world and a simulation time. Precipitation begins in the lower half
+/// of the clouds, at most 500 m above their bases, on average over the clouds that cover the sky. Above that nothing
+/// falls.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -229,7 +231,7 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
 /// the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
 /// sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
 /// Thread: concurrent.
-/// Errors: as wk_context_get_conditions; the wrong field of a surface with its range.
+/// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_rain_on_at(
     context: *const wk_context,

@@ -2,9 +2,9 @@
 //!
 //! A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
 //! round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
-//! wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field has effect where a wind
-//! grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and
-//! windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
+//! wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field acts where a wind grid of
+//! your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and windscreens, and
+//! on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -25,8 +25,8 @@ include!(concat!(env!("OUT_DIR"), "/init_wind_field.rs"));
 
 /// Time dependence of a wind field.
 pub type wk_wind_field_mode = u32;
-/// The mean wind. It is solved for over the first moments after the wind or an obstacle has changed; after that it
-/// rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
+/// The mean wind. It is solved in the first moments after the wind or an obstacle has changed; after that it rests at
+/// no cost. The weather's gusts are scaled in proportion to the local mean wind.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
 /// The wind with its gusts and eddies, and with the eddies that obstacles shed, stepped all the time.
 /// docs/wind-field.md has the sizes that a CPU core can keep up with.
@@ -41,11 +41,11 @@ pub const WK_WIND_WALLS_SMOOTH: wk_wind_walls = 1;
 
 /// Scheme by which the air of a wind field carries its own velocity. src/flow/mod.rs has the errors of each.
 pub type wk_wind_scheme = u32;
-/// Half a step, a projection, a reflection at it, another half step and a projection (Zehnder et al. 2018), by limited
-/// cubic interpolation: eddies keep their energy.
+/// Half a step, a projection, a reflection about the projected field, another half step and a projection (Zehnder et
+/// al. 2018), with limited cubic interpolation: eddies keep their energy.
 pub const WK_WIND_SCHEME_REFLECTION: wk_wind_scheme = 0;
-/// Linear interpolation along curved paths, corrected by the error that carrying the result back shows (Selle et al.
-/// 2008).
+/// Linear interpolation along curved paths, corrected by the error that appears when the result is carried back (Selle
+/// et al. 2008).
 pub const WK_WIND_SCHEME_MACCORMACK: wk_wind_scheme = 1;
 /// Linear interpolation along straight paths (Stam 1999): the cheapest; it smears eddies within seconds.
 pub const WK_WIND_SCHEME_SEMI_LAGRANGIAN: wk_wind_scheme = 2;
@@ -90,8 +90,8 @@ pub struct wk_wind_field {
     pub scheme: wk_wind_scheme,
     /// A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state.
     pub pressure: wk_wind_pressure,
-    /// Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], of a projection. 0, the
-    /// default, means 50 V-cycles or 5 iterations.
+    /// Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], in one projection. 0,
+    /// the default, means 50 V-cycles or 5 iterations.
     pub most_iterations: u32,
     /// Must be 0.
     pub reserved1: u32,
@@ -216,11 +216,11 @@ impl wk_wind_field_report {
     }
 }
 
-/// Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
-/// field with the same size, mode, walls, scheme and pressure method at another place moves there by whole cells; any
-/// other field begins anew. wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so
-/// it is the same on every channel. It begins with the steady field of its first moment. Part of the saved state.
-/// Unchanged after an error.
+/// Sets a wind field from simulation time `start_time_s` on, [-1e10, 1e10] s, not before the last update or change;
+/// NULL ends the field at that time. A field with the same size, mode, walls, scheme and pressure method at another
+/// place moves there by whole cells; any other field begins anew. wk_context_update advances it in steps on a grid
+/// anchored at time 0, whatever is drawn, so it is the same on every channel. It begins with the steady field of its
+/// first moment. Part of the saved state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
 #[unsafe(no_mangle)]

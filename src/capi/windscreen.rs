@@ -60,8 +60,8 @@ pub struct wk_wiper_arm {
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
     pub far_deg: f64,
-    /// Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves at constant speed.
-    /// Default 0.
+    /// Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. Between two frames the
+    /// blade moves at constant speed.
     pub position: f64,
     /// Width of the rubber on the glass, m. Range [0, 0.1], default 0.006.
     pub blade_width_m: f64,
@@ -92,7 +92,7 @@ pub struct wk_windscreen {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Default WK_WINDSCREEN_PANE_QUAD.
+    /// Shape of the glass. Default WK_WINDSCREEN_PANE_QUAD.
     pub pane: wk_windscreen_pane,
     /// Number of wipers in `arms`, at most 2. Default 0.
     pub arm_count: u32,
@@ -119,7 +119,7 @@ pub struct wk_windscreen {
     pub demist: f64,
     /// The wipers; may be NULL if there are none. Read during the call only.
     pub arms: *const wk_wiper_arm,
-    /// sizeof(wk_wiper_arm) of your header. Default that of this header.
+    /// Bytes from one wiper to the next: sizeof(wk_wiper_arm) of your header, which is the default.
     pub arm_stride: u32,
     /// Must be 0.
     pub reserved0: u32,
@@ -234,9 +234,10 @@ unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     Ok(screen)
 }
 
-/// Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
-/// before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
-/// a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour and for parallel projections.
+/// Sets the window that the view looks through; NULL removes it. While the vehicle drives, the wipers move or the
+/// camera turns, set it again before each frame: the water stays on the glass as long as the glass keeps its size.
+/// Unchanged after an error. With a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour
+/// and for parallel projections.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -251,9 +252,9 @@ pub unsafe extern "C" fn wk_view_set_windscreen(view: *mut wk_view, windscreen: 
     })
 }
 
-/// Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
-/// and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before the view's
-/// first frame.
+/// Gets the amount of water on the view's windscreen as of its last frame, and the rate at which it lands. The call
+/// reads the state back and waits for the GPU: use it now and then, not in every frame. All 0 without a windscreen or
+/// before the view's first frame.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

@@ -1,5 +1,6 @@
-//! Guard around every call: no panic leaves it, and every failure stores a status, a message and a field for the
-//! calling thread. A device in which something panicked answers no further calls.
+//! Guard around every C call. No panic leaves it, and every failure stores a status, a message and a field for the
+//! calling thread. After a panic in a call on a device, all later calls on that device are refused, except those that
+//! destroy.
 
 use std::{
     any::Any,
@@ -20,11 +21,11 @@ thread_local! {
     static DEPTH: Cell<u32> = const { Cell::new(0) };
     /// Fault to inject, see [`inject`].
     static INJECTED: Cell<Injected> = const { Cell::new(Injected::Nothing) };
-    /// File and line of the panic in this thread's present call.
+    /// File and line of the last panic inside a boundary call of this thread.
     static PANIC_PLACE: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// One call from C: access to objects, and the device that a panic would poison.
+/// A call from C in progress. It finds the objects of handles, and knows the device that a panic would poison.
 pub(in crate::capi) struct Call {
     /// Device that a panic poisons.
     device: Option<Arc<DeviceCell>>,

@@ -15,7 +15,7 @@ use crate::{
     gpu::{Device, Entered, Shared},
 };
 
-/// Device as the boundary sees it; every child of the device holds a reference.
+/// Device with the state that the boundary keeps for it; every child of the device holds a reference.
 pub(in crate::capi) struct DeviceCell {
     gpu: Arc<Device>,
     host: RwLock<Host>,
@@ -91,7 +91,7 @@ impl DeviceCell {
         Ok(())
     }
 
-    /// Releases all objects of the cell at the end of the device, and returns the device's owner.
+    /// Releases all objects of the cell when the device is destroyed, and returns the device's owner.
     pub(in crate::capi) fn close(&self) -> Host {
         let waiting = self.take_retired();
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner).take();

@@ -1,4 +1,4 @@
-//! Checks of parameters that are no tagged structs: numbers, enumerations, texts, buffers, lists.
+//! Checks of parameters other than tagged structs: numbers, enumerations, texts, buffers, lists.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 
-/// Most positions or rays in one batch query, which bounds the time of one call.
+/// Largest number of positions or rays in one batch query. It bounds the time of one call.
 pub(in crate::capi) const MAX_BATCH: usize = 65_536;
 
 /// Checks a value of an enumeration.

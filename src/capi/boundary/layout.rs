@@ -1,8 +1,8 @@
-//! Reading and writing of the header's structs, with the sizes of other versions and with extension chains. Every
-//! number is checked under its name in the header.
+//! Reading and writing of the header's structs, in the sizes of this and other versions and with extension chains.
+//! Errors name every field as the header does.
 //!
-//! `build.rs` writes the tables from the struct definitions themselves, so every new field is checked from the start:
-//! floats must be finite, enumerations known, reserved fields zero.
+//! `build.rs` writes the tables of fields from the struct definitions, so no new field is forgotten: floats must be
+//! finite, enumerations known, reserved fields zero.
 
 use std::{ffi::c_void, fmt::Display};
 
@@ -206,8 +206,7 @@ pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
 
 /// Checks the pointer to an answer that may be NULL.
 ///
-/// # Errors
-/// If it is misaligned. Check every pointer before anything is written.
+/// # Errors If it is misaligned. A call checks all its pointers before it writes anything.
 pub(in crate::capi) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
     if p.is_null() {
         return Ok(None);

@@ -1,6 +1,6 @@
-//! The host's log callback. The crate and wgpu log through the crate `log`. In the shared and the static library, the
-//! logger slot of `log` is Welkin's alone, and it is filled only when a host asks for messages. In a Rust program the
-//! slot belongs to the program. If it is taken, Welkin tells the host to use its own logger.
+//! The host's log callback. The crate and wgpu log through the crate `log`. In the shared and the static library, only
+//! Welkin can set the logger of `log`, and it does so when a host first asks for messages. In a Rust program the logger
+//! belongs to the program. If the program has set one, `wk_set_log_callback` fails with `WK_ERROR_IN_USE`.
 
 use std::{
     ffi::{CString, c_void},

@@ -3,17 +3,18 @@
 
 use std::ffi::{c_char, c_void};
 
-/// The result of a call. The numbers never change and are never reused.
+/// Result of a call. The numbers never change and are never reused.
 pub type wk_status = i32;
 /// The call succeeded.
 pub const WK_OK: wk_status = 0;
-/// More steps are due than one update may take; call again. Not a failure.
+/// Not a failure: the call has more to do. Call it again (wk_context_update, wk_view_prepare), or skip this frame
+/// (wk_surface_acquire).
 pub const WK_PENDING: wk_status = 1;
 /// A parameter is missing, not finite or outside its range; the message names it.
 pub const WK_ERROR_INVALID_ARGUMENT: wk_status = -1;
 /// A handle is NULL, destroyed, foreign or of another kind.
 pub const WK_ERROR_BAD_HANDLE: wk_status = -2;
-/// The parent still has live children, or another call is using the handle at this moment.
+/// The object still has live children, or the program has a logger of its own (wk_set_log_callback).
 pub const WK_ERROR_IN_USE: wk_status = -3;
 /// This device, tier or build does not support the request; the message names the feature.
 pub const WK_ERROR_UNSUPPORTED: wk_status = -4;
@@ -33,14 +34,15 @@ pub const WK_ERROR_PARSE: wk_status = -10;
 pub const WK_ERROR_IO: wk_status = -11;
 /// The surface must be configured again: it was resized, minimised or lost.
 pub const WK_ERROR_SURFACE_OUTDATED: wk_status = -12;
-/// Calls in a wrong order: stages of a frame, or dates before the last update.
+/// A call comes too early or too late: a stage out of order, a time before the last update, a query without the
+/// settings that it needs, or a call inside a callback.
 pub const WK_ERROR_WRONG_ORDER: wk_status = -13;
 /// The host aborted a long operation through its callback.
 pub const WK_ERROR_ABORTED: wk_status = -14;
 /// A fault inside Welkin; the message says where.
 pub const WK_ERROR_INTERNAL: wk_status = -15;
 
-/// The type of a tagged struct, in its second field. WK_X_INIT sets it.
+/// Type of a tagged struct, in its second field. WK_X_INIT sets it.
 pub type wk_struct_type = u32;
 /// wk_device_desc
 pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;

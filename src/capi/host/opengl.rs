@@ -1,4 +1,5 @@
-//! Frames of an OpenGL host: enters the host's context, uses its images as textures, and restores everything.
+//! Frames of an OpenGL host. Each call enters the host's context or its shared one, uses the host's images as textures,
+//! and restores the host's state.
 
 use wgpu::hal::{api::Gles, gles::TextureInner};
 
@@ -125,7 +126,7 @@ fn description(c: &wk_opengl_target, write_depth: bool) -> Result<Option<GlTarge
     }))
 }
 
-/// Converts an image; `None` for none.
+/// Converts an image; `None` for `WK_OPENGL_NONE`.
 fn image(c: &wk_opengl_image) -> Option<GlImage> {
     match c.kind {
         WK_OPENGL_TEXTURE => Some(GlImage::Texture { name: c.name, target: c.target }),

@@ -1,4 +1,5 @@
-//! Frames of a Vulkan host: imports its images and hands them back, waits for its semaphores and signals them.
+//! Frames of a Vulkan host. Each call imports the host's images, waits for the host's semaphores, draws, hands the
+//! images back and signals.
 
 use std::ffi::{CStr, c_char, c_void};
 
