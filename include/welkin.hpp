@@ -1,11 +1,11 @@
 /*
- * Welkin for C++11 and later: handles that end themselves. Everything else is welkin.h, whose structs and constants are
- * used as they are; `device.get()` is the C handle for calls that have no method here.
+ * Welkin for C++11 and later: handles that destroy themselves. Everything else is in welkin.h: use its structs and
+ * constants as they are, and pass `device.get()`, the C handle, to calls that have no method here.
  *
- * Errors: with exceptions every method throws welkin::error on a failure; without them (-fno-exceptions, or
- * WELKIN_NO_EXCEPTIONS defined before the include) it answers the status. Both ways WK_OK and WK_PENDING come back.
+ * Errors: with exceptions every method throws welkin::error on a failure and otherwise returns WK_OK or WK_PENDING.
+ * Without exceptions (-fno-exceptions, or WELKIN_NO_EXCEPTIONS defined before the include) it returns the status.
  *
- * Declare children after their parents: they are destroyed in reverse order, as the API asks.
+ * Declare children after their parents: C++ destroys them in reverse order, as the API requires.
  */
 #ifndef WELKIN_HPP
 #define WELKIN_HPP
@@ -23,7 +23,7 @@
 namespace welkin {
 
 #ifndef WELKIN_NO_EXCEPTIONS
-/* A failed call: what() is the message of wk_last_error_message, field() that of wk_last_error_field. */
+/* A failed call: what() is the text of wk_last_error_message, field() that of wk_last_error_field. */
 class error : public std::runtime_error {
 public:
     explicit error(wk_status status) : std::runtime_error(wk_last_error_message()), status_(status), field_(wk_last_error_field()) {}
@@ -45,7 +45,7 @@ inline wk_status checked(wk_status status)
     return status;
 }
 
-/* Owns a handle: moves, never copies. */
+/* Owns a handle and destroys it; can be moved, not copied. */
 template <class T, wk_status (*Destroy)(T *)>
 class handle {
 public:
@@ -172,12 +172,12 @@ public:
     {
         return checked(wk_context_set_sky_settings(get(), settings));
     }
-    /* How the host should light its own objects in this frame. */
+    /* Gets the light for the host's own objects in a frame. */
     wk_status get_frame_light(const wk_frame &frame, wk_frame_light &light) const
     {
         return checked(wk_context_get_frame_light(get(), &frame, &light));
     }
-    /* WK_PENDING: steps of a simulated ground remain; call it again with the same time. */
+    /* WK_PENDING: steps of the simulation remain; call it again with the same time. */
     wk_status update(double time_s) { return checked(wk_context_update(get(), time_s)); }
     wk_status get_state_time(double &state_time_s) const { return checked(wk_context_get_state_time(get(), &state_time_s)); }
     /* NULL removes the sea. */
@@ -186,7 +186,7 @@ public:
     {
         return checked(wk_context_set_sea_regions(get(), regions, count, sizeof(wk_sea_region)));
     }
-    /* `positions_m` are three numbers each, without gaps. */
+    /* `positions_m` has `count` positions of three numbers each, without gaps; `points` has room for as many. */
     wk_status get_sea_at(const double (*positions_m)[3], uint32_t count, double time_s, double shortest_wave_m,
                          wk_sea_point *points) const
     {
