@@ -1,4 +1,4 @@
-/* Draws all combinations offscreen, writes each as a PNG and shows all of them, scaled down, on one sheet. */
+/* Draws every report at every hour offscreen and writes each picture as a PNG, and all, scaled down, on one sheet. */
 #include "contact.h"
 
 #include <stdio.h>
@@ -44,7 +44,7 @@ static bool save(demo *d, sheet *s, int row, const char *out, uint8_t *rgb)
     snprintf(path, sizeof path, "%s/%02d_%s.png", out, d->report + 1, name);
     if (!png_write_rgb8(path, rgb, p->shown_width, p->shown_height))
         return false;
-    /* All of them take minutes on a software driver, so each path is printed as soon as its file is written. */
+    /* All pictures take minutes on a software driver, so each path is printed as soon as its file is written. */
     printf("%s\n", path);
     fflush(stdout);
     return true;

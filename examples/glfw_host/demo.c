@@ -2,7 +2,7 @@
 #include "demo.h"
 
 #include <stdio.h>
-#ifndef _WIN32 /* there the OpenGL header has brought windows.h */
+#ifndef _WIN32 /* on Windows the clock is in windows.h, which the OpenGL header includes */
 #include <time.h>
 #endif
 
@@ -24,7 +24,7 @@ static const char *const CAMERA_NAMES[CAMERA_COUNT] = {"hillside", "beside the e
 
 static const char *const SEA_CAMERA_NAMES[CAMERA_COUNT] = {"off the bow", "from the bridge", "astern", "from 120 m up"};
 
-/* The cameras of the vessel. All but the bridge's keep level. */
+/* The cameras of the vessel. All but the one on the bridge stay level. */
 static camera view_at_sea(const demo *d, double time_s)
 {
     static const vec3 EYES[CAMERA_COUNT] = {{38, 46, 7}, {0, 0, 0}, {-14, -60, 12}, {-60, -170, 120}};

@@ -25,7 +25,7 @@ typedef struct demo {
     bool measure; /* time each effect in the next frame; that frame's picture is not used */
     bool at_sea;  /* a vessel on the open sea in place of the land */
     vessel boat;
-    mat4 pose; /* of the boat in the last frame */
+    mat4 pose; /* pose of the boat in the last frame */
     bool history; /* use the history of earlier frames although time stands still */
     bool moving; /* time runs, and the weather changes over some seconds */
     double time_s; /* simulation time while it stands still */
@@ -57,7 +57,7 @@ bool demo_draw(demo *d);
 
 const char *demo_camera_name(const demo *d);
 
-/* Time of a monotonic clock, ms. */
+/* Time of a clock, ms: UTC, or a counter on Windows. Only differences have a meaning. */
 double demo_clock_ms(void);
 
 #endif

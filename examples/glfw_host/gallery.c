@@ -1,5 +1,5 @@
-/* Takes the gallery's shots one after the other. Each starts with fresh weather, so no picture depends on an earlier
- * one. */
+/* Draws the gallery's pictures one after the other. Each has a new device and context, so no picture depends on an
+ * earlier one. */
 #include "gallery.h"
 
 #include <stdio.h>

@@ -82,9 +82,8 @@ extern PFNGLCLIPCONTROLPROC glClipControl;
 /* Loads all functions. If a required one is missing, returns false and prints its name on stderr. */
 bool gl_load(const platform *p);
 
-/* Compiles and links a program. If the program's own GLSL is wrong, prints the driver's message and exits. */
-/* `fragment_end` continues a long fragment shader, because C99 guarantees string literals of at most 4095 characters;
- * otherwise NULL. */
+/* Compiles and links a program. If its GLSL is wrong, prints the driver's message and exits. `fragment_end` continues a
+ * long fragment shader, because C99 guarantees string literals of only 4095 characters; NULL for a short one. */
 GLuint gl_program(const char *vertex, const char *fragment, const char *fragment_end);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "png_file.h"
 
-/* Cell size: 3 arc seconds at 36.59 degrees north; and the site's position relative to the middle of the data. */
+/* Cell size, 3 arc seconds at 36.59 degrees north, and position of the site relative to the middle of the data. */
 #define SPACING_EAST_M 74.4
 #define SPACING_NORTH_M 92.5
 #define SITE_EAST_M 8400.0
@@ -75,7 +75,7 @@ static void from_site(double along, double right, double *x, double *y)
     *y = along * d.y - right * d.x;
 }
 
-/* The road winds around the axis. */
+/* Distance of the road to the right of the site's view axis, m; the road winds around the axis. */
 static double road_right(double along)
 {
     return 10.0 + 26.0 * sin((along - 30.0) / 150.0) + 60.0 * (1.0 - cos(along / 620.0));

@@ -33,11 +33,11 @@ void ground_free(ground *g);
 /* Height above sea level, m. */
 double ground_height(const ground *g, double x, double y);
 
-/* As ground_z, lowered by the planet's curvature below the site's tangent plane: heights of objects in the tangent
- * frame. */
+/* As ground_height, lowered by the planet's curvature below the site's tangent plane: the z of the ground in the
+ * tangent frame. */
 double ground_z(const ground *g, double x, double y);
 
-/* Distance of a point to the right of the road's centre line, m. */
+/* Distance of a point to the right of the road's centre line, m; negative to the left, 1e4 beyond the road's ends. */
 double ground_road_offset(double x, double y);
 
 /* Point `along` metres down the road and `right` metres to the right of it. */
@@ -46,7 +46,7 @@ void ground_road_point(double along, double right, double *x, double *y);
 /* Centre of the level pad on which the excavator stands. */
 void ground_pad(double *x, double *y);
 
-/* Share of the sun's disc above the terrain's horizon as seen from a point, 0 to 1. */
+/* Share of the sun's disc that the terrain does not hide from a point, 0 to 1. `sun_direction` is a unit vector. */
 double ground_sunlit(const ground *g, vec3 from, vec3 sun_direction);
 
 /* Builds rings of triangles around the site, fine near it and coarse far away, out to 120 km. */

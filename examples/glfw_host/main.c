@@ -1,6 +1,6 @@
 /*
  * A simulator's world in OpenGL, with Welkin's weather in it. With a display it opens a window; without one it writes
- * pictures. A simulator's author would copy weather_link.c; the rest is the simulator.
+ * pictures. To add Welkin to a simulator, copy weather_link.c; the rest stands for the simulator.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +27,7 @@ static const char USAGE[] =
 
 static const char NAME[] = "glfw_host";
 
-/* Handles options that take a value. For a bad value, returns false and prints a line on stderr. */
+/* Parses a size, WxH with 16 to 8192 each. For anything else, returns false and prints a line on stderr. */
 static bool read_size(const char *text, int *width, int *height)
 {
     int end = 0;

@@ -27,8 +27,8 @@ void mesh_free(mesh *m);
 /* Adds a box of `size`, centred at the origin of `place`. */
 void mesh_box(mesh *m, mat4 place, vec3 size, vec3 albedo);
 
-/* Adds a prism on an outline of at most 64 corners, which run against the clock seen from above and lie around the origin;
- * its lid has a colour of its own. */
+/* Adds a prism from `foot` to `top` on an outline around the origin, whose corners run counterclockwise seen from
+ * above. Its lid has a colour of its own. */
 void mesh_prism(mesh *m, const double (*outline)[2], int corners, double foot, double top, vec3 albedo, vec3 lid);
 
 /* Adds a cone standing on `foot`, with smooth normals. */

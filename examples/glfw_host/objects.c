@@ -51,7 +51,7 @@ static void excavator(const ground *g, mesh *m)
 {
     double x, y;
     ground_pad(&x, &y);
-    /* The excavator faces to the right of the axis, so that both boom and cab are visible from the hillside. */
+    /* The excavator faces to the right of the view axis, so that both boom and cab are visible from the hillside. */
     mat4 base = multiply(translation(vec(x, y, ground_z(g, x, y))), rotation(2, RAD(-SITE_VIEW_AZIMUTH_DEG - 70.0)));
     undercarriage(m, base);
     mat4 house = multiply(base, multiply(translation(vec(0, 0, 1.1)), rotation(2, RAD(12.0))));

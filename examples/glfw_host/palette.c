@@ -133,7 +133,7 @@ bool palette_choose(palette *p, const uint8_t *rgb, int width, int height, uint8
             int k = nearest(p, wanted);
             indices[(size_t)y * (size_t)width + (size_t)x] = (uint8_t)k;
             for (int c = 0; c < 3; c++) {
-                float e = (wanted[c] - p->rgb[k][c]) * (0.85f / 16.0f); /* not all of it: calmer, smaller file */
+                float e = (wanted[c] - p->rgb[k][c]) * (0.85f / 16.0f); /* 85 %: less noise, smaller file */
                 at[3 * step + c] += 7.0f * e, under[-3 * step + c] += 3.0f * e;
                 under[c] += 5.0f * e, under[3 * step + c] += e;
             }

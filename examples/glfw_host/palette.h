@@ -1,5 +1,5 @@
-/* Converts a picture to a palette of 256 colours of its own: a third of the bytes, and its grain hides 8-bit
- * banding. */
+/* Converts a picture to 256 colours chosen for it. The file takes a third of the bytes, and the grain of the dither
+ * hides 8-bit banding. */
 #ifndef PALETTE_H
 #define PALETTE_H
 

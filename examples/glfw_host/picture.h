@@ -14,7 +14,7 @@ typedef struct picture {
     GLuint shown;   /* RGBA8 texture, display-encoded */
     GLuint shown_frame;
     GLuint program, array;
-    bool plain;    /* without the grain that hides 8-bit banding: with it a PNG would be three times as large */
+    bool plain;    /* without the grain that hides 8-bit banding, which would make a PNG three times as large */
     bool reversed; /* depth 1 is near, 0 is infinitely far away */
 } picture;
 

@@ -1,4 +1,4 @@
-/* The host's world on the GPU and how it is drawn: the part a simulator has before it has weather. */
+/* The host's world on the GPU, and its drawing: the part that a simulator has before it has weather. */
 #ifndef SCENE_H
 #define SCENE_H
 
@@ -21,14 +21,14 @@ typedef struct scene {
     GLsizei ground_indices, object_indices;
     GLsizei extra_first[EXTRAS], extra_indices[EXTRAS];
     extra extra;
-    bool empty;    /* draw nothing, as seen from space */
+    bool empty;    /* draw nothing: for views from space and over the sea */
     bool landless; /* draw objects without ground */
     bool at_sea;   /* draw the extra object alone */
     GLuint array, vertices, indices, sunlit;
     GLuint shadow_texture, shadow_frame;
     GLuint program, shadow_program;
-    size_t vessel_vertex; /* first of the vessel's, which are the last */
-    vec3 vessel_at;
+    size_t vessel_vertex; /* index of the vessel's first vertex; the vessel's vertices are the last */
+    vec3 vessel_at; /* position of the vessel, m */
     vec3 shaded_for; /* the sun's direction for which the terrain's shadows were computed */
     float *lit;
 } scene;

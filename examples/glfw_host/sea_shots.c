@@ -1,4 +1,4 @@
-/* The gallery's pictures of the open sea. Welkin draws it into the host's depth, which a frame has to lend. */
+/* The gallery's pictures of the open sea. Welkin draws the sea into the host's depth, which the frame must allow. */
 #include "sea_shots.h"
 
 #include "shots.h"

@@ -77,8 +77,8 @@ const char *const SCENE_FRAGMENT =
     "    return mix(asphalt, albedo, smoothstep(3.5 - soft, 3.6 + soft, d));\n"
     "}\n"
 
-    /* Returns a wk_surface_class: paved road; soil beside it and on the pad; rock on steep faces; plants elsewhere.
-     * Also machines and sheds. */
+    /* Returns a wk_surface_class. On the ground: paved road, soil beside it and on the pad, rock on steep faces,
+     * vegetation elsewhere. Objects: vegetation if they are green, else building. */
     "float made_of(vec3 n) {\n"
     "    if (!ground) return v_albedo.g > 1.5 * v_albedo.r ? 4.0 : 6.0;\n"
     "    if (abs(v_road) < 3.55) return 3.0;\n"

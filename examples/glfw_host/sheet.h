@@ -14,8 +14,8 @@ typedef struct sheet {
 bool sheet_create(sheet *s, int columns, int rows, int cell_width, int cell_height);
 void sheet_destroy(sheet *s);
 
-/* Captions above a column and above a row of pictures. The font has upper case only; characters that it lacks are left
- * out. */
+/* Write a caption above a column or a row of pictures. The font has upper case only; characters that it lacks become
+ * spaces. */
 void sheet_title(sheet *s, int column, const char *text);
 void sheet_caption(sheet *s, int row, const char *text);
 

@@ -1,4 +1,4 @@
-/* Weather set in Welkin's own terms, for what a report cannot state. */
+/* The weather of each picture, set in the fields of wk_weather and by other calls where a report cannot state it. */
 #include "shots.h"
 
 #include "objects.h"
@@ -57,7 +57,7 @@ static bool clear(demo *d, int hour)
 
 static bool noon(demo *d) { return clear(d, 0); }
 
-/* Some minutes before the hour at which the sun's disc touches the hills. */
+/* Five minutes before the time at which the sun's disc touches the hills. */
 static bool sunset(demo *d)
 {
     return clear(d, 2) && weather_clock(&d->weather, HOURS[2].utc_s - 300.0);

@@ -11,7 +11,7 @@ enum world {
     WITH_BARN,
     NO_WORLD, /* seen from so high that the host's land would end */
     OPEN_SEA, /* nothing but Welkin's sea, whose level is 0 */
-    WITH_VESSEL, /* a vessel on it */
+    WITH_VESSEL, /* a vessel on that sea */
     LANDLESS, /* the host's objects on terrain that Welkin draws */
 };
 
@@ -23,9 +23,10 @@ typedef struct shot {
     /* Sets sun, weather and everything else in the shot. */
     bool (*prepare)(demo *d);
     enum world world;
-    /* The window through which the camera looks at a given time: it has been in the rain for 50 s. NULL: none. */
+    /* Sets the window through which the camera looks, as it is at a time. The picture shows it after 50 s of rain.
+     * NULL: no window. */
     bool (*windscreen)(demo *d, double time_s);
-    /* Written at half the size, for pictures with grain or with few objects. */
+    /* The picture is written at half the size, because it has grain or few objects. */
     bool small;
 } shot;
 

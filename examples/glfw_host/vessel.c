@@ -1,10 +1,10 @@
-/* The vessel's hull is a prism, so that its outline is the region's; the rest is boxes. */
+/* The vessel's hull is a prism, so that the dry region of the sea can have its outline. The rest consists of boxes. */
 #include "vessel.h"
 
 #define DRAUGHT_M 2.4
 #define FREEBOARD_M 1.7
 #define CORNERS 11
-/* Waves shorter than this pass under the hull without lifting it. */
+/* Waves shorter than this pass under the hull without lifting it, m. */
 #define FELT_M 12.0
 
 const vec3 VESSEL_HELM = {0.0, 7.9, FREEBOARD_M + 4.0};
@@ -13,7 +13,7 @@ static const vec3 RED = {0.22, 0.03, 0.02}, BLUE = {0.02, 0.05, 0.12}, DECK = {0
 static const vec3 WHITE = {0.72, 0.73, 0.70}, GLASS = {0.03, 0.04, 0.05}, ORANGE = {0.62, 0.16, 0.02};
 static const vec3 STEEL = {0.10, 0.10, 0.11};
 
-/* m to starboard and ahead, against the clock. */
+/* Corners of the hull, m to starboard and ahead, counterclockwise. */
 static const double OUTLINE[CORNERS][2] = {
     {-3.6, -15.0}, {3.6, -15.0}, {4.2, -10.0}, {4.2, 4.0}, {3.7, 8.5}, {2.5, 12.8}, {0.0, 17.0},
     {-2.5, 12.8}, {-3.7, 8.5}, {-4.2, 4.0}, {-4.2, -10.0},
@@ -76,7 +76,7 @@ mat4 vessel_level(const vessel *v, double time_s)
 
 wk_status vessel_float(const vessel *v, const wk_context *context, double time_s, mat4 *pose)
 {
-    /* Stern, bow, port, starboard: where the surface under them lies, the hull lies. */
+    /* The heights of the sea at stern, bow, port and starboard give the hull's heave, pitch and roll. */
     enum { STERN, BOW, PORT, STARBOARD, PLACES };
     const double places[PLACES][2] = {{0, -12}, {0, 12}, {-4, 0}, {4, 0}};
     double positions[PLACES][3];

@@ -20,10 +20,10 @@ extern const vec3 VESSEL_HELM;
 /* Adds the vessel's solids: x to starboard, y ahead, z up from the water line. */
 void vessel_mesh(mesh *m);
 
-/* Keeps the sea out of the hull while it goes on as it does. */
+/* Sets a dry region of the sea with the hull's outline, which moves with the vessel's heading and speed. */
 wk_status vessel_keep_dry(const vessel *v, wk_context *context);
 
-/* The vessel's place on level water. */
+/* Returns the pose that the vessel has at a time on water without waves. */
 mat4 vessel_level(const vessel *v, double time_s);
 
 /* Gets the pose in which the vessel lies on the waves at a time. */

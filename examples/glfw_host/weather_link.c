@@ -27,7 +27,7 @@ bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
     place.longitude_deg = SITE_LONGITUDE_DEG;
     place.planet_toml = planet_toml;
 
-    /* More contrast for rain, so that trainees see it: at the default, as in nature, hardly any shows by day. */
+    /* Raise the contrast of rain so that trainees see it: with the default, as in nature, rain hardly shows by day. */
     wk_rain rain = WK_RAIN_INIT;
     rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
 
@@ -107,7 +107,7 @@ static bool record(weather_link *w, const picture *p, const camera *c, double cd
     target.color.kind = target.depth.kind = target.surface_classes.kind = WK_OPENGL_TEXTURE;
     target.color.name = p->color;
     target.depth.name = p->depth;
-    target.surface_classes.name = p->classes; /* tells which pixels are the paved road: it alone reflects */
+    target.surface_classes.name = p->classes; /* of these classes only the paved road reflects */
     target.width = (uint32_t)p->width;
     target.height = (uint32_t)p->height;
     target.generation = w->generation;

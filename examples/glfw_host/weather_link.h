@@ -1,8 +1,8 @@
 /*
- * The host's whole link to Welkin: nine calls. A simulator's author copies this file and weather_link.c, and replaces
- * this host's camera, picture and light by their own.
+ * The host's whole link to Welkin. To add Welkin to a simulator, copy this file and weather_link.c, and replace this
+ * host's camera, picture and light by the simulator's own.
  *
- * Call all of them on the thread that draws, with the host's OpenGL context current. Functions that return bool print
+ * Call all functions on the thread that draws, with the host's OpenGL context current. Functions that return bool print
  * errors on stderr.
  */
 #ifndef WEATHER_LINK_H
@@ -20,7 +20,7 @@ typedef struct weather_link {
     wk_context *context; /* the weather */
     wk_view *view;       /* one camera */
     double time_s;       /* simulation time */
-    double station_altitude_m; /* of the airport that sends the reports */
+    double station_altitude_m; /* altitude of the airport that sends the reports, m */
     uint64_t generation; /* counts replacements of the picture's textures */
     wk_diagnostic diagnostic; /* quantity to show in false colours in place of the picture */
     wk_caps caps;
@@ -46,7 +46,7 @@ bool weather_clock(weather_link *w, double utc_s);
 bool weather_light(weather_link *w, const camera *c, double time_s, light *l);
 
 /*
- * Called every frame after the host has drawn: draws sky, air and fog into its picture and tone-maps it. Set `still`
+ * Called every frame after the host has drawn: draws the weather into its picture and tone-maps it. Set `still`
  * for a single picture without earlier frames.
  */
 bool weather_draw(weather_link *w, const picture *p, const camera *c, double cd_m2_per_unit, uint64_t frame, bool still);

@@ -36,7 +36,7 @@ static void on_fault(int code, const char *message)
 bool window_possible(void)
 {
 #ifdef _WIN32
-    return true; /* without a desktop session there is no window station, and glfwInit reports that */
+    return true; /* without a desktop session glfwInit fails and reports it */
 #else
     return getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
 #endif
