@@ -1,9 +1,9 @@
-/* The sky of a weather report as a PNG-able buffer, without a window or graphics of one's own.
+/* Draws the sky of a weather report into memory and writes it as a PPM picture. It calls no graphics API.
  * cc examples/minimal.c $(pkg-config --cflags --libs welkin) -o minimal && ./minimal > sky.ppm */
 #include <stdio.h>
 #include <stdlib.h>
 #include <welkin.h>
-#ifdef _WIN32 /* where standard output is text until told otherwise */
+#ifdef _WIN32 /* where standard output is in text mode by default */
 #include <fcntl.h>
 #include <io.h>
 #endif
@@ -51,7 +51,7 @@ int main(void)
     frame.position_m[2] = 2.0;
     target.color = color;
     frame.target = &target;
-    /* A single picture, whole in this frame. Leave WK_FRAME_NO_HISTORY out where frames follow each other. */
+    /* WK_FRAME_NO_HISTORY completes a single picture in one frame. Leave it out where frames follow each other. */
     frame.flags = WK_FRAME_DEPTH_REVERSED | WK_FRAME_NO_HISTORY;
     check(wk_view_record(view, &frame, WK_STAGE_ALL));
     check(wk_texture_read(color, pixels, sizeof pixels, WIDTH * 4));

@@ -1,6 +1,6 @@
 /*
- * The smallest program that uses an installed Welkin: it creates a device that needs no GPU, sets weather and queries
- * it. The tests build it against the installed tree, with pkg-config and with find_package(welkin).
+ * The smallest program that uses an installed Welkin: it creates a device that needs no GPU and a context on it, and
+ * prints Welkin's version. The tests build it against the installed tree, with pkg-config and find_package(welkin).
  */
 #include <stdio.h>
 
