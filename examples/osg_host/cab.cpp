@@ -39,7 +39,7 @@ void Cab::move_wiper(double time_s)
 
 void Cab::set_shelter(wk_context *context) const
 {
-    /* One box around the driver for roof, back and sides, from the back to just behind the glass. */
+    /* One box around the driver for roof, back and sides, from the back to the glass. */
     const osg::Vec3d middle = osg::Vec3d(0, -0.1, -0.3) * seat_;
     wk_shelter box = WK_SHELTER_INIT;
     std::copy_n(middle.ptr(), 3, box.center_m);

@@ -13,7 +13,7 @@ class WeatherOfWindows : public osg::Operation {
 public:
     /* Call while the world's heights are loaded. */
     WeatherOfWindows(const Options &options, const world_site &site);
-    /* Created before the window is realized, so that views can be attached. */
+    /* Returns the weather of a window, created before the window is realized so that views can be attached. */
     welkin_osg::Weather *of(osg::GraphicsContext *window);
     void operator()(osg::Object *window) override;
     /* Call with all threads stopped. */
