@@ -70,7 +70,7 @@ VkCommandBuffer host_begin(host *h);
 /* Submits it. Waits for `wait` and signals `signal` unless they are VK_NULL_HANDLE. With `finish`, waits until it is
  * done. */
 void host_submit(host *h, VkCommandBuffer commands, VkSemaphore wait, VkSemaphore signal, bool finish);
-/* Takes the lock, because vkDeviceWaitIdle uses every queue of the device. */
+/* Waits until the device is idle. Holds the lock meanwhile, because vkDeviceWaitIdle uses every queue. */
 void host_wait(host *h);
 /* Changes an image's layout, ordered after all earlier commands and before all later ones. */
 void host_transition(VkCommandBuffer commands, const image *i, VkImageLayout from, VkImageLayout to);

@@ -42,7 +42,7 @@ static const VkImageLayout DEPTH_READ = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_
 
 /* ---- what lasts as long as the window ---- */
 
-/* Picks an 8-bit format, sRGB-encoding if there is one, so that the host's colours are blended linearly. */
+/* Picks an 8-bit sRGB format, so that the host's colours are blended linearly. Without one, the program ends. */
 static VkSurfaceFormatKHR choose_format(host *h, VkSurfaceKHR surface)
 {
     VkSurfaceFormatKHR formats[32];
