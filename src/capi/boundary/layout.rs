@@ -206,7 +206,8 @@ pub(crate) fn check_pointer<T>(param: &dyn Display, p: *const T) -> Result<()> {
 
 /// Checks the pointer to an answer that may be NULL.
 ///
-/// # Errors If it is misaligned. A call checks all its pointers before it writes anything.
+/// # Errors
+/// If it is misaligned. A call checks all its pointers before it writes anything.
 pub(in crate::capi) fn optional_out<T>(param: &dyn Display, p: *mut T) -> Result<Option<*mut T>> {
     if p.is_null() {
         return Ok(None);
