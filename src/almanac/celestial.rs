@@ -25,8 +25,8 @@ pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     ((arc_seconds * ARC_SECOND_DEG).to_radians(), obliquity.to_radians())
 }
 
-/// Returns the mean obliquity, degrees (Lieske et al. 1977 to first order; outside 1900 to 2100 the error grows by
-/// 0.01" a century).
+/// Returns the mean obliquity, degrees, at `t` centuries of TT since J2000 (Lieske et al. 1977 to first order). The
+/// terms left out are 0.001" in 2100, 0.01" in 2200 and 2" in 3000; they grow with the cube of the time.
 fn mean_obliquity_deg(t: f64) -> f64 {
     23.439_291_1 - 0.013_004_2 * t
 }
@@ -58,7 +58,8 @@ fn precession(t: f64) -> DMat3 {
     turn_z(z) * turn_y(-theta) * turn_z(zeta)
 }
 
-/// Returns the rotation from the mean equator and equinox of date to the true ones: nutation.
+/// Returns the rotation from the mean equator and equinox of date to the true ones, at `t` centuries of TT since J2000:
+/// nutation.
 fn nutation(t: f64) -> DMat3 {
     let (longitude, obliquity) = nutation_obliquity(t);
     let mean = mean_obliquity_deg(t).to_radians();
@@ -74,7 +75,8 @@ pub(crate) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
 /// to (east, north, up) at `place`: precession, nutation and the Earth's rotation. Apply it to a star's unit vector
 /// ([`equatorial_direction`]).
 ///
-/// Accurate to 1", without aberration (20") and refraction. UT1 is taken as UTC (at most 0.9 s: 14").
+/// Accurate to 1" within two centuries of 2000, without aberration (20") and refraction. UT1 is taken as UTC (at most
+/// 0.9 s: 14").
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -99,9 +101,9 @@ pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     DVec3::new(sa * ce, ca * ce, se)
 }
 
-/// Returns the refraction of a body at a true elevation, degrees: Saemundsson (1986), scaled by the air's density at
-/// the eye. The formula ends at -1 degree, below which nothing is seen from the ground; from there refraction fades to
-/// 0 at -4 degrees.
+/// Returns by how many degrees refraction lifts a body at a true elevation, degrees: Saemundsson (1986), scaled by the
+/// air's density at the eye. The formula ends at -1 degree, below which nothing is seen from the ground; from there the
+/// lift fades to 0 at -4 degrees.
 pub fn refraction_deg(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = elevation_deg.max(-1.0);
     let arc_minutes = 1.02 / libm::tan((h + 10.3 / (h + 5.11)).to_radians());

@@ -67,7 +67,7 @@ const STEP_S: f64 = 1800.0;
 /// thread.
 #[derive(Debug, Default)]
 pub struct Ephemeris {
-    /// Number of the first knot, counted from 1970, and four knots from that one on.
+    /// Number of the first of four knots, counted from 1970 in steps of [`STEP_S`], and the four knots.
     knots: Mutex<Option<(f64, [Geocentric; 4])>>,
 }
 

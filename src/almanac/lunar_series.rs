@@ -94,7 +94,8 @@ const LATITUDE: [[f64; 5]; 32] = [
     [4.0, 0.0, -2.0, 1.0, 671.0],
 ];
 
-/// Returns ecliptic longitude and latitude of date (rad, without nutation) and distance (m) from the Earth's centre.
+/// Returns ecliptic longitude and latitude of date (rad, without nutation) and distance (m) from the Earth's centre, at
+/// `t` centuries of TT since J2000.
 fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     let angle = |c: [f64; 4]| (c[0] + t * (c[1] + t * (c[2] + t * c[3]))).to_radians();
     let l = angle([218.316_447_7, 481_267.881_234_21, -0.001_578_6, 1.0 / 538_841.0]);

@@ -66,9 +66,9 @@ pub(crate) fn lit(turned: &Topocentric) -> MoonPosition {
     }
 }
 
-/// Returns the illuminance by the moon above the air, lux. The magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the
-/// phase angle a in degrees (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon), at the mean
-/// distance. One lux is magnitude -14.18.
+/// Returns the moon's illuminance above the air on a surface facing it, lux, at a phase angle, rad, and a distance, m.
+/// At the mean distance the magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the phase angle a in degrees
+/// (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon). One lux is magnitude -14.18.
 pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
     let a = phase_angle.abs().to_degrees();
     let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);

@@ -64,8 +64,8 @@ impl Topocentric {
     }
 }
 
-/// Returns the ratio of the vertical to the horizontal diameter of a small disc at a true elevation. Refraction
-/// flattens it to 1 + d(refraction)/d(elevation).
+/// Returns the ratio of the vertical to the horizontal diameter of a small disc at a true elevation, [0.5, 1].
+/// Refraction flattens the disc to 1 + d(refraction)/d(elevation).
 pub fn disc_flattening(elevation_deg: f64, pressure_hpa: f64, temperature_c: f64) -> f64 {
     let h = 0.13;
     let rise = refraction_deg(elevation_deg + h, pressure_hpa, temperature_c)

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, check_range};
 /// Julian date of 1970-01-01T00:00:00Z.
 const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 
-/// First and last year for which the almanac has the sun's position.
+/// First and last year of a calendar date. The sun's series ends 16 hours before the last year does.
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
@@ -44,7 +44,7 @@ fn days_since_1970(year: i32, month: u32, day: u32) -> i64 {
 }
 
 /// Coordinated universal time, in seconds since 1970-01-01T00:00:00Z without leap seconds. UT1 is taken as UTC; they
-/// differ by at most 0.9 s, which is 0.004 degrees. Range: the years -2000 to 6000.
+/// differ by at most 0.9 s, which is 0.004 degrees. Range: the years -2000 to 6000, except the last 16 hours of 6000.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Utc(pub f64);
 
