@@ -21,9 +21,9 @@ pub struct LightAround {
 }
 
 impl LightAround {
-    /// Creates the light of a scene from the mean of its sky and of its ground. In steady rain the drops are within 1 %
-    /// as bright as distant rain, which is drawn as part of the air, so that no ring shows where one ends and the other
-    /// begins.
+    /// Creates the light of a scene from the mean of its sky and of its ground. In steady rain, single drops differ in
+    /// brightness by less than 1 % from distant rain, which is drawn as part of the air, so that no ring shows where
+    /// the single drops end.
     pub fn of(scene: &Scene) -> Self {
         let light = scene.brighter();
         let g = &scene.ground;

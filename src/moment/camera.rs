@@ -28,7 +28,7 @@ pub(crate) struct SceneMoment<'a> {
     pub seed: u64,
     /// Tone curve from luminance to the display.
     pub tone: ToneCurve,
-    /// Exposure of frames that give none.
+    /// Exposure of a frame for which the host sets none.
     pub exposure: Exposure,
     /// Radius of the planet's ground, m.
     pub planet_radius_m: f64,
@@ -38,8 +38,9 @@ pub(crate) struct SceneMoment<'a> {
     pub here: Conditions,
     /// Extinction of the precipitation outside all regions.
     pub falling: FallingLayer,
-    /// Shelters, which keep rain off: the host's boxes, and its occluder maps if there are any.
+    /// The host's shelters: boxes that keep rain off.
     pub shelters: &'a [Shelter],
+    /// The host's occluder maps, if it has set any.
     pub maps: Option<&'a OccluderMaps>,
     /// The host's lamps.
     pub lamps: &'a [HostLight],
@@ -52,13 +53,14 @@ pub(crate) struct SceneMoment<'a> {
     pub detour: Option<Detour>,
     /// Wind that carries the air, computed at its first use.
     pub carried: OnceCell<Carrying<'a>>,
-    /// Light of lightning flashes in this frame, once it is known.
+    /// Light of lightning flashes in this frame, set once it has been computed.
     pub flash: OnceCell<FlashLight>,
 }
 
 /// Light of lightning flashes, as a list of lamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FlashLight {
+    /// Lamps, of which the first `count` shine.
     pub lamps: [FlashLamp; MAX_FLASH_LAMPS],
     /// Number of `lamps` that shine.
     pub count: usize,

@@ -1,4 +1,4 @@
-//! The weather over all places and times of a context: its timeline, its wind, and the regions with rain of their own.
+//! The weather over all places and times of a context: its timeline, its wind, its weather regions and its rain areas.
 
 use std::sync::Arc;
 
@@ -18,9 +18,10 @@ use crate::{
     wind::{Blowing, Carrying, LayerDrifts, WindOver, up_share},
 };
 
-/// A region with rain of its own, and the displacement of the wind that belongs to it.
+/// A rain area of the host, with the wind's displacement from which its drift is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Region {
+    /// Place, motion and rain of the area.
     pub area: RainArea,
     /// Distance over which the wind had carried the air at the area's own time, m east and north. Stored once that time
     /// is past, because the timeline forgets the past.
@@ -35,8 +36,11 @@ const CLOUD_WIND_M: f64 = 100.0;
 /// The weather of a context over places and times.
 #[derive(Clone, Copy)]
 pub(crate) struct WeatherOver<'a> {
+    /// Mapping from the host's coordinates to places.
     pub world: &'a WorldFrame,
+    /// Wind, with the timeline of the weather.
     pub wind: WindOver<'a>,
+    /// Rain areas.
     pub regions: &'a [Region],
     /// Regions with a weather of their own.
     pub weather_regions: &'a [HeldRegion],
@@ -50,7 +54,8 @@ impl<'a> WeatherOver<'a> {
         self.wind.timeline
     }
 
-    /// Returns the weather at a time outside all regions. Before the first known time it is the weather of that time.
+    /// Returns the weather at a time outside all regions. Before the time from which the timeline is known, it is the
+    /// weather of that time.
     pub fn known(&self, time_s: f64) -> Conditions {
         self.timeline().at(time_s)
     }
@@ -70,8 +75,8 @@ impl<'a> WeatherOver<'a> {
     }
 
     /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of
-    /// a weather region is one that has always blown; its displacement is not used: the displacement is the world's at
-    /// every place, so that nothing that moves by it jumps at a border.
+    /// a weather region counts as if it had always blown. Its displacement is not used: everything that the wind
+    /// carries moves by the world's displacement, at every place, so that nothing jumps at a region's border.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -95,7 +100,8 @@ impl<'a> WeatherOver<'a> {
     /// Checks that the weather is known at a time.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if it is not finite, out of range, or forgotten.
+    /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range, or before the time from which the
+    /// timeline is known.
     pub fn check_time(&self, time_s: f64) -> Result<()> {
         check_range("time_s", time_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         let from = self.timeline().known_from_s();
@@ -145,8 +151,8 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.layers_at(time_s))
     }
 
-    /// Returns how far the wind had carried the air by a region's own time, m east and north. It is 0 at time 0, where
-    /// the count begins, whatever the timeline has forgotten since.
+    /// Returns how far the wind had carried the air by a rain area's own time, m east and north. It is 0 at time 0,
+    /// where the count begins, even if the timeline no longer knows that time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -154,7 +160,7 @@ impl<'a> WeatherOver<'a> {
         if at_s == 0.0 { Ok([0.0; 2]) } else { Ok(self.carrying_until(at_s)?.displacement_m().truncate().to_array()) }
     }
 
-    /// Returns the regions at a time as shafts, in their order; `c` is the weather at that time.
+    /// Returns the rain areas at a time as shafts, in their order; `c` is the weather at that time.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -217,8 +223,8 @@ impl<'a> WeatherOver<'a> {
         Ok(sizes)
     }
 
-    /// Returns the weather `c` of a time with the rates of rain and drizzle that regions make at a place. The
-    /// extinction of the regions' drops replaces that of the share of the weather's own rain that they cover.
+    /// Returns the weather `c` of a time with the rates of rain and drizzle at a place, where rain areas replace a
+    /// share of the weather's own rain. The extinction of the drops changes with the rates.
     pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.regions.is_empty() {
             return c;
@@ -235,7 +241,7 @@ impl<'a> WeatherOver<'a> {
     }
 
     /// Returns the weather `c` of a time as it is at a place. The weather's own precipitation falls only below its
-    /// cloud; the regions' rain is that of [`WeatherOver::at_place`].
+    /// cloud. The rain areas' rain is added as in [`WeatherOver::at_place`].
     pub fn falling_at(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         let altitude_m = self.world.frame_at(position).place.altitude_m;
         let own = if altitude_m > c.falling_top_m() {
@@ -265,8 +271,8 @@ fn with_falling(c: Conditions, falling: Falling) -> Conditions {
     Conditions { extinction_per_m, precipitation: falling, ..c }
 }
 
-/// Returns rates and extinction of drops where `region` covers `falling` by `share`. Of the region's rain, the share
-/// `begun` has already left its cloud.
+/// Returns rates and extinction of drops where the rain `region` of an area replaces the share `share` of `falling`. Of
+/// the area's rain, the share `begun` has already left its cloud.
 fn mixed_with(falling: &Falling, region: &Falling, share: f64, begun: f64) -> Falling {
     let (kept, come) = (1.0 - share, share * begun);
     let rain = falling.rain_mm_h * kept + region.rain_mm_h * come;

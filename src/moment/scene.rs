@@ -33,8 +33,8 @@ pub struct Light {
     pub matters: bool,
 }
 
-/// Light that falls on level ground at a place, lux per channel of linear Rec. 709. Under fog, light that is scattered
-/// forward once (the aureole) counts as direct light of the sun or moon.
+/// Light at the ground of a place, lux per channel of linear Rec. 709. Under fog, light that is scattered forward once
+/// (the aureole) counts as direct light of the sun or moon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundLight {
     /// Direct sunlight on a surface that faces the sun, after air, clouds and fog.
@@ -73,8 +73,8 @@ pub struct Scene {
     pub moon: Light,
     /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under a sun at 1 au.
     pub color: [[f64; 3]; 3],
-    /// Whether the moon gives more light here than the sun. They are compared above clouds and fog: below both, only
-    /// the one that stands higher would be left.
+    /// Whether the moon gives more direct light here than the sun, both without clouds and fog: below these, only the
+    /// one that stands higher would be left.
     pub moon_is_brighter: bool,
     /// Light on the ground.
     pub ground: GroundLight,
@@ -94,7 +94,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the sun or the moon, whichever gives more light here above clouds and fog.
+    /// Returns the sun or the moon, whichever gives more direct light here without clouds and fog.
     pub fn brighter(&self) -> &Light {
         if self.moon_is_brighter { &self.moon } else { &self.sun }
     }
