@@ -1,4 +1,4 @@
-//! Phase functions of droplets and other particles, and their moments. Twin of `fog_phase_after` in
+//! Phase functions of droplets and other particles, and their moments, in f64: the reference of `fog_phase_after` in
 //! `shaders/fog/lookup.wgsl` and of `shaders/common/phase.wgsl`.
 
 use std::f64::consts::PI;
@@ -65,8 +65,8 @@ impl PhaseLobes {
         }
     }
 
-    /// Returns the first two Legendre moments of the blend (mean cosine, and mean of P2) in closed form: the
-    /// Henyey-Greenstein lobe has g^l, and cos^2 P_l of Draine's lobe is a sum of neighbouring Legendre polynomials.
+    /// Returns the first two Legendre moments of the blend (mean cosine, and mean of P2) in closed form. Moment l of
+    /// the Henyey-Greenstein lobe is g^l. For Draine's lobe, cos^2 P_l is a sum of neighbouring Legendre polynomials.
     pub fn moments(&self) -> [f64; 2] {
         let (g, a) = (self.g_draine, self.alpha);
         let norm = 1.0 + a * (1.0 + 2.0 * g * g) / 3.0;

@@ -8,12 +8,13 @@ use crate::error::{Error, Result, check_range};
 /// Curve from exposed luminance to display values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ToneCurve {
-    /// Exposure and clamp.
+    /// No curve: the exposed value itself. Values above 1 are clamped when they are written.
     Linear,
     /// 1 - exp(-x) for each channel (O'Neil 2005), which never reaches white: bright skies keep their gradation.
     #[default]
     Exponential,
-    /// Hable's filmic curve (2010), white at 11.2.
+    /// Hable's filmic curve (2010) with an exposure bias of 2 and the white point 11.2: an exposed value of 5.6 is
+    /// white.
     Filmic,
 }
 
@@ -84,13 +85,15 @@ impl Exposure {
     }
 }
 
-/// Returns the exposure by the saturation-based sensitivity of ISO 12232 with the usual lens: L_max = 1.2 * 2^EV.
+/// Returns the exposure, display units per cd/m^2, by the saturation-based sensitivity of ISO 12232 with the usual
+/// lens: white is L_max = 1.2 * 2^EV.
 fn ev100_factor(ev: f64) -> f64 {
     1.0 / (1.2 * ev.exp2())
 }
 
-/// Returns the exposure that shows the adaptation luminance at a key. The key falls with that luminance (Krawczyk,
-/// Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and yet is not black.
+/// Returns the exposure, display units per cd/m^2, at which the adaptation luminance has the display value `key`. The
+/// key falls with that luminance (Krawczyk, Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and yet is
+/// not black.
 fn auto_factor(adaptation_cd_m2: f64) -> f64 {
     let luminance = adaptation_cd_m2.max(1e-5);
     let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());
