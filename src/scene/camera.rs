@@ -17,7 +17,7 @@ pub struct Camera {
 
 impl Camera {
     /// Creates a perspective camera at `position` that looks along `forward`, with reversed infinite depth and
-    /// zero-to-one clip space.
+    /// zero-to-one clip space. `forward` and `up_direction` may have any length, but must not be parallel.
     pub fn look_to(
         position: DVec3,
         forward: DVec3,

@@ -51,9 +51,9 @@ pub enum DepthKind {
     Orthographic,
     /// d = ln(c w + 1) / ln(c far + 1) with w = clip w, written by the host's shader (Kemen, Outerra, 2009).
     Logarithmic {
-        /// Resolution near the camera, 1/m, (0, 1e6]; 1 or 0.001 are usual.
+        /// Resolution near the camera, 1/m, \[1e-9, 1e6\]; 1 or 0.001 are usual.
         c: f64,
-        /// Distance at depth 1, m, (0, 1e12].
+        /// Distance at depth 1, m, \[1e-3, 1e12\].
         far_m: f64,
     },
 }
@@ -114,11 +114,11 @@ impl DepthFormat {
 /// One pixel's ray, in the host's axes relative to [`Camera::position`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRay {
-    /// Start of the ray, m: the centre of projection, or a point of the plane through it if rays are parallel.
+    /// Start of the ray, m: the centre of projection, or a point of the plane through the camera if rays are parallel.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// Metres along the ray per unit of clip w (perspective), 1 for parallel rays.
+    /// Metres along the ray per unit of clip w (perspective and logarithmic), 1 for parallel rays.
     pub slant: f64,
 }
 
@@ -273,8 +273,8 @@ impl ViewRays {
         ViewRay { origin, direction: d / slant, slant }
     }
 
-    /// Returns clip w (perspective, logarithmic) or metres along the ray (parallel) of a depth sample. [`RANGE_SKY_M`]
-    /// at and beyond the far end, and for NaN: a pixel of unknown depth shows the sky.
+    /// Returns clip w (perspective, logarithmic) or metres along the ray (parallel) of a depth sample; [`RANGE_SKY_M`]
+    /// at and beyond the far end, and for NaN, because a pixel of unknown depth shows the sky.
     pub fn view_depth(&self, depth: f64, ndc: DVec2) -> f64 {
         let e = self.turn.x + self.turn.y * depth;
         let far = if self.kind == KIND_LOGARITHMIC { e >= 1.0 } else { e <= 0.0 };
@@ -325,8 +325,8 @@ impl ViewRays {
         format.step(depth) / slope.abs()
     }
 
-    /// Returns the angle between the rays of two neighbouring pixels in the middle of a picture `height` pixels high; 0
-    /// for parallel rays.
+    /// Returns the angle between the rays of two neighbouring pixels in the middle of a picture `height` pixels high,
+    /// rad; 0 for parallel rays.
     pub fn pixel_angle(&self, height: u32) -> f64 {
         2.0 * self.direction[2].length() / (self.direction[0].length() * f64::from(height.max(1)))
     }

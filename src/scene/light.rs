@@ -11,7 +11,7 @@ pub const MAX_LIGHTS: usize = 64;
 /// A lamp of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostLight {
-    /// Position in the host's world, m.
+    /// Position in the host's world, m, within 1e12 of the origin.
     pub position_m: DVec3,
     /// Direction of the beam in the host's world, of any length in \[1e-6, 1e6\].
     pub direction: DVec3,
@@ -59,9 +59,9 @@ pub(crate) struct FlashLamp {
 pub(crate) const MAX_FLASH_LAMPS: usize = 8;
 
 impl FlashLamp {
-    /// Returns the luminous intensity I of a flash of flux F, cd per channel. To all sides of an open flash it is
-    /// I = F / (4 pi). Below a cloud that hides the flash it is I = s F / pi straight down, where s is `down_share` and
-    /// the cloud's base emits by Lambert's law.
+    /// Returns the luminous intensity I of a flash of flux F, cd per channel. An open flash has I = F / (4 pi) to all
+    /// sides. A flash inside a cloud has I = s F / pi straight down, where s is `down_share` and the cloud's base emits
+    /// by Lambert's law.
     pub fn intensity_cd(&self) -> [f64; 3] {
         let share = self.down_share.map_or(0.25, |share| share) / std::f64::consts::PI;
         self.flux_lm.map(|lm| lm * share)
@@ -118,7 +118,8 @@ impl HostLight {
         }
     }
 
-    /// Returns the illuminance on a surface at `p` that faces the lamp, lux per channel.
+    /// Returns the illuminance on a surface at `p` in the host's world that faces the lamp, lux per channel. Distances
+    /// below 0.1 m count as 0.1 m.
     pub fn illuminance_lux(&self, p: DVec3) -> [f64; 3] {
         let to = p - self.position_m;
         let d2 = to.length_squared().max(0.01);

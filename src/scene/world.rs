@@ -53,8 +53,10 @@ impl Place {
         DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
     }
 
-    /// Computes the place of Earth-centred coordinates, with its altitude above the ellipsoid, by Bowring's iteration
-    /// (Bowring 1976). It inverts [`Self::to_ecef`] within 1e-6 m, from 1 km from the Earth's centre up to 1e9 m.
+    /// Computes the place of Earth-centred coordinates, with its altitude above the ellipsoid. Eight steps of the
+    /// iteration tan B = (z + e^2 N(B) sin B) / rho give the latitude B, where rho is the distance from the axis and N
+    /// the radius of curvature in the prime vertical. It inverts [`Self::to_ecef`] within 1e-6 m, from 1000 km from the
+    /// Earth's centre up to 1e9 m.
     pub fn from_ecef(p: DVec3) -> Self {
         let rho = libm::hypot(p.x, p.y);
         let longitude = libm::atan2(p.y, p.x);
@@ -100,8 +102,8 @@ pub enum WorldKind {
     /// A tangent plane: axes east, north and up at the origin's place, with the curved planet below.
     Tangent,
     /// Earth-centred, Earth-fixed (WGS 84). The axes are not used. The origin is used for the sunlight on simulated
-    /// ground, and as the zero point of maps: of local cloud cover, waves and lightning. Altitudes count from mean sea
-    /// level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
+    /// ground, and as the zero point of the maps of local cloud cover, waves and lightning. Altitudes count from mean
+    /// sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 
@@ -112,9 +114,10 @@ pub struct WorldFrame {
     pub kind: WorldKind,
     /// Axes of flat and tangent worlds.
     pub axes: Axes,
-    /// Place of the host's (0, 0, 0).
+    /// Place of the host's (0, 0, 0). Default 50 degrees north, 10 degrees east, at sea level.
     pub origin: Place,
-    /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360].
+    /// Bearing of the world's north axis, degrees clockwise from true north, [-360, 360]. Default 0. Used only by flat
+    /// and tangent worlds.
     pub grid_bearing_deg: f64,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at
     /// Frankfurt, -30 m at New York. It varies by some metres over 100 km; one value holds for all of the world. Used
