@@ -1,4 +1,4 @@
-//! Regions at one time over many places: their axes are found once.
+//! Regions at one time, for queries at many places: their axes are computed once.
 
 use glam::DVec3;
 
@@ -10,7 +10,9 @@ use crate::{scene::WorldFrame, weather::Conditions};
 
 /// Weather regions at a time.
 pub(crate) struct RegionsOver<'a> {
+    /// Mapping from the host's coordinates to places.
     pub(super) world: &'a WorldFrame,
+    /// Regions whose strength is above 0.
     pub(super) list: Vec<RegionOnPlan<'a>>,
 }
 
@@ -21,7 +23,7 @@ pub(super) struct RegionOnPlan<'a> {
 }
 
 impl<'a> RegionsOver<'a> {
-    /// Finds the axes of the regions that act at a time.
+    /// Computes the axes, at a time, of the regions whose strength is above 0.
     pub fn new(regions: &'a [HeldRegion], world: &'a WorldFrame, time_s: f64) -> Self {
         let acting = regions.iter().filter(|region| region.plan.strength > 0.0);
         let list = acting.map(|region| RegionOnPlan { region, axes: region.plan.at(world, time_s) }).collect();

@@ -11,7 +11,7 @@ use crate::{
 /// Region that acts at a place.
 #[derive(Clone, Copy)]
 struct ActingRegion<'a> {
-    /// Index in the list from which the places are taken.
+    /// Index of the region in the list that it was taken from.
     index: usize,
     region: &'a HeldRegion,
     /// Weight, above 0.
@@ -35,7 +35,7 @@ pub(crate) struct PartShares {
 }
 
 impl<'a> RegionsHere<'a> {
-    /// Nowhere any region acts.
+    /// No regions.
     pub const NONE: Self = Self { list: [None; MAX_WEATHER_REGIONS], count: 0 };
 
     /// Finds the regions that act at a position and time.
@@ -48,7 +48,7 @@ impl<'a> RegionsHere<'a> {
         here
     }
 
-    /// Adds a region, if it has a weight.
+    /// Adds a region, if its weight is above 0.
     pub(super) fn add(&mut self, index: usize, region: &'a HeldRegion, weight: f64) {
         if weight > 0.0 {
             self.list[self.count] = Some(ActingRegion { index, region, weight });
@@ -84,20 +84,21 @@ impl<'a> RegionsHere<'a> {
         shares
     }
 
-    /// Iterates over the acting regions with a share: index in the list from which they are taken, region, share.
+    /// Iterates over the acting regions with a share above 0. Each item is the region's index in the list that it was
+    /// taken from, the region, and its share.
     pub fn with_shares(&self, shares: PartShares) -> impl Iterator<Item = (usize, &'a HeldRegion, f64)> {
         let shared = self.list.iter().flatten().zip(shares.each);
         shared.filter(|(_, share)| *share > 0.0).map(|(acting, share)| (acting.index, acting.region, share))
     }
 
-    /// Returns the world's weather `c` with the parts of the regions here.
+    /// Returns the world's weather `c` merged with the weathers of the regions here, part by part.
     pub fn merged(&self, c: &Conditions) -> Conditions {
         let parts: [Option<(WeatherParts, PartShares)>; 32] = {
             let mut singles = WeatherParts::ALL.singles().map(|part| (part, self.shares(part)));
             std::array::from_fn(|_| singles.next())
         };
-        // A weighted mean of several weathers is a chain of blends of two, each with the share of the newer one in
-        // both.
+        // The weighted mean of several weathers is computed by blends of two: the mean so far, and the next region's
+        // weather, which gets its share divided by the sum of all shares so far.
         let mut before = parts.map(|part| part.map_or(0.0, |(_, shares)| shares.base));
         let mut merged = *c;
         for (k, acting) in self.list.iter().flatten().enumerate() {

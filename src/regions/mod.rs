@@ -14,8 +14,9 @@
 //! in the order of the list. A region of weight w that *covers* a part gets the share w, and all earlier shares are
 //! multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge it: these together get the
 //! share 1 - (1 - m)(1 - w), where m is their share before, and divide it in proportion to their weights; all other
-//! shares are multiplied by 1 - w. Two regions that merge and both have the weight 1 thus give the mean of both; at
-//! their perimeters the regions count by their weights. The shares are continuous in all weights.
+//! shares are multiplied by 1 - w. A region that covers the part also multiplies the weights of the earlier merging
+//! regions by 1 - w. Two regions that merge and both have the weight 1 thus give the mean of both; at their perimeters
+//! the regions count by their weights. The shares are continuous in all weights.
 //!
 //! # Merging
 //! A quantity x of a part is the sum of a_k x_k: extinction (not visibility), rates of precipitation, temperature,
@@ -23,12 +24,13 @@
 //! of the layer, as in a change over time ([`Conditions::lerp`](crate::weather::Conditions::lerp)). The total
 //! extinction is the sum of its parts. Rayleigh scattering and ozone remain the world's.
 //!
-//! # Along a way
+//! # Along a path
 //! The optical depth between two points is the integral of the sum of a_k(s) e_k(s), where e_k is the extinction of the
-//! medium k with its own heights. The way is divided into pieces: one for each stretch on which all weights are
-//! constant, and pieces of at most P / 32 in a perimeter. Within a piece the shares are those of its middle, and the
-//! depth of each medium is its closed form. The midpoint rule is of fourth order for a whole perimeter, because the
-//! weight has no slope at its ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
+//! medium k with its own heights. The path (`RegionWay`) is divided into pieces: long ones where all weights are
+//! constant, and pieces of at most P / 32 in a perimeter, or longer ones where a weight changes by less than 1e-3 from
+//! the middle to either end. Within a piece the shares are those of its middle, and the depth of each medium is its
+//! closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at its
+//! ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
 
 mod field;
 mod merge;

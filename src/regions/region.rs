@@ -27,22 +27,23 @@ const FARTHEST_M: f64 = 3e5;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionPlan {
-    /// Shape around the centre. Default a circle of 2000 m.
+    /// Shape around the centre. Default: a circle with a radius of 2000 m.
     pub shape: RegionShape,
     /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
     /// matter.
     pub center_m: [f64; 3],
-    /// Heading of the shape's axis along which its second extent counts: degrees clockwise from true north,
-    /// \[-360, 360\].
+    /// Heading of the axis along which the shape's second extent is measured: degrees clockwise from true north,
+    /// \[-360, 360\]. Default 0.
     pub heading_deg: f64,
     /// Width of the band outside the shape over which the region's weather fades, m, \[0, 1e6\]; 0 is a step at the
     /// border. Default 500.
     pub perimeter_m: f64,
-    /// Velocity of the region towards east and north, m/s, each within \[-400, 400\]. The wind does not move it.
+    /// Velocity of the region towards east and north, m/s, each within \[-400, 400\]. Default 0: the wind does not move
+    /// a region.
     pub velocity_m_s: [f64; 2],
-    /// Simulation time at which the centre is at `center_m`, s, \[-1e10, 1e10\].
+    /// Simulation time at which the centre is at `center_m`, s, \[-1e10, 1e10\]. Default 0.
     pub at_s: f64,
-    /// Share by which the region acts, \[0, 1\], default 1. A host fades a region in and out with it.
+    /// Factor on the region's weight, \[0, 1\], default 1. A host fades a region in and out with it.
     pub strength: f64,
 }
 
@@ -53,15 +54,15 @@ pub struct WeatherRegion {
     pub plan: RegionPlan,
     /// Parts of `weather` that the region has. Default none.
     pub has: WeatherParts,
-    /// Parts that are averaged with those of earlier regions that merge them too; the others cover what is before them.
-    /// Default none.
+    /// Parts that are averaged with those of earlier regions that merge them too. The region's other parts cover those
+    /// of earlier regions. Default none.
     pub merges: WeatherParts,
-    /// Weather inside. Heights count from the world's station, whatever its `station_altitude_m` says.
+    /// Weather inside. Its `station_altitude_m` is ignored: heights count from the station of the world's weather.
     pub weather: Weather,
-    /// The host's own values in place of laws.
+    /// Values of the host that replace derived ones inside the region.
     pub overrides: Overrides,
     /// Upward velocity of the wind above 100 m, m/s, \[-50, 50\]; it decreases linearly to 0 at the ground. A part of
-    /// [`WeatherParts::WIND`].
+    /// [`WeatherParts::WIND`]. Default 0.
     pub vertical_wind_m_s: f64,
 }
 
@@ -189,7 +190,7 @@ impl PlanAxes {
     }
 }
 
-/// Point at which weights of regions are asked for.
+/// Point at which weights of regions are computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlanPoint {
     /// Position in the host's world, m.
@@ -240,7 +241,7 @@ impl HeldRegion {
         Ok(Self { plan: region.plan, has: region.has, merges: region.merges, conditions })
     }
 
-    /// Whether a saved region is one that can be set.
+    /// Whether a region from a saved state is within all ranges and contains only finite numbers.
     pub fn is_valid(&self) -> bool {
         // Numbers of a forged state may be infinite.
         let is_finite = |text: String| !text.contains("nan") && !text.contains("inf");

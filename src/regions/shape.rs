@@ -23,7 +23,7 @@ pub enum RegionShape {
     Rectangle {
         /// Half extents to the right and along the heading, m, each \[1, 1e6\].
         half_m: [f64; 2],
-        /// Radius of the corners, m, \[0, the smaller half extent\]. The largest makes a circle of a square.
+        /// Radius of the corners, m, \[0, the smaller half extent\]. The largest turns a square into a circle.
         corner_radius_m: f64,
     },
     /// Ellipse.
@@ -33,7 +33,8 @@ pub enum RegionShape {
     },
     /// Simple polygon, convex or not.
     Polygon {
-        /// Corners in order, in either sense, each coordinate within 1e6 m. Sides must not cross or touch others.
+        /// Corners in order, in either sense, each coordinate within 1e6 m. Sides must not cross or touch others, and
+        /// the area must be above 1 m^2.
         corners_m: [[f64; 2]; MAX_REGION_CORNERS],
         /// Number of corners, \[3, 16\].
         count: usize,
@@ -69,7 +70,7 @@ impl RegionShape {
         }
     }
 
-    /// Returns the farthest point of the shape from its centre, m.
+    /// Returns the distance of the shape's farthest point from its centre, m.
     pub(crate) fn radius_m(&self) -> f64 {
         match self {
             Self::Rectangle { half_m, .. } => DVec2::from(*half_m).length(),
@@ -119,7 +120,7 @@ fn check_corners(corners: &[[f64; 2]; MAX_REGION_CORNERS], count: usize) -> Resu
     Ok(())
 }
 
-/// Whether two sides that share `corner` and end at `a` and `b` have no length or lie on each other.
+/// Whether, of two sides that share `corner` and end at `a` and `b`, one has no length or both overlap.
 fn folds_back(corner: DVec2, a: DVec2, b: DVec2) -> bool {
     let (a, b) = (a - corner, b - corner);
     a == DVec2::ZERO || b == DVec2::ZERO || (a.perp_dot(b) == 0.0 && a.dot(b) > 0.0)
@@ -154,8 +155,8 @@ fn polygon_distance(corners: &[[f64; 2]], p: DVec2) -> f64 {
     if inside { -nearest } else { nearest }
 }
 
-/// Returns the signed distance of a point from an ellipse, m: the nearest point by bisection of its one parameter
-/// (Eberly 2013, "Distance from a point to an ellipse"), which converges for every point.
+/// Returns the signed distance of a point from an ellipse, m. The nearest point depends on one parameter, which is
+/// found by bisection (Eberly 2013, "Distance from a point to an ellipse"); this converges for every point.
 fn ellipse_distance(half: DVec2, p: DVec2) -> f64 {
     // The longer axis comes first.
     let (e, y) =

@@ -1,4 +1,4 @@
-//! Pieces of a straight way on which the shares of regions are constant, or nearly so.
+//! Straight paths through regions, divided into pieces on which the shares of regions are constant or nearly so.
 
 use glam::DVec3;
 
@@ -9,29 +9,31 @@ use super::{
 };
 use crate::{error::Result, scene::WorldFrame};
 
-/// Half length of a piece in a perimeter, as a share of the perimeter.
+/// Largest half length of a piece in a perimeter, as a share of the perimeter, unless the weight hardly changes
+/// ([`EVEN`]).
 const PIECE_SHARE: f64 = 1.0 / 64.0;
-/// Half length of a piece at a border without perimeter, m.
+/// Largest half length of a piece at a border without perimeter, m.
 const STEP_M: f64 = 5e-4;
-/// Change of a weight over a piece as long as the perimeter that still counts as none.
+/// Change of a weight, from the middle of a piece to either end, below which the weight counts as constant. Such a
+/// piece has a half length of at most the perimeter.
 const EVEN: f64 = 1e-3;
-/// Factor by which a point of a piece may lie farther from the middle than its ends do: the plan of a straight way is
-/// almost straight.
+/// Factor by which a point of a piece may lie farther from the middle than the ends of the piece do: on the plan a
+/// straight path is slightly bent.
 const BENT: f64 = 1.05;
 
-/// Straight way through regions.
+/// Straight path through regions.
 pub(crate) struct RegionWay<'a> {
-    /// Regions that the way may meet.
+    /// Regions that the path may meet.
     over: RegionsOver<'a>,
     start: DVec3,
-    /// Unit vector along the way, in the host's world.
+    /// Unit vector along the path, in the host's world.
     direction: DVec3,
     length_m: f64,
 }
 
-/// Part of a way on the plan of a region.
+/// Part of a path on the plan of a region.
 struct PlanStretch {
-    /// Distances of its start, middle and end from the border, m, negative inside.
+    /// Distances of the part's start, middle and end from the border, m, negative inside.
     distances_m: [f64; 3],
     /// Half length on the plan, m.
     reach_m: f64,
@@ -50,7 +52,7 @@ impl RegionOnPlan<'_> {
         middle <= -stretch.reach_m || middle >= self.region.plan.perimeter_m + stretch.reach_m
     }
 
-    /// Whether the weight at the middle of a stretch may stand for all of it.
+    /// Whether the weight at the middle of a stretch may be used for the whole stretch.
     fn is_fine(&self, stretch: &PlanStretch) -> bool {
         let perimeter_m = self.region.plan.perimeter_m;
         if self.is_constant(stretch) || stretch.reach_m <= (PIECE_SHARE * perimeter_m).max(STEP_M) {
@@ -62,7 +64,7 @@ impl RegionOnPlan<'_> {
 }
 
 impl<'a> RegionWay<'a> {
-    /// Finds the regions that a way may meet. `direction` is a unit vector in the host's world.
+    /// Finds the regions that a path may meet. `direction` is a unit vector in the host's world.
     pub fn new(
         regions: &'a [HeldRegion],
         world: &'a WorldFrame,
@@ -80,17 +82,17 @@ impl<'a> RegionWay<'a> {
         way
     }
 
-    /// Whether no region can be met.
+    /// Whether the path can meet no region.
     pub fn is_empty(&self) -> bool {
         self.over.is_empty()
     }
 
-    /// Returns the regions that the way may meet; [`RegionsHere`] of its pieces gives indices into them.
+    /// Returns the regions that the path may meet. The indices in the [`RegionsHere`] of a piece count in this order.
     pub fn regions(&self) -> impl Iterator<Item = &'a HeldRegion> {
         self.over.list.iter().map(|on| on.region)
     }
 
-    /// Returns start, middle and end of a part of the way.
+    /// Returns start, middle and end of a part of the path.
     fn points(&self, from_m: f64, to_m: f64) -> [PlanPoint; 3] {
         [from_m, 0.5 * (from_m + to_m), to_m].map(|s| PlanPoint::new(self.over.world, self.start + self.direction * s))
     }
