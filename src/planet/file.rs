@@ -41,7 +41,7 @@ fn parse(text: &str) -> Result<Planet> {
     Ok(planet)
 }
 
-/// Refuses keys and sections that are no field: a misspelt key must not silently leave a default in place.
+/// Refuses unknown keys and sections: a misspelt key must not silently leave a default in place.
 fn refuse_unknown(text: &str, table: &DeTable<'_>, section: &str) -> Result<()> {
     for (key, value) in table.iter() {
         let name = key.get_ref().as_ref();

@@ -24,7 +24,8 @@ pub struct Rayleigh {
     pub scale_height_m: f64,
 }
 
-/// Haze: scatters with a forward peak (Cornette and Shanks 1992) and absorbs; its density falls exponentially.
+/// Haze: scatters with a forward peak (Cornette and Shanks 1992) and absorbs; its density falls exponentially with
+/// altitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mie {
@@ -34,12 +35,13 @@ pub struct Mie {
     pub extinction_per_m: [f64; 3],
     /// Scale height, m, `[0, 1e6]`: the density falls to 1/e over it; 0 means that there is no haze above the ground.
     pub scale_height_m: f64,
-    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; a positive one scatters forward, away from the sun.
+    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; with a positive one, most light goes on forward, away
+    /// from the sun.
     pub asymmetry_g: f64,
 }
 
 impl Mie {
-    /// Returns the haze of [`Planet::earth`] at three wavelengths, nm.
+    /// Returns the haze of [`Planet::earth`] at three wavelengths, nm, by the power law of Angstrom 1929.
     pub fn earth_at(wavelengths_nm: [f64; 3]) -> Self {
         let haze = wavelengths_nm.map(|nm: f64| 2.5e-5 * (nm / 550.0).powf(-1.3));
         Self {
@@ -65,11 +67,12 @@ pub struct Absorption {
 }
 
 /// A planet with its air, ground and sun. Fields are public plain data: call [`Planet::check`] after setting them by
-/// hand. Every function of the crate that takes a planet also calls it.
+/// hand. The functions of [`crate::sky`] that build, solve or query a sky also call it; conversions such as
+/// [`Planet::at_wavelengths`] do not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Planet {
-    /// The three wavelengths that are computed, nm, each in `[200, 4000]`. Every other triple has the same order.
+    /// The three wavelengths that are computed, nm, each in `[200, 4000]`. All other triples have the same order.
     /// Welkin's own colours require red, green, blue; radiances are right in any order.
     pub wavelengths_nm: [f64; 3],
     /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`. Radiances
@@ -86,8 +89,8 @@ pub struct Planet {
     pub ground_albedo: [f64; 3],
     /// Gas.
     pub rayleigh: Rayleigh,
-    /// Haze. If it equals the Earth's, all haze comes from the weather; otherwise this haze is there besides the
-    /// weather's ([`Planet::own_haze`]).
+    /// Haze. If it equals the Earth's, all haze comes from the weather; otherwise this haze is added to the weather's
+    /// ([`Planet::own_haze`]).
     pub mie: Mie,
     /// Ozone.
     pub absorption: Absorption,
@@ -162,10 +165,12 @@ impl Planet {
     /// - Wavelengths [`EARTH_WAVELENGTHS_NM`].
     /// - Gas: [`rayleigh_scattering_per_m`] (Bodhaine et al. 1999) at 15 C and 1013.25 hPa; the scale height is the one
     ///   that gives the vertical optical depth of the same paper.
-    /// - Haze: a clean continental air, extinction 2.5e-5/m at 550 nm (a meteorological optical range of 82 km
-    ///   with the gas), wavelength exponent 1.3 (Angstrom 1929), single-scattering albedo 0.95, g = 0.76, 1.2 km.
+    /// - Haze: clean continental air, extinction 2.5e-5/m at 550 nm (a meteorological optical range of 82 km
+    ///   with the gas), wavelength exponent 1.3 (Angstrom 1929), single-scattering albedo 0.95, g = 0.76, scale height
+    ///   1.2 km.
     /// - Ozone: 300 Dobson units in a tent from 10 to 40 km, cross-sections of Serdyuchenko et al. 2014 at 233 K.
-    /// - Sun: spectral irradiance of ASTM G173 (extraterrestrial) at 1 au, W m^-2 nm^-1; the disc at 1 au.
+    /// - Sun: spectral irradiance of ASTM G173 (extraterrestrial), W m^-2 nm^-1, and angular radius of the disc, both
+    /// at 1 au.
     /// - Ground: grey, albedo 0.15 (land without snow). Radius: IUGG mean, 6371.0 km; the air is cut at 100 km.
     pub fn earth() -> Self {
         Self::earth_at(EARTH_WAVELENGTHS_NM)

@@ -122,8 +122,8 @@ pub(crate) struct SpectralTriple {
 }
 
 /// Splits `planet` into planets for a set of `count` wavelengths, a multiple of 3. The sum of all transfers, each times
-/// its column, is a triple of transfers at the planet's own wavelengths, and the conversion of those wavelengths turns
-/// it into the set's colour. With a count of 3 the only part is the planet itself.
+/// its column, is a triple of transfers at the planet's own wavelengths. The conversion of the planet's own wavelengths
+/// turns this triple into the set's colour. With a count of 3 the only part is the planet itself.
 ///
 /// # Errors
 /// As [`SpectralSet::new`].
@@ -184,7 +184,7 @@ impl Conversion {
     /// %): use [`Conversion::per_channel`] there.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] unless the three wavelengths differ by 5 nm at least and lie in `[365, 835]`.
+    /// [`crate::Status::InvalidArgument`] unless the three wavelengths are at least 5 nm apart and lie in `[365, 835]`.
     pub fn fitted(wavelengths_nm: &[f64; 3]) -> Result<Self> {
         for (i, nm) in wavelengths_nm.iter().enumerate() {
             check_range("wavelengths_nm", *nm, 365.0, 835.0, "nm")?;
@@ -229,15 +229,19 @@ impl Conversion {
 
 /// A simple model of the transfer of air, for the fit.
 struct AirSample {
+    /// Vertical optical depth of the haze at 550 nm.
     haze: f64,
+    /// Air masses of gas and haze between the sun and the point.
     sun_masses: f64,
+    /// Air masses of ozone.
     ozone_masses: f64,
     /// 0: direct light; 1 and 2: light scattered by thin air, without and with haze; 3: by thick air.
     kind: u8,
 }
 
-/// Returns the airs of the fit. They are indexed by arithmetic, because chained flattening iterators compile to a read
-/// of an inner iterator that does not exist yet: harmless, but reported by valgrind in a host's program.
+/// Returns the air samples of the fit: all combinations of haze, sun, ozone and kind. They are indexed by arithmetic,
+/// because chained flattening iterators compile to a read of an inner iterator that does not exist yet: harmless, but
+/// reported by valgrind in a host's program.
 fn airs() -> [AirSample; 144] {
     const HAZES: [f64; 3] = [0.03, 0.2, 0.6];
     const SUN_MASSES: [f64; 6] = [1.0, 1.5, 2.5, 5.0, 10.0, 20.0];
