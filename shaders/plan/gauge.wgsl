@@ -1,11 +1,12 @@
 // Measures how much each part of the weather changes this picture. For each pixel of a coarse grid it composes the
-// picture with everything, and again without one part after another. Output, as packed halves, in this order:
+// picture with everything, and again without one part after another. Output in this order, as upper halves of 32-bit
+// floats, packed in pairs:
 // - relative changes of luminance without air, without fog, without clear sky, and with a veil in place of drops;
 // - kind of the pixel: 1 where the host drew something, -1 where it drew nothing, 0 under the mask;
 // - exposed luminance;
 // - optical depth of the drops and flakes that are drawn one by one;
-// - relative change with a deck in place of clouds drawn as a volume. The cover of these clouds is known here, but not
-//   their places.
+// - relative change with a deck in place of clouds drawn as a volume. The cover of these clouds is known here, but
+// their places are not.
 //!include "frame/composite.wgsl"
 //!include "frame/exposed.wgsl"
 
@@ -24,11 +25,11 @@ fn halves(a: f32, b: f32) -> u32 {
     return ((bitcast<u32>(a) + 0x8000u) >> 16u) | ((bitcast<u32>(b) + 0x8000u) & 0xffff0000u);
 }
 
-// Compositions in addition to those of frame.compositions. With a deck in place of clouds:
+// Indices of the compositions that follow those of frame.compositions. Composition with a deck in place of clouds:
 const WITH_DECK: u32 = 5u;
-// In a cloud, with its mean light:
+// Composition of a pixel in a cloud, with the mean light of clouds:
 const IN_CLOUD: u32 = 6u;
-// In a gap between clouds:
+// Composition of a pixel in a gap between clouds:
 const IN_GAP: u32 = 7u;
 
 // Sky objects in a composition. Clouds are at most a deck, so that the contributions of other parts do not depend on

@@ -41,7 +41,8 @@ pub(super) struct Choices {
     pub worth: [Estimate; MOST_STEPS],
     /// Steps of the parts that are present.
     there: Set,
-    /// Steps that keep the tolerance with the least work.
+    /// Steps that keep the tolerance with the least work; `None` if no set keeps it. Without a tolerance, those of the
+    /// pinned parts.
     cheapest: Option<Set>,
 }
 
@@ -59,8 +60,9 @@ impl Choices {
         }
     }
 
-    /// Takes a picture that the estimator has seen: its work with everything (`all`), the steps of the parts that are
-    /// present (`there`), the host's demands (`demands`), and the steps taken now (`previous`).
+    /// Takes the findings about a gauged picture, whose pixels the estimator already has: its work with everything
+    /// (`all`), the steps of the parts that are present (`there`), the host's demands (`demands`), and the steps taken
+    /// now (`previous`).
     pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, demands: &PlanDemands, previous: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;

@@ -1,12 +1,12 @@
 //! Estimate of a picture's error without some of its parts, from the pixels that the gauge saw.
 //!
-//! The *error* is that of the whole crate: the 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white) after
-//! exposure. A tolerance also bounds the worst pixel, by [`WORST`] times as much. So a far ridge keeps its haze even if
-//! it fills only a twentieth of the picture.
+//! The *error* is defined as everywhere in the crate: the 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white)
+//! after exposure. A tolerance also bounds the worst pixel, to [`WORST`] times the tolerance. So a far ridge keeps its
+//! haze even if it fills only a twentieth of the picture.
 
 use super::parts::{Ladder, MOST_STEPS, Set};
 
-/// Largest error of the worst pixel, in tolerances of the 95th percentile.
+/// Largest error of the worst pixel, in multiples of the tolerance.
 pub const WORST: f64 = 10.0;
 
 /// Error of a picture from which parts were left out.
@@ -35,7 +35,7 @@ impl Estimate {
 /// Number of estimates that are cached until the next gauge.
 const KEPT: usize = 8;
 
-/// Findings of the gauge about a picture, and the estimates from them. Its buffers are reused between calls.
+/// Findings of the gauge about a picture, and the estimates from them. The buffers are reused between calls.
 pub(super) struct Estimator {
     /// Relative change (Y' - Y) / (Y + 0.01 white) at each pixel due to each step, taken together with the steps above
     /// it.

@@ -30,7 +30,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Size of a row in the staging buffer, bytes.
 const BYTES_PER_ROW: u32 = GRID.0 * 16;
 
-/// State of a readback: there is none. The next three states follow in the order of their numbers.
+/// State of a readback: none is under way. A readback passes through the next three states in this order.
 const IDLE: u32 = 0;
 /// State of a readback: the pass is recorded.
 const RECORDED: u32 = 1;
@@ -71,7 +71,8 @@ pub(crate) struct Gauge {
     buffer: wgpu::Buffer,
     /// State of the readback: [`IDLE`] and the constants after it.
     state: Arc<AtomicU32>,
-    /// Pipeline, with the number of samples (one or several) and the `override` constants that it was created for.
+    /// Pipeline, with the shader (for one sample a pixel or for several) and the `override` constants that it was
+    /// created for.
     pipeline: Option<(&'static str, OverrideValues, wgpu::RenderPipeline)>,
     /// Samples of the last readback.
     samples: Vec<GaugeSample>,
@@ -110,8 +111,8 @@ impl Gauge {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Records the pass. `groups`, `layouts` and `constants` are those of the composition; `shader` fits the number of
-    /// samples of the host's colour and depth.
+    /// Records the pass. `groups`, `layouts` and `constants` are those of the composition. `shader` is the variant for
+    /// the number of samples of the host's colour and depth.
     pub fn record(
         &mut self,
         device: &Arc<Device>,
@@ -145,7 +146,7 @@ impl Gauge {
     }
 
     /// Advances a readback under way, without waiting, and returns the samples once they have arrived. Call it once a
-    /// frame, after the host has submitted what was recorded.
+    /// frame, after the host has submitted the commands of the last frame.
     pub fn advance(&mut self, device: &Device) -> Option<&[GaugeSample]> {
         if self.state.load(Ordering::Acquire) == RECORDED {
             self.state.store(MAPPING, Ordering::Release);

@@ -23,8 +23,8 @@ pub struct PartPlan {
     pub part: &'static Part,
     /// Rung at which the part is drawn once its fade has ended; 0, all of it, if the picture has none of it.
     pub rung: usize,
-    /// Share of the part that is drawn: 1 all of it, 0 its last rung. It lies between them during a fade and on middle
-    /// rungs.
+    /// Share of the part that is drawn: 1 on its first rung, 0 on its last. It lies between them during a fade and on
+    /// middle rungs.
     pub share: f32,
     /// Reason for the rung.
     pub reason: Reason,
@@ -101,9 +101,9 @@ pub struct Prediction {
     /// Predicted time of the weather in this frame, ms; `None` before the first gauge, and before the first reported
     /// time.
     pub milliseconds: Option<f64>,
-    /// Error of what this frame leaves out, parts that still fade not counted; `None` before the first gauge.
+    /// Error of what this frame leaves out. A part that still fades counts as drawn. `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// Predicted bound of the error, and measured error, of the newest gauged picture.
+    /// Predicted bound of the error, and error that the gauge measured, of the newest gauged picture.
     pub checked: Option<[f64; 2]>,
 }
 
@@ -192,12 +192,12 @@ struct Gauging<U> {
     unseen: Option<U>,
 }
 
-/// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share, because
-/// tables are not built in finer strips. The second is the usual share, for frames with time to spare.
+/// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share: tables
+/// are not built in finer strips. The second is the usual share, for frames with time to spare.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Largest work on the sky's tables in a frame, as a share of the picture's own work. Where the usual share of a build
-/// ([`SHARE`]) is more work than this, the usual share is the limit. It keeps a frame with such work below 1.5 times
-/// the time of a frame without.
+/// Largest work on the sky's tables in a frame, as a share of the picture's own work, unless the usual share of a build
+/// ([`SHARE`]) is more work: then the usual share is the limit. A frame that works on tables takes less than 1.5 times
+/// as long as one that does not.
 const SLICE: f64 = 0.3;
 
 /// Largest relative change of a pixel in one frame while a part fades.
@@ -325,13 +325,13 @@ impl<U: Unseen> Planner<U> {
         (0..ladder.parts.len()).fold(0, |set, part| set | gone(part))
     }
 
-    /// Draws everything until the next gauge has an answer.
+    /// Draws everything until the next gauge has been read back.
     fn forget(&mut self) {
         (self.planned, self.gauging, self.left_out, self.frames) = (None, None, 0, EVERY);
     }
 
-    /// Begins a frame: takes the gauge's answer, chooses, fades and predicts. `pure` means that the picture must not
-    /// depend on earlier ones.
+    /// Begins a frame: reads the gauge, chooses, fades and predicts. `pure` means that the picture must not depend on
+    /// earlier ones.
     pub fn begin(&mut self, device: &Device, here: &Situation, present: &Presence, pure: bool) {
         let mut pure = pure;
         self.work = present.most_work();
@@ -362,7 +362,7 @@ impl<U: Unseen> Planner<U> {
         (self.prediction.error, self.prediction.milliseconds) = (error, milliseconds);
     }
 
-    /// Takes the gauge's answer, if it has come.
+    /// Takes the gauge's samples, if they have arrived and the situation is still near that of the gauge.
     fn take_gauge(&mut self, device: &Device, here: &Situation, present: &Presence) {
         let Some(samples) = self.gauge.as_mut().and_then(|g| g.advance(device)) else { return };
         let Some(gauging) = self.gauging.take().filter(|g| g.there.is_near(here)) else { return };
@@ -392,7 +392,8 @@ impl<U: Unseen> Planner<U> {
         }
     }
 
-    /// Moves each part that is not pinned one frame further to its rung; `pure` shows all of it at once.
+    /// Moves each part that is not pinned by one frame towards its rung; with `pure` each part is drawn in full at
+    /// once.
     fn fade(&mut self, present: &Presence, pure: bool) {
         let ladder = &self.choices.ladder;
         let planned = |i: &usize| self.demands.pinned.0 & ladder.whole(*i) == 0;
@@ -415,7 +416,8 @@ impl<U: Unseen> Planner<U> {
         }
     }
 
-    /// Chooses again from the last gauge's findings: a newly reported time may require another set in any frame.
+    /// Chooses again from the last gauge's findings, because a newly reported time may require another set in any
+    /// frame.
     fn choose(&mut self, present: &Presence) {
         let (set, gave_way) = self.choices.choose(&self.governor, &self.demands, self.left_out);
         self.left_out = set;
@@ -455,15 +457,16 @@ impl<U: Unseen> Planner<U> {
         1.0 - (self.plan.parts[part].depth - rung as f32).clamp(0.0, 1.0)
     }
 
-    /// Returns the number of compositions of the gauge; `unseen` adds one, for parts that the gauge cannot see alone.
+    /// Returns the number of compositions of the gauge. `unseen` adds one, for the stand-in of the parts whose change
+    /// has a closed form.
     pub fn compositions(&self, unseen: bool) -> u32 {
         let channel = |part: &Part| if let Worth::Composed(channel) = part.worth { channel + 1 } else { 0 };
         let composed = self.choices.ladder.parts.iter().map(channel).max().unwrap_or(0);
         1 + composed as u32 + u32::from(unseen)
     }
 
-    /// Returns the gauge if this frame should be gauged. `unseen` gives the changes that it cannot see, if a part has
-    /// any.
+    /// Returns the gauge if this frame should be gauged. `unseen` gives the changes that the gauge cannot see, if a
+    /// part has any.
     pub fn due(&mut self, here: &Situation, unseen: impl FnOnce() -> Option<U>) -> Option<&mut Gauge> {
         let absent = self.absent();
         let gauge = self.gauge.as_mut()?;
@@ -485,7 +488,7 @@ impl PartPlan {
 }
 
 impl Choices {
-    /// Takes the samples of the gauge, and adds the changes that it cannot see.
+    /// Takes the samples of the gauge, and adds the changes that the gauge cannot see.
     fn see(&mut self, samples: &[GaugeSample], unseen: Option<&impl Unseen>) {
         let half = |i: usize, n: u32| (i as f64 + 0.5) / f64::from(n) * 2.0 - 1.0;
         self.estimator.clear();

@@ -1,6 +1,6 @@
-//! A plan as text, so that other channels and later sessions draw the same.
+//! A plan as text, with which other channels and later sessions draw equal pictures.
 //!
-//! Beside the rungs of the parts the text holds the sky's settings. Views of a context with other settings would draw
+//! The text holds the rungs of the parts and the sky's settings. Views of a context with other settings would draw
 //! differently, so they refuse the plan.
 
 use toml::{Table, Value};
@@ -126,7 +126,7 @@ fn text_of<'a>(table: &'a Table, name: &str) -> Result<&'a str> {
         .ok_or_else(|| fault(&format!(".sky.{name}"), format_args!("must be a text, got {}", shown(found))))
 }
 
-/// Checks that a setting equals the saved one: views draw the same only with the same sky.
+/// Checks that a setting equals the saved one: only views with equal settings of the sky draw equal pictures.
 fn differs<T: PartialEq + std::fmt::Display>(name: &str, saved: T, own: T) -> Result<()> {
     if saved == own {
         return Ok(());

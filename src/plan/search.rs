@@ -2,9 +2,9 @@
 //! within the time.
 //!
 //! If there are few sets of steps, all are tried. Otherwise a limited number of sets is tried in order of increasing
-//! work, and the first one that keeps the tolerance is the best. If none of these does, steps are added one at a time
-//! to the few best sets, and then exchanged as long as that saves more. The number of trials grows with the square of
-//! the number of steps.
+//! work, and the first one that keeps the tolerance is the best. If none of these keeps it, steps are added one at a
+//! time to the few best sets, and then exchanged as long as that saves more. The number of trials grows with the square
+//! of the number of steps.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -215,7 +215,8 @@ fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mu
     best
 }
 
-/// Finds the set with the least loss that fits, or the one of least work if none fits. Returns it, and whether it fits.
+/// Finds the set with the least loss that fits, or the set of least work if none fits. Returns the set, and whether it
+/// fits. With many sets the search is greedy, so that the loss may be a little above the least.
 pub(super) fn least_missed(
     free: Free<'_>,
     work: impl Fn(Set) -> f64,
