@@ -1,12 +1,12 @@
 // The glow between the stars, drawn on a sphere of directions: airglow, zodiacal light, the Milky Way, and the effect
-// of the air on them. NightSky in src/stars/glow.rs is the f64 twin.
+// of the air on them. The f64 reference is NightSky in src/stars/glow.rs.
 
 struct GlowUniform {
     // Matrix from camera-relative (east, north, up) to clip space.
     clip: mat4x4f,
     // Columns of the rotation from J2000.0 to (east, north, up).
     to_world: array<vec4f, 3>,
-    // Light of 1 S10 of zodiacal light, and (below) of starlight, in the target's units, times the share of night.
+    // Luminance of 1 S10 of zodiacal light, and (below) of starlight, in the target's units, times the share of night.
     zodiacal: vec3f,
     // Square of the ratio of the eye's distance from the planet's centre to that of the airglow layer, less than 1.
     layer_ratio2: f32,
@@ -19,7 +19,7 @@ struct GlowUniform {
     pad0: f32,
     lit_air: vec3f,
     pad1: f32,
-    // Light that is present where no light comes through the air: the sky where night has not come yet, and lit air.
+    // Light that is seen where the air lets nothing through: the even sky times (1 - share of night), and lit air.
     base: vec3f,
     pad2: f32,
     // Transmittance of the air straight up, as a power of 2: its binary logarithm.
@@ -29,8 +29,8 @@ struct GlowUniform {
 
 @group(0) @binding(0) var<uniform> glow: GlowUniform;
 
-// Vertices pass on the values of the block that fragments need: on software drivers a read of the block costs more than
-// an interpolation.
+// Vertices pass the block's values on to the fragments: on software drivers a read of the block costs more than an
+// interpolation.
 struct GlowVarying {
     @builtin(position) position: vec4f,
     // Zodiacal light and starlight, less lit air, in the target's units; w: sine of the elevation.

@@ -1,4 +1,4 @@
-// Stars and planets as points of light; src/stars/reference.rs is the f64 twin, with the same names.
+// Stars and planets as points of light. The f64 reference is src/stars/reference.rs, with the same names.
 //!include "common/guarded.wgsl"
 //!include "common/depth.wgsl"
 //!include "common/host.wgsl"
@@ -86,8 +86,8 @@ struct StarVarying {
     @location(1) @interpolate(flat) pixel: vec2f,
 }
 
-// A corner of the square of pixels that a star lights. `direction` is in J2000.0; `lux` is the illuminance above the
-// air.
+// One corner of the square of pixels that a star lights. `direction` is in J2000.0; `lux` is the illuminance above the
+// air, lux a channel. A star that is not drawn gets a corner outside the picture.
 @vertex
 fn star_vertex(
     @builtin(vertex_index) corner: u32,

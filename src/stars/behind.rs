@@ -1,5 +1,5 @@
-//! Light behind the sky's own light in one direction, in f64: twin of `night_light` in `shaders/between/sky.wgsl` and
-//! of the layer that it reads, without the points.
+//! Light behind the sky's own light in one direction, in f64, for queries. It is the light of `night_light` in
+//! `shaders/between/sky.wgsl` and of the layer that this function reads, without the points.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::{
 pub(crate) struct NightBehind {
     /// Luminance of an even sky, cd/m^2 a channel: used where no glow is drawn, and mixed with the glow in twilight.
     even_cd_m2: [f64; 3],
-    /// The glow, and its share in the mix, 0 to 1.
+    /// The glow, and its share in the mix with the even sky, 0 to 1. `None` where no glow is drawn.
     glow: Option<(NightSky, f64)>,
 }
 
@@ -27,7 +27,7 @@ impl NightBehind {
     /// Creates the night light of a scene at a universal time, seen through fog of an optical depth straight up.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for a time outside the almanac's range.
+    /// [`crate::Status::InvalidArgument`] for a time outside the almanac's range or a place out of range.
     pub fn new(scene: &Scene, utc: Utc, settings: &StarSettings, fog_depth: f64) -> Result<Self> {
         let even_cd_m2 = scene.night_floor_cd_m2;
         let open = (1.0 - scene.deck_cover) * (-fog_depth).exp();

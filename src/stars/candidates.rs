@@ -4,8 +4,9 @@ use super::catalogue::catalogue;
 use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
-/// Stars, planets and the glow between them. The rungs are all of it, or an even sky of the glow's mean luminance. The
-/// gauge measures its worth together with that of the clear sky's own light (`Worth::Composed`).
+/// Stars, planets and the glow between them. The rungs are all of these, or an even sky of the glow's mean luminance.
+/// The gauge measures the change without them together with the change without the clear sky's own light
+/// (`Worth::Composed`).
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 
 /// Work of the layer for one pixel, in units of the work for a pixel without any part.
@@ -30,7 +31,7 @@ pub enum StarMethod {
     Even,
 }
 
-/// Work for one drawn star: the transform from J2000.0 to the picture for each of its corners, and 16 pixels.
+/// Work for one drawn star: the transform from J2000.0 to the picture for each corner of its quad, and 16 pixels.
 const POINT: Units = Units { samples: 40.0, texels: 0.0, bytes: 16.0 * 8.0 };
 /// Work for one pixel of the glow, written and read.
 const GLOW: Units = Units { samples: 1.0, texels: 1.0, bytes: 8.0 };

@@ -41,8 +41,8 @@ impl Star {
         Self { motion: east * rad(right_ascension_as) + north * rad(declination_as), ..self }
     }
 
-    /// Unit vector at `years` Julian years after J2000.0. The star moves in a straight line. The change of distance is
-    /// left out, which for the nearest stars is 0.001 degrees a century.
+    /// Unit vector at `years` Julian years after J2000.0. The star moves in a straight line. Its distance is taken as
+    /// constant, which for the nearest stars is an error of 0.001 degrees a century.
     pub fn direction_at(&self, years: f64) -> DVec3 {
         (self.direction + self.motion * years).normalize()
     }
@@ -71,8 +71,9 @@ static PACKED: &[u8] = include_bytes!("catalogue.bin");
 const RECORD: usize = 12;
 
 /// Proper motions: number (HR), motion in right ascension (times the cosine of the declination) and in declination, arc
-/// seconds a year. The list has the brighter stars that move by more than 0.5", and those with names that move by more
-/// than 0.2". Source: Hipparcos (ESA 1997, van Leeuwen 2007), rounded to 0.01", which is 0.0003 degrees in a century.
+/// seconds a year. The list has the brighter stars that move by more than 0.5" a year, and the stars with names that
+/// move by more than 0.2" a year. Source: Hipparcos (ESA 1997, van Leeuwen 2007), rounded to 0.01", which is 0.0003
+/// degrees in a century.
 const MOTIONS: [(u16, f64, f64); 49] = [
     (15, 0.14, -0.16),
     (21, 0.52, -0.18),

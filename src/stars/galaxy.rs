@@ -7,8 +7,8 @@ use glam::DVec3;
 pub use super::disc::{disc_s10, equator_to_galactic};
 use super::starlight::Starlight;
 use crate::almanac::celestial::equatorial_direction;
-/// Light of the stars that are not drawn as points, S10, in a galactic direction (unit). It is read from a table of
-/// [`Starlight`] and is within 4 % of it.
+/// Light of the stars that are not drawn as points, S10, in a galactic direction (unit). It is interpolated in a table,
+/// within 4 % of [`Starlight`], from which the first call computes the table.
 pub fn unresolved_s10(galactic: DVec3) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
@@ -35,6 +35,7 @@ const LATITUDES_DEG: [f64; 29] = [
     0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 15.0, 18.0, 21.0, 24.0, 27.0, 30.0, 33.0, 36.0, 40.0, 45.0,
     50.0, 56.0, 61.0, 66.0, 70.0, 75.0, 80.0, 85.0, 90.0,
 ];
+/// Number of rows, from the south galactic pole to the north one.
 const ROWS: usize = 2 * LATITUDES_DEG.len() - 1;
 /// Number of columns around the full circle of longitude.
 const COLUMNS: usize = 144;

@@ -14,7 +14,7 @@ use super::{
 /// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = 3_282.806_35;
 /// Luminance of 1 S10 (one star of magnitude 10 a square degree), cd/m^2: the star's illuminance divided by a square
-/// degree in sr, 8.3e-7.
+/// degree in sr. It is 8.3e-7 cd/m^2.
 pub const S10_CD_M2: f64 = MAGNITUDE_0_LUX * 1e-4 * SQUARE_DEGREES_PER_SR;
 /// Airglow at the zenith at night near the minimum of solar activity, S10. Benn and Ellison (1998, La Palma Technical
 /// Note 115) give 2.5 times the zodiacal light at the ecliptic's pole.
@@ -36,7 +36,7 @@ const ZODIACAL_K: f64 = 5772.0;
 /// Temperature of the black body with the colour of faint stars, from their tables ([`super::starlight`]), K.
 pub(super) const STARLIGHT_K: f64 = 4900.0;
 
-/// Longitudes relative to the sun, and latitudes, of the table, degrees.
+/// Ecliptic longitudes relative to the sun, and ecliptic latitudes, of the table of zodiacal light, degrees.
 const LONGITUDES: [f64; 19] = [
     0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0, 150.0, 165.0,
     180.0,
@@ -116,7 +116,9 @@ fn van_rhijn(sine_of_elevation: f64, altitude_m: f64) -> f64 {
 pub struct NightSky {
     /// Rotation from (east, north, up) to the ecliptic of J2000.0, with the sun at longitude 0.
     to_sun_ecliptic: DMat3,
+    /// Rotation from (east, north, up) to galactic axes.
     to_galactic: DMat3,
+    /// Altitude of the eye above the sea, m, at least 0.
     altitude_m: f64,
     /// Optical depths of the air straight up at the three wavelengths.
     pub(super) zenith_depth: [f64; 3],
@@ -128,7 +130,7 @@ pub struct NightSky {
     pub(super) lit_air: [f64; 3],
 }
 
-/// Rotation from J2000.0 to the ecliptic with the sun at longitude 0; `sun` is its direction in J2000.0.
+/// Rotation from J2000.0 to the ecliptic with the sun at longitude 0; `sun` is the sun's direction in J2000.0.
 pub(super) fn equator_to_sun_ecliptic(sun: DVec3) -> DMat3 {
     let to_ecliptic = ecliptic_to_equator().transpose();
     let sun = to_ecliptic * sun;
@@ -142,8 +144,8 @@ pub(super) fn zodiacal_toward(e: DVec3) -> f64 {
 
 impl NightSky {
     /// Creates the glow over a place `altitude_m` above the sea, where the air has the optical depths `zenith_depth`
-    /// straight up. `airglow` is the strength of the airglow: 1 at the minimum of solar activity, 1.7 at the maximum,
-    /// when the sky is brighter by 0.4 magnitudes (Benn and Ellison 1998).
+    /// straight up. Below the sea the altitude counts as 0. `airglow` is the strength of the airglow: 1 at the minimum
+    /// of solar activity, 1.7 at the maximum, when the sky is brighter by 0.4 magnitudes (Benn and Ellison 1998).
     pub fn new(heavens: &Heavens, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         Self::under(&heavens.to_world, heavens.sun, altitude_m, zenith_depth, airglow)
     }
@@ -195,12 +197,12 @@ impl NightSky {
     }
 
     /// Luminance in a direction (east, north, up; unit), cd/m^2 a channel of linear Rec. 709, after the air: `L T + S
-    /// (1 - T)`. For directions below the horizon the air is that at the horizon.
+    /// (1 - T)`. For directions below the horizon T is the transmittance at the horizon.
     ///
-    /// T is the air's transmittance. S is the light that an infinitely deep layer of lit air sends: half the mean of
-    /// the dome, because air scatters equally to all sides, absorbs little, and has the dome above and dark ground
-    /// below (Schuster 1905 in its simplest form). A sky without moon is therefore about as bright at the horizon as at
-    /// the zenith, and light from all around loses half as much as a star does.
+    /// L is the luminance above the air, and T the air's transmittance. S is the light that an infinitely deep layer of
+    /// lit air sends: half the mean of the dome, because air scatters equally to all sides, absorbs little, and has the
+    /// dome above and dark ground below (Schuster 1905 in its simplest form). A sky without moon is therefore about as
+    /// bright at the horizon as at the zenith, and a glow from all sides loses half as much light as a star does.
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
         let level = DVec3::new(direction.x, direction.y, direction.z.max(0.0)).normalize_or(DVec3::X);
         let left = transmittance(self.zenith_depth, level.z.asin().to_degrees());
@@ -333,7 +335,7 @@ mod tests {
                 }
             }
         }
-        // Moonless ground receives 0.5 to 1.5 mlux from the sky alone. The dome's few directions stand for all.
+        // Moonless ground receives 0.5 to 1.5 mlux from the sky alone. The dome's few directions represent all.
         let lux = luminance(&sky.level_lux());
         println!("level ground {:.2} mlux", 1e3 * lux);
         assert!((5e-4..1.5e-3).contains(&lux), "{lux}");

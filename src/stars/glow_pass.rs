@@ -20,8 +20,8 @@ use crate::{
 };
 
 /// Galactic latitudes of the sphere's rows, degrees, and the number of columns that one side of a patch in the row
-/// spans. There are few rows, because a software driver pays for every edge. 95 % of the patches are within 3 % of the
-/// tables.
+/// spans. There are few rows, because a software driver spends time on every edge. 95 % of the patches are within 3 %
+/// of the tables.
 const RINGS: [(f64, usize); 15] = [
     (0.0, 1),
     (1.0, 1),
@@ -101,7 +101,7 @@ pub(super) struct GlowPass {
 }
 
 /// The sphere's triangles that a picture may show. Most triangles are outside the picture, and a software driver spends
-/// time on each that it receives.
+/// time on each one that is submitted.
 struct VisibleTriangles {
     /// Directions of the sphere's corners, in J2000.0.
     directions: Vec<Vec3>,
@@ -111,6 +111,7 @@ struct VisibleTriangles {
     /// Corner indices of the triangles that may show. If their number is odd one more is added, because uploads are
     /// multiples of four bytes.
     shown: Vec<u16>,
+    /// Number of indices without the added one.
     count: u32,
 }
 
@@ -246,8 +247,8 @@ fn corners(sun: DVec3) -> Vec<Corner> {
     (0..ROWS * COLUMNS).map(corner).collect()
 }
 
-/// Triangles between neighbouring rows. Where one row has fewer corners, each of its sides meets several triangles of
-/// the other row, so that there is no gap.
+/// Triangles between neighbouring rows. Where one row has fewer corners, each side of a patch in this row meets several
+/// triangles of the other row, so that there is no gap.
 fn indices() -> Vec<u16> {
     let at = |row: usize, column: usize| (row * COLUMNS + column) as u16;
     let mut list = Vec::new();

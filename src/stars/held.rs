@@ -38,7 +38,8 @@ impl HeldStars {
     /// Removes the settings from a saved state and reads them; `stars` are the host's own stars.
     ///
     /// # Errors
-    /// [`Status::Parse`] for a value that is not such settings.
+    /// [`Status::Parse`] for a value that is not a table of these settings; [`Status::InvalidArgument`] for a setting
+    /// out of range.
     pub fn read(state: &mut toml::Table, stars: Option<Arc<[Star]>>) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else {

@@ -11,7 +11,7 @@ use crate::light::{
 /// Quantities; Crumey 2014, MNRAS 442, 2600).
 pub const MAGNITUDE_0_LUX: f64 = 2.54e-6;
 
-/// Illuminance above the air of a star on a surface facing it, lux (Pogson 1856).
+/// Illuminance above the air of a star of a magnitude, on a surface facing it, lux (Pogson 1856).
 pub fn illuminance_lux(magnitude: f64) -> f64 {
     MAGNITUDE_0_LUX * 10f64.powf(-0.4 * magnitude)
 }
@@ -78,7 +78,7 @@ pub fn air_mass(elevation_deg: f64) -> f64 {
 
 /// Share of a star's light that the air lets through at each of the three wavelengths (Bouguer 1729), at an apparent
 /// elevation; `zenith_depth` are the optical depths straight up. The share applies channel by channel, as in the sky's
-/// own conversion (`sky::spectral::Conversion::per_channel`).
+/// own conversion (`planet::spectral::Conversion::per_channel`).
 pub fn transmittance(zenith_depth: [f64; 3], elevation_deg: f64) -> [f64; 3] {
     let mass = air_mass(elevation_deg);
     zenith_depth.map(|depth| (-depth * mass).exp())

@@ -15,8 +15,8 @@ const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 ///
 /// `I = C (1 + (K B)^(1/2))^2`, with log C = -9.80 and log K = -1.90 for rods, -8.35 and -5.90 for cones,
 ///
-/// in foot-candles and nanolamberts. The lower of the two thresholds counts. Backgrounds below 0 count as 0. A good
-/// observer sees stars half a magnitude fainter.
+/// with I in foot-candles and B in nanolamberts. The lower of the two thresholds counts. Backgrounds below 0 count as
+/// 0. A good observer sees stars half a magnitude fainter.
 pub fn threshold_lux(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(0.0) / CD_M2_PER_NANOLAMBERT;
     let eye = |log_c: f64, log_k: f64| 10f64.powf(log_c) * (1.0 + (10f64.powf(log_k) * b).sqrt()).powi(2);
@@ -31,8 +31,8 @@ pub fn limiting_magnitude(background_cd_m2: f64) -> f64 {
 
 /// Smallest illuminance, lux, of a star whose brightest pixel is at least `share` of a display step. `step` is the
 /// smallest difference that the display shows in the dark, as a share of white (1/255/12.92 for 8 bits with the sRGB
-/// curve). `exposure` is in display units per cd/m^2, and `pixel_sr` is the solid angle of a pixel. 0, which drops no
-/// star, if any of them is not positive.
+/// curve). `exposure` is in display units per cd/m^2, and `pixel_sr` is the solid angle of a pixel. If any of the four
+/// is not positive, the result is 0, which drops no star.
 pub fn display_threshold_lux(share: f64, step: f64, exposure: f64, pixel_sr: f64) -> f64 {
     if !(share > 0.0 && step > 0.0 && exposure > 0.0 && pixel_sr > 0.0) {
         return 0.0;

@@ -1,9 +1,10 @@
 //! The night sky: stars and planets as points of light, and the glow between them.
 //!
 //! On a clear night an eye sees some thousand stars, the planets, the band of the Milky Way, and a sky that is not
-//! black even without moon and towns. This room computes where each of them stands over a place at a time, its light
-//! and colour, how much of that the air lets through, and which stars need no drawing. [`Heavens::at`] gives the
-//! positions, `passes.rs` draws the points, and [`NightSky`] is the glow. Sun and moon belong to the room of the sky.
+//! black even without moon and towns. This room computes the direction of each star and planet over a place at a time,
+//! its light and colour, the share of the light that the air lets through, and which stars need no drawing.
+//! [`Heavens::at`] gives the directions, `passes.rs` draws the points, and [`NightSky`] is the glow. Sun and moon
+//! belong to the room of the sky.
 //!
 //! ```text
 //! let heavens = Heavens::at(utc, &place, &settings)?;             // one matrix, aberration, planets

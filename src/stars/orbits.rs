@@ -8,7 +8,8 @@
 
 use glam::{DMat3, DVec3};
 
-/// Rate of the common argument of the periodic terms, rad per millennium. Each term takes an integer multiple of it.
+/// Rate of the common argument of the periodic terms, rad per millennium. Each term has an integer multiple of this
+/// argument.
 const ARGUMENT_RATE: f64 = 0.359_536_20;
 /// Unit of the amplitudes of the periodic terms, au or rad.
 const AMPLITUDE: f64 = 1e-7;
@@ -29,8 +30,8 @@ pub(super) struct Orbit {
     inclination: [f64; 3],
     /// Longitude of the ascending node, in units as for `longitude`.
     node: [f64; 3],
-    /// Periodic terms of the semi-major axis, one a column: multiple of the argument, amplitude of the cosine,
-    /// amplitude of the sine. The last term grows with time.
+    /// Periodic terms of the semi-major axis, one in each column: multiple of the argument, amplitude of the cosine,
+    /// amplitude of the sine, in units of [`AMPLITUDE`]. The last term grows with time.
     axis_terms: [[f64; 9]; 3],
     /// Periodic terms of the mean longitude, in rows as for `axis_terms`. The last two terms grow with time.
     longitude_terms: [[f64; 10]; 3],

@@ -39,8 +39,8 @@ impl Heavens {
     /// the catalogue that have no proper motion, and for those whose motion it has (tested against another almanac).
     /// Most of the error is the catalogue's own.
     ///
-    /// UT1 is taken as UTC. With a host's own matrix the stars stand as in the catalogue, without motion and
-    /// aberration. The planets and the sun then stand among them as at `utc`.
+    /// UT1 is taken as UTC. With a host's own matrix the stars have their catalogued directions, without motion and
+    /// aberration. The planets and the sun then have the directions that they have among the stars at `utc`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a place, time or setting out of range.
@@ -55,7 +55,7 @@ impl Heavens {
     }
 
     /// Apparent direction (east, north, up; unit) of a direction in J2000.0, for an observer who moves with the Earth,
-    /// without refraction. Aberration is first order in v/c, which leaves out 0.0001 degrees.
+    /// without refraction. Aberration is that of the Earth's orbit; that of its rotation, 0.0001 degrees, is left out.
     pub fn seen(&self, direction: DVec3) -> DVec3 {
         self.to_world * (direction + self.velocity).normalize()
     }
@@ -76,8 +76,8 @@ pub(super) fn to_world_and_sun(utc: Utc, place: &Place, hosts: Option<DMat3>) ->
     Ok((hosts.unwrap_or(own), sun_direction(utc)))
 }
 
-/// Direction (east, north, up; unit) after refraction lifts it: Saemundsson 1986 times `density`, the air's density
-/// relative to that at 1010 hPa and 10 C (0 without air).
+/// Direction (east, north, up; unit) after refraction lifts it, by Saemundsson 1986 times `density`. `density` is the
+/// air's density relative to that at 1010 hPa and 10 C, 0 without air.
 pub fn lifted(direction: DVec3, density: f64) -> DVec3 {
     let level = direction.x.hypot(direction.y);
     if level < 1e-6 {

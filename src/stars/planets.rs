@@ -49,8 +49,8 @@ fn millennia(utc: Utc) -> f64 {
     utc.julian_centuries_tt() / 10.0
 }
 
-/// Direction of the sun from the Earth in the equator and equinox of J2000.0, within 10". (The barycentre of Earth and
-/// moon stands for the Earth.)
+/// Direction of the sun from the Earth in the equator and equinox of J2000.0, within 10". The barycentre of Earth and
+/// moon is used in place of the Earth's centre.
 pub fn sun_direction(utc: Utc) -> DVec3 {
     -EARTH.heliocentric(millennia(utc)).normalize()
 }

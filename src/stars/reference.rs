@@ -1,4 +1,4 @@
-//! Projection of a star onto the picture, in f64: twin of `shaders/stars/points.wgsl`, with the same names.
+//! Projection of a star onto the picture, in f64: the reference of `shaders/stars/points.wgsl`, with the same names.
 
 use glam::{DVec2, DVec3};
 
@@ -61,7 +61,7 @@ pub fn point(view: &StarView<'_>, direction: DVec3, lux: [f64; 3]) -> Option<Poi
     })
 }
 
-/// Adds a star to a picture of `size` pixels; rows start at the target's first.
+/// Adds a star to a picture of `size` pixels, whose rows begin with the target's row 0.
 pub fn add(picture: &mut [[f64; 3]], size: [u32; 2], point: &Point) {
     let first = (point.pixel - 0.5 - REACH).ceil().max(DVec2::ZERO).as_uvec2();
     let last = (point.pixel - 0.5 + REACH).floor();

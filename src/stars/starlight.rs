@@ -21,8 +21,8 @@ const DECLINATIONS_DEG: [f64; 25] = [
 const RED_SHARE: f64 = 0.55;
 /// Width of the kernel that averages the ratio of measured to modelled light, rad: 5 degrees, half the tables' step.
 const NEAR_RAD: f64 = 0.0873;
-/// Width of a second kernel, rad, for directions in which the tables have no values (towards the sun as seen from the
-/// spacecraft).
+/// Width of a second, wider kernel, rad. It fills directions in which the tables have no values (towards the sun as
+/// seen from the spacecraft).
 const FAR_RAD: f64 = 0.35;
 /// Weight of the wide kernel relative to the narrow one.
 const FAR_WEIGHT: f64 = 1e-3;
@@ -127,7 +127,7 @@ fn area(column: usize) -> f64 {
     height * DECLINATIONS_DEG[column].to_radians().cos()
 }
 
-/// Light of the stars that are not drawn as points, S10.
+/// Light of the stars that are not drawn as points, as a function of galactic direction.
 pub struct Starlight(Vec<Measured>);
 
 impl Starlight {

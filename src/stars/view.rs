@@ -25,7 +25,8 @@ use crate::{
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Elevations of the sun between which points fade in, degrees. By day there are no points.
+/// Elevations of the sun at which points begin to fade in and at which they are complete, degrees. By day there are no
+/// points.
 pub(super) const POINTS_BEGIN_DEG: (f64, f64) = (0.0, -3.0);
 /// Smallest share of the night's light that clouds and fog must let through for the layer to be drawn.
 pub(super) const LEAST_THROUGH: f64 = 1e-3;
@@ -119,7 +120,8 @@ impl NightOverCamera {
         self.through * illuminance_lux(star.chain(planets).fold(f64::INFINITY, f64::min))
     }
 
-    /// Inputs for the picture, on a display with steps of `step`; 0 drops no star for being too faint for the display.
+    /// Inputs for the picture on a display whose smallest step in the dark is `step`, a share of white. With a step of
+    /// 0 no star is too faint for the display.
     fn seen<'a>(&'a self, context: &'a DrawContext<'_>, step: f64) -> StarView<'a> {
         let texture = context.picture();
         let mut view = StarView {
@@ -143,8 +145,8 @@ impl NightOverCamera {
     }
 }
 
-/// Scale of the layer, units per cd/m^2, for a pixel's solid angle. Half floats end at 65504, which Venus at its
-/// brightest does not reach, and lose precision below 6e-5.
+/// Scale of the layer, units per cd/m^2, for a pixel's solid angle, sr. Half floats end at 65504, which Venus at its
+/// brightest does not reach with this scale, and lose precision below 6e-5.
 fn scale(pixel_sr: f64) -> f64 {
     256.0 * (pixel_sr / 5e-7).clamp(1e-3, 1.0)
 }
