@@ -1,4 +1,4 @@
-// Air of a planet and its optical properties at one altitude. Twin: src/sky/reference/medium.rs.
+// Air of a planet and its optical properties at one altitude. The f64 reference is src/sky/reference/medium.rs.
 //!include "common/guarded.wgsl"
 
 alias Length = f32;
@@ -14,7 +14,9 @@ struct SkyAir {
     thickness_m: f32,
     // Angular radius of the sun's disc, rad.
     sun_angular_radius: f32,
+    // Parameter g of the haze's phase function.
     asymmetry_g: f32,
+    // Coefficients at density 1, 1/m.
     rayleigh_scattering: PerLength,
     rayleigh_scale_height_m: f32,
     mie_scattering: PerLength,
@@ -36,7 +38,8 @@ struct SkyAir {
     unused: f32,
 }
 
-// Densities of gas, haze (1 at and below altitude 0) and ozone (1 at the centre of its tent); 0 above the top.
+// Densities of gas, haze (1 at and below altitude 0) and ozone (1 at the centre of its tent). They are not cut at the
+// top of the air, where the reference has 0.
 fn air_density(air: SkyAir, altitude: Length) -> vec3f {
     let h = max(altitude, 0.0);
     let gas = exp(-h / air.rayleigh_scale_height_m);

@@ -3,7 +3,7 @@
 // Tables over the planet, by orders of scattering (the scheme of Bruneton and Neyret 2008, divided for fp16 render
 // targets). `gather` marches the radiance of one order along the directions of a quadrature, at every sun angle and
 // altitude. `scatter` applies the phase functions and gives the source of the next order. `light` gives irradiance and
-// moments. Twin: src/sky/reference/source.rs.
+// moments. The f64 reference is src/sky/reference/solve.rs.
 //
 // A table is an atlas of tiles, one for each direction; a tile covers (sun angle, altitude).
 
@@ -121,12 +121,12 @@ struct Sums {
     @location(1) sum: vec4f,
 }
 
-// Sum of a geometric series after its last term. In thick haze two small successive orders can have any ratio, and a
-// series with a ratio near 1 would create colours from nothing; so the ratio is limited. The limit was chosen by
-// comparison with the f64 reference. With 0.8 the error was 17 % (95th percentile) in haze of 7 km visibility and 41 %
-// in haze of 3 km; with 0.55 it was 6.0 and 11.5 %. With 0.5, white ground under haze begins to lose light (3.1 to 4.6
-// %). Dust of many optical depths passes most of one order on to the next: with a limit of 0.55, noon in a dust storm
-// was black.
+// Sum of all terms of a geometric series after `term`, which follows `before`. In thick haze two small successive
+// orders can have any ratio, and a series with a ratio near 1 would create colours from nothing; so the ratio is
+// limited. The limit was chosen by comparison with the f64 reference. With 0.8 the error was 17 % (95th percentile) in
+// haze of 7 km visibility and 41 % in haze of 3 km; with 0.55 it was 6.0 and 11.5 %. With 0.5, white ground under haze
+// begins to lose light (3.1 to 4.6 %). Dust of many optical depths passes most of one order on to the next: with a
+// limit of 0.55, noon in a dust storm was black.
 fn tail(before: vec3f, term: vec3f) -> vec3f {
     let depth = air.mie_extinction.y * air.mie_scale_height_m;
     let limit = mix(0.55, 0.8, clamp(0.5 * (depth - 1.0), 0.0, 1.0));
@@ -216,7 +216,7 @@ fn light(in: FullscreenVarying) -> Sums {
     return Sums(vec4f(order, 1.0), vec4f(sum, 1.0));
 }
 
-// Light scattered twice, and the share of light from all sides that the air around a point scatters to this point again
+// Light scattered twice, and the share of light from all sides that the air around a point scatters back to the point
 // (Hillaire 2020). Both are taken as equal in all directions.
 @fragment
 fn isotropic_gather(in: FullscreenVarying) -> Sums {

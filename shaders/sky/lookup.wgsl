@@ -13,7 +13,7 @@ struct SkyLamp {
     irradiance: vec3f,
     // 0: a sun; 1: a moon, lit from `lit_from`.
     kind: u32,
-    // Exponents of limb darkening per wavelength (Hestroffer and Magnan 1998: I = mu^a), or the factor of a moon's law.
+    // Exponents of a sun's limb darkening per wavelength (Hestroffer and Magnan 1998: I = mu^a); not read for a moon.
     limb: vec3f,
     // Reciprocal of the angular radius.
     inverse_radius: f32,
@@ -57,8 +57,8 @@ struct SkyView {
 
 // Whether every pixel marches; set by `SkyTables::pipeline_constants` for that model.
 override SKY_MARCH: bool = false;
-// Number of lamps that a pipeline draws; 2 means `lamp_count`. On a software driver a loop costs one iteration more
-// than it runs; a constant of 0 or 1 needs no loop.
+// Number of lamps that a pipeline draws; 2 means `lamp_count`. A constant of 0 or 1 needs no loop; on a software driver
+// a loop costs one more iteration than it has.
 override SKY_LAMPS: u32 = 2u;
 
 fn sky_lamps() -> u32 {
@@ -97,7 +97,7 @@ fn lamp_light(lamp: SkyLamp, dir: vec3f, smooth_light: vec4f, haze_light: vec4f)
     return lamp.irradiance * (sky_decode_signed(smooth_light) + phase * sky_decode_signed(haze_light));
 }
 
-// Light of a lamp along a ray by a march, for the model that has tables only of light scattered more than once.
+// Light of a lamp along a ray by a march, for the model whose tables hold only light scattered more than once.
 fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
@@ -109,11 +109,11 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     return lamp.irradiance * (once + light.more);
 }
 
-// Ray in a direction, and the optical depth along the part that is looked through. Several look-ups in one direction
+// Ray in a direction, and the optical depth from the observer to the end of the path. Several look-ups in one direction
 // share it.
 struct SkyPath {
     ray: SkyRay,
-    // Distance to the end of that part, m from the observer.
+    // Distance from the observer to the end of the path, m.
     distance: Length,
     depth: vec3f,
 }

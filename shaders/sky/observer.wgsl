@@ -134,7 +134,8 @@ fn once_at(altitude: Length, mu: Cosine, mu_s: Cosine, below: bool) -> TableLigh
     return TableLight(sky_decode(gas), sky_decode(haze));
 }
 
-// Light along a whole ray. From space it is that of the point where the ray enters the air, with the sun angle there.
+// Light along a whole ray. From space it is the light at the point where the ray enters the air, with the sun angle
+// there.
 @fragment
 fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
     let view = view_texel(sky_texel(vec2u(in.position.xy)), dims.sky_azimuths, dims.sky_above, dims.sky_below);
@@ -149,7 +150,8 @@ fn sky_from_table(in: FullscreenVarying) -> SkyTexel {
     return SkyTexel(sky_encode(even), sky_encode(haze));
 }
 
-// Light along the first part of a ray: that of the whole ray less the light from beyond the part, dimmed by the part.
+// Light along the first part of a ray: the light of the whole ray less the light from beyond the part, which the part
+// dims.
 @fragment
 fn volume_from_table(in: FullscreenVarying) -> SkyTexel {
     let px = vec2u(in.position.xy);

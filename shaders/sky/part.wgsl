@@ -1,6 +1,6 @@
 //!include "common/fullscreen.wgsl"
 //!include "sky/air.wgsl"
-// Adds the light of one triple of wavelengths, converted to the three that stand for all, to a blending target.
+// Adds the light of one triple of wavelengths to a blending target, converted to the three values that tables keep.
 
 @group(0) @binding(0) var triple: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> air: SkyAir;

@@ -1,8 +1,8 @@
 //!include "common/fullscreen.wgsl"
 //!include "common/guarded.wgsl"
 //!include "sky/disc.wgsl"
-// Plain perspective picture of sky and planet with a field of view of 90 degrees; below the horizon, a dark plane 3 km
-// away behind the air. Benchmarks time it.
+// Plain perspective picture with a field of view of 90 degrees: the sky in its upper half, and in its lower half a dark
+// surface 3 km away behind the air. Benchmarks time it.
 
 struct PictureCamera {
     forward: vec3f,

@@ -1,16 +1,18 @@
 //!include "sky/air.wgsl"
 // Rays in a shell of air, in f32 from -100 m to 1e7 m. Altitudes are never computed as a difference of radii, and
-// lengths that nearly cancel are computed from their conjugates. Twin: src/sky/reference/ray.rs.
+// lengths that nearly cancel are computed from their conjugates. The f64 reference is src/sky/reference/ray.rs.
 
 struct SkyRay {
-    // Start of the ray, at most at the top of the air, and the cosine of the zenith angle there.
+    // Altitude of the ray's start, at most that of the top of the air; cosine of the ray's zenith angle and distance
+    // from the planet's centre there.
     altitude: Length,
     mu: Cosine,
     radius: Length,
     // Radius and altitude of the point of the line that is closest to the planet's centre.
     perigee_radius: Length,
     perigee: Length,
-    // Distance from the true start to this start, and from this start to the end of the ray or of the air.
+    // Distance from the point that `sky_ray` was given to this start, and from this start to the end of the ray or of
+    // the air.
     before: Length,
     length: Length,
     // 1 if the ray ends on the ground.
@@ -102,6 +104,7 @@ struct SkyColumns {
     ozone: f32,
     // Columns added once the perigee is passed.
     turn: vec2f,
+    // Side of the perigee on which the ray starts: -1 before it, 1 after it.
     side: f32,
 }
 
@@ -124,8 +127,8 @@ fn columns_to(air: SkyAir, ray: SkyRay, start: SkyColumns, altitude: Length, sid
     return max(vec3f(start.gas_haze - here + turn, ozone), vec3f(0.0));
 }
 
-// Columns from the ray's start to `distance`, with a relative error of 1e-4: short columns are computed by Simpson's
-// rule.
+// Columns from the ray's start to `distance`, in metres at density 1, with a relative error of 1e-4. Short columns are
+// computed by Simpson's rule, long ones in closed form.
 fn columns_along(air: SkyAir, ray: SkyRay, distance: Length) -> vec3f {
     let h0 = ray.altitude;
     let h1 = clamp(altitude_along(ray.radius, h0, ray.mu, distance), 0.0, air.thickness_m);

@@ -1,5 +1,5 @@
-//! Tables for places ahead of an observer that moves steadily. They are drawn in slices, and mixed for the place where
-//! the observer is.
+//! Tables for places ahead of an observer that moves steadily. They are drawn in slices. The tables at the observer's
+//! own place are a mix of them.
 
 use bytemuck::{Zeroable as _, bytes_of};
 
@@ -18,7 +18,9 @@ pub(super) struct WayTables {
     groups: [Vec<wgpu::BindGroup>; 3],
     /// Bind groups for the passes that draw the next place's tables, for each lamp: of the sky, and of the air.
     pub observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
+    /// Uniform buffers of these bind groups.
     pub observers: [[wgpu::Buffer; 2]; LAMPS],
+    /// Index of the pair's first place.
     first: usize,
 }
 
@@ -59,7 +61,7 @@ impl WayTables {
 #[derive(Default)]
 pub(super) struct Ahead {
     pub course: ObserverCourse,
-    /// Id of the planet's tables from which those on the way are drawn.
+    /// Id of the planet's tables from which the tables on the way are drawn.
     pub set: Option<u64>,
     /// Created when the observer moves for the first time.
     pub tables: Option<Box<WayTables>>,

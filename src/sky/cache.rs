@@ -22,7 +22,7 @@ use crate::planet::spectral::parts;
 /// First bytes of a file; the numbers are the version of its layout.
 const MAGIC: &[u8; 8] = b"WKSKY\x00\x01\n";
 
-/// FNV-1a hash of 64 bits, equal on every machine.
+/// Continues an FNV-1a hash of 64 bits, which is equal on every machine, with `bytes`.
 fn fnv(mut h: u64, bytes: &[u8]) -> u64 {
     for b in bytes {
         h = (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -30,12 +30,13 @@ fn fnv(mut h: u64, bytes: &[u8]) -> u64 {
     h
 }
 
+/// Start value of FNV-1a.
 const SEED: u64 = 0xcbf2_9ce4_8422_2325;
 
 /// Key of a planet's tables.
 ///
 /// # Errors
-/// Fails if a shader file is missing.
+/// Fails if a shader file is missing, or for a number of wavelengths out of range.
 pub(crate) fn key(planet: &Planet, settings: &SkySettings) -> Result<u64> {
     let h = fnv(SEED, &planet.hash().to_le_bytes());
     let h = fnv(h, settings.model.name().as_bytes());
@@ -52,6 +53,7 @@ pub(crate) fn path(directory: &Path, key: u64) -> PathBuf {
 
 /// Whether all texels, which are half floats, are finite.
 fn are_finite(table: &[u8]) -> bool {
+    // Exponent of infinity and NaN.
     const ENDLESS: u16 = 0x7c00;
     table.as_chunks::<2>().0.iter().all(|half| u16::from_ne_bytes(*half) & ENDLESS != ENDLESS)
 }
@@ -98,7 +100,7 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
     Ok(target)
 }
 
-/// Largest number of files kept in a directory; every weather makes one.
+/// Largest number of files kept in a directory. Each planet whose tables are kept makes one.
 const MOST_FILES: usize = 32;
 
 /// Removes the oldest tables beyond [`MOST_FILES`].

@@ -8,7 +8,7 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// Air and haze between the camera and what the host drew. The importance, 0.9, is that of "atmosphere on objects" in a
 /// thesis's experiment on a simulator for machine operators.
 pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0.9, worth: Worth::Composed(0) };
-/// Clear sky above the horizon, behind clouds; a closed deck hides it.
+/// Clear sky above the horizon, behind clouds. A closed deck hides it.
 pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
 
 /// Work of the air in a pixel: with one lamp, and for each further lamp. Measured on a software driver (`cargo bench --
@@ -18,8 +18,8 @@ const AIR_WORK: (f64, f64) = (0.4, 0.2);
 const SKY_WORK: (f64, f64) = (0.07, 0.05);
 /// Share of the air's work that a pixel costs where the host drew nothing.
 const AIR_UNDRAWN: f64 = 0.6;
-/// Work of the air in front of fog, where there are both, with one lamp; it grows with the number of lamps as the air's
-/// own does.
+/// Extra work of a pixel that has both air and fog, with one lamp. It grows with the number of lamps as the air's work
+/// does.
 const AIR_BEFORE_FOG: f64 = 0.3;
 
 /// Work of the air in a picture with `lamps` lamps.
@@ -28,7 +28,7 @@ pub(crate) fn air_work(lamps: u32) -> StepWork {
     StepWork { object: pixel, sky: AIR_UNDRAWN * pixel, fixed: 0.0 }
 }
 
-/// Work of the air in front of the fog, in addition to that of both.
+/// Extra work of the air in front of the fog, in addition to the work of the air and the work of the fog.
 pub(crate) fn air_before_fog_work(lamps: u32) -> StepWork {
     let pixel = AIR_BEFORE_FOG / AIR_WORK.0 * air_work(lamps).object;
     StepWork { object: pixel, sky: pixel, fixed: 0.0 }
@@ -193,7 +193,8 @@ fn view_sizes(s: SkySettings) -> SkySettings {
 
 /// Size of a texel of every table, bytes.
 const TEXEL_BYTES: f64 = 8.0;
-/// Number of look-ups of the source in one sample: 4 if the source depends on direction, 1 if it does not.
+/// Number of look-ups of the source of multiple scattering in one sample: 4 if it depends on direction, 1 if it does
+/// not, 0 for the model without multiple scattering.
 fn source_texels(s: &SkySettings) -> f64 {
     match s.model {
         SkyModel::Table3d => 0.0,

@@ -1,7 +1,7 @@
-//! Course of an observer whose altitude changes steadily, or whose sun or moon moves steadily. To draw the observer's
-//! tables of the sky (`observer_tables.rs`) anew in every frame would cost too much. The course therefore picks places
-//! on the observer's way, and has the tables of the next place drawn in slices: some rows in each frame. The tables for
-//! the observer itself are a mix of those of the places behind and ahead of it: the pair.
+//! Course of an observer whose altitude changes steadily, or whose sun or moon moves steadily. It would cost too much
+//! to draw the observer's tables of the sky (`observer_tables.rs`) anew in every frame. The course therefore picks
+//! places on the observer's way, and the tables of the next place are drawn in slices: some rows in each frame. The
+//! tables for the observer itself are a mix of the tables of two places, one behind and one ahead of it: the pair.
 
 use std::ops::Range;
 
@@ -10,11 +10,12 @@ use super::observer_tables::LAMPS;
 /// Count of the values that an observer's tables depend on: its altitude, and the sine of elevation of each lamp.
 const NUMBERS: usize = 1 + LAMPS;
 
-/// Altitude of an observer, m, and the sine of elevation of each lamp that lights the air (sun, moon); `None` for a
-/// lamp that does not shine.
+/// Values that an observer's tables depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ObserverPlace {
+    /// Altitude, m.
     pub altitude_m: f64,
+    /// Sine of elevation of each lamp that lights the air (sun, moon); `None` for a lamp that does not shine.
     pub mu_s: [Option<f64>; LAMPS],
 }
 
@@ -30,7 +31,7 @@ impl ObserverPlace {
         Self { altitude_m, mu_s: [mu_s(0, a), mu_s(1, b)] }
     }
 
-    /// Whether tables at this place serve an observer at `place`.
+    /// Whether tables of this place may be used for an observer at `place`.
     pub fn is_near(&self, place: &Self, bounds: &Bounds) -> bool {
         difference(self, place).iter().zip(bounds.near).all(|(moved, near)| moved.abs() <= near)
     }
@@ -43,9 +44,10 @@ impl ObserverPlace {
 /// Bounds for following an observer, for its altitude, m, and the sine of elevation of each lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Largest difference between an observer and the place of tables at which they still serve it.
+    /// Largest difference between an observer's place and the place of tables at which these tables may be used for the
+    /// observer.
     pub near: [f64; NUMBERS],
-    /// Largest distance between two places at which a linear mix of both tables serves in between.
+    /// Largest distance between two places at which a linear mix of their tables may be used for places in between.
     pub far: [f64; NUMBERS],
 }
 
@@ -76,12 +78,12 @@ struct Coming {
 pub(super) struct CourseStep {
     /// Rows to draw of the tables of a place ahead.
     pub slice: Option<(ObserverPlace, Range<u32>)>,
-    /// Whether to shift the pair after drawing `slice`: the second tables become its first, and the next place's its
-    /// second.
+    /// Whether to shift the pair after drawing `slice`: its second tables become its first, and the tables of the next
+    /// place become its second.
     pub turns: bool,
     /// Whether to copy the observer's present tables into the pair's first tables, after the shift.
     pub copies: bool,
-    /// Weight of the pair's second tables in the mix for the observer, 0 to 1; `None` if no pair serves it.
+    /// Weight of the pair's second tables in the mix for the observer, 0 to 1; `None` if no pair may be used.
     pub share: Option<f32>,
 }
 
@@ -131,8 +133,8 @@ impl ObserverCourse {
     }
 
     /// Plans a frame of an observer with a pair. Between the pair's places the plan is a mix of their tables and a
-    /// slice of the next tables. Past the second place it is the rest of the next tables and a shift of the pair.
-    /// Forgets the course if no pair serves the observer then.
+    /// slice of the next tables. Past the second place the plan is the rest of the next tables and a shift of the pair.
+    /// Forgets the course if the observer is not between the places of a pair then.
     fn between(
         &mut self,
         pair: &[ObserverPlace; 2],
@@ -183,7 +185,7 @@ impl ObserverCourse {
             return;
         };
         let speed = self.speed;
-        // Plans for twice the way: the observer covers the first half of it while the tables are drawn.
+        // Plans for twice the way, because the observer covers its first half while the tables are drawn.
         let coming = self.coming.get_or_insert_with(|| Coming::new(place, &speed.map(|v| 2.0 * v), frames, rows));
         step.slice = coming.next(coming.rows_a_frame, rows);
         let (Some(drawn), true) = (drawn, coming.rows >= rows) else { return };

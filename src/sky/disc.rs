@@ -31,6 +31,7 @@ const LEAST: f64 = 1e-9;
 /// Optical depth in front of a lamp's disc.
 #[derive(Clone, Copy)]
 pub(super) struct DiscDepth {
+    /// Inputs for which the depth was computed: air, altitude, and sine of elevation and angular radius of the lamp.
     air: AirUniform,
     altitude_m: f64,
     sine: f64,

@@ -1,4 +1,4 @@
-//! Tables of the sky that follow changes of the weather's air by parts, at most once a frame for all views.
+//! Tables of the sky that follow the weather's air. They are built in parts, at most one part a frame for all views.
 
 use std::{
     ops::{Deref, DerefMut},
@@ -12,10 +12,13 @@ use crate::{error::Result, gpu::Device};
 /// Tables that follow the weather's air.
 pub(crate) struct FollowedSky {
     tables: SkyTables,
+    /// Directory of the cache.
     cache: Option<PathBuf>,
     /// First planet, until its tables are in the cache.
     first: Option<Planet>,
+    /// Frame of the last part of a build.
     frame_id: Option<u64>,
+    /// Light that was read back, and the revision of the tables that it belongs to.
     light: Option<(u64, Arc<LightTable>)>,
 }
 
@@ -52,8 +55,8 @@ impl FollowedSky {
         Ok(())
     }
 
-    /// Drops the tables of a different body. If no tables are shown then and there is a cache, loads those of `planet`
-    /// from it.
+    /// Drops the shown tables if they belong to another body than `planet`. If no tables are shown then and there is a
+    /// cache, loads the tables of `planet` from it.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         if self.tables.planet().is_some_and(|shown| !is_same_body(shown, planet)) {
             self.tables.forget();
@@ -77,9 +80,9 @@ impl FollowedSky {
         }
     }
 
-    /// Continues building the tables of the changing air. `share` is the work to do, as a share of a build with the
-    /// default settings. The first frame gets a draft. A share of 1 builds the tables whole, for pictures that may not
-    /// depend on earlier ones. Returns whether anything was built.
+    /// Continues building the tables of the changing air, unless this frame has already done so. `share` is the work to
+    /// do, as a share of a build with the default settings. The first frame gets a draft. A share of 1 builds the
+    /// tables whole, for pictures that may not depend on earlier ones. Returns whether anything was built.
     pub fn build_toward(
         &mut self,
         device: &Device,

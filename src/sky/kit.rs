@@ -47,7 +47,7 @@ impl SkyLibrary {
 /// Largest share of a whole build in one submission, so that none keeps the GPU from the host's own work for long.
 const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
 
-/// Work, in cells of a march, below which a build needs no draft: 0.2 s on the software driver.
+/// Work, in nodes of a march, below which a build needs no draft: 0.2 s on the software driver.
 const DRAFT_FROM: f64 = 4e6;
 /// Limits of [`Kit::pace`], the factor on the share of a build's work that one frame does. Within them a frame costs
 /// the same with all settings; beyond them very large tables cost more.
@@ -79,7 +79,9 @@ pub(crate) enum Claim {
     Building(Arc<Ticket>),
 }
 
+/// Build under way.
 struct Build {
+    /// Claim on the build; it is dangling once nobody needs the build.
     ticket: Weak<Ticket>,
     set: Arc<TableSet>,
     scratch: Scratch,
@@ -92,11 +94,15 @@ struct Build {
     next: usize,
 }
 
+/// Builds under way and finished tables.
 #[derive(Default)]
 struct BuildQueue {
     builds: Vec<Build>,
+    /// Finished tables that somebody shows.
     finished: Vec<Weak<TableSet>>,
+    /// Scratch tables of earlier builds, by detail.
     spare: [Option<Scratch>; 2],
+    /// Number of whole builds finished.
     count: u64,
 }
 
@@ -124,8 +130,9 @@ pub(crate) struct Kit {
     observers: OnceLock<ObserverPasses>,
     /// Work of a whole build with the default settings relative to one with these settings.
     pub pace: f64,
+    /// Build plan of whole tables.
     whole: Level,
-    /// Draft level, where it saves work.
+    /// Build plan of drafts, where a draft saves work.
     draft: Option<Level>,
     /// Pass that adds up triples, where there are several.
     parts: Option<PartPass>,
@@ -171,7 +178,7 @@ impl Kit {
         }
     }
 
-    /// Whether drafts are worth building.
+    /// Whether drafts are built with these settings.
     pub fn drafts(&self) -> bool {
         self.draft.is_some()
     }
@@ -195,7 +202,7 @@ impl Kit {
     }
 
     /// Returns the finished tables of a checked planet, or a claim on its build, which may be under way already.
-    /// Finished whole tables also serve a request for a draft.
+    /// A request for a draft also gets whole tables, if these are finished.
     ///
     /// # Errors
     /// GPU faults.
@@ -369,8 +376,8 @@ impl Kit {
         }
     }
 
-    /// Copies a triple's sources below those of the triples before it, and adds its light to theirs. With a single
-    /// triple both are already in place.
+    /// Copies a triple's sources below the sources of the earlier triples, and adds its light to their light. With a
+    /// single triple both are already in place.
     fn record_part(&self, encoder: &mut wgpu::CommandEncoder, build: &Build, triple: usize) {
         let (Some(parts), Some(light)) = (&self.parts, &build.triples[triple].1) else { return };
         let Some(from) = table_named(&build.set, &build.scratch, Name::Sources) else { return };

@@ -1,7 +1,7 @@
 //! Light of the sky for hosts, on the CPU: irradiance and nine spherical harmonics at any altitude and sun angle.
 //!
-//! The GPU builds the table together with the others from the radiances of every order. It is read back once a build;
-//! look-ups then need no GPU. Everything is per unit irradiance of the lamp.
+//! The GPU builds this table together with the sky's other tables, from the radiances of every order. The table is read
+//! back once a build; look-ups then need no GPU. Everything is per unit irradiance of the lamp.
 
 use half::f16;
 

@@ -3,7 +3,7 @@
 //! # What is drawn
 //! [`SkyTables`] hold what depends on the planet alone: light scattered more than once, by altitude, sun angle and
 //! direction, and the light on level ground. Fragment passes build them into fp16 textures on every kind of device, at
-//! once or by parts. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky
+//! once or in parts. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky
 //! by direction, and the air in front of objects. Turning the camera changes neither. Shaders read both through
 //! `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`, `sky_transmittance`, `ground_radiance`, ..) and
 //! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
@@ -12,7 +12,7 @@
 //! its tables and the work of building them.
 //!
 //! ```text
-//! tables.update(&mut encoder, &planet, 1.0 / 80.0)?;          // a draft at once, whole tables by parts
+//! tables.update(&mut encoder, &planet, 1.0 / 80.0)?;          // a draft at once, whole tables in parts
 //! volume.prepare(&mut encoder, &tables, &observer)?;          // draws only if altitude, sun or air changed
 //! // pipelines: layouts [own, volume.layout()], constants tables.pipeline_constants()
 //! pass.set_bind_group(1, volume.bind_group(), &[]);

@@ -140,10 +140,11 @@ pub struct Observer {
     pub lamps: [Option<Lamp>; 2],
     /// Strength of refraction for the discs, as a share of the standard one, `[0, 1]`.
     pub refraction: f64,
-    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while a lamp
-    /// moves by less than 2e-5 rad and the altitude changes by less than 0.2 %, or by less than a thousandth of the
-    /// air's smallest scale height (1.2 m in clear air) and 30 % of the altitude and 5 cm. Kept tables are off by at
-    /// most 0.4 % by day, and 0.9 % at dusk near the horizon.
+    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while two
+    /// changes are small. The sine of each lamp's elevation may change by 2e-5, or by 2e-4 in a frame that works on the
+    /// planet's tables. The altitude may change by 0.2 % and 1 cm; and, if that is more, by a thousandth of the air's
+    /// smallest scale height (1.2 m in clear air), but by no more than 30 % of the altitude and 5 cm. Kept tables are
+    /// off by at most 0.4 % by day, and 0.9 % at dusk near the horizon.
     pub exact: bool,
 }
 

@@ -8,13 +8,15 @@ use crate::gpu::{Device, Layer};
 
 /// Number of layers for each lamp: complete light, and light scattered once by haze without its phase function.
 pub(super) const LAYERS: u32 = 2;
-/// Most lamps that light the air.
+/// Largest number of lamps that light the air.
 pub(super) const LAMPS: usize = 2;
 
 /// Table of an observer's air with the sky beside or below it: an array texture that passes draw layer by layer.
 pub(super) struct Layered {
     texture: wgpu::Texture,
+    /// View of all layers, for look-ups.
     pub whole: wgpu::TextureView,
+    /// View of each layer, for passes to draw into.
     pub layers: Vec<wgpu::TextureView>,
 }
 

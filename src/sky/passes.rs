@@ -1,5 +1,5 @@
 //! GPU resources of the tables over the planet: textures, layouts and pipelines. Every pass is a full-screen fragment
-//! pass into rgba16float, so that the same code serves every kind of device.
+//! pass into rgba16float, so that the same code runs on every kind of device.
 
 use std::sync::Arc;
 
@@ -223,7 +223,7 @@ impl FadePasses {
         bind(device, &self.layout, &[tex(table)])
     }
 
-    /// Draws the light of `first` into `target`, and blends the other set's light over it by its share.
+    /// Draws the light of `first` into `target`, and blends the light of `other` over it with the share given there.
     pub fn show_light(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -234,7 +234,7 @@ impl FadePasses {
         draw_over(encoder, &self.light, target, Some(self.light_size), [Some((first, 1.0)), other]);
     }
 
-    /// Draws into `target` the mix of two tables of the same size as it.
+    /// Draws into `target` the mix of two tables, all three of one size. `share` is the weight of the second.
     pub fn between(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -246,7 +246,8 @@ impl FadePasses {
     }
 }
 
-/// Draws tables over a target, each with its share. `size` limits the draw to a corner; the rest is cleared.
+/// Draws tables over a target, each with its share. `size` limits the draw to the corner at the first texel; all other
+/// texels are cleared.
 fn draw_over(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,
@@ -309,7 +310,7 @@ impl PartPass {
         bind(device, &self.layout, &[tex(table), air.as_entire_binding()])
     }
 
-    /// Adds a triple to `target`, which the first one clears.
+    /// Adds a triple to `target`. The `first` triple clears the target before.
     pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &SkyTable, triple: &wgpu::BindGroup, first: bool) {
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -356,7 +357,8 @@ fn pipeline(
     fullscreen(device, &desc)
 }
 
-/// Nodes of both quadrature rules over directions, in the form that the shaders read.
+/// Nodes of both quadrature rules over directions, in the form that the shaders read: node and weight of the rule over
+/// zenith angles, then cosine and sine of an azimuth.
 fn rule(settings: &SkySettings) -> [[f32; 4]; 24] {
     let mut out = gauss(settings.rule_zeniths as usize);
     let n = settings.rule_azimuths as usize;

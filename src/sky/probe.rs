@@ -58,7 +58,8 @@ impl Ray {
 /// Answer of the drawn sky, per wavelength of the planet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// Radiance, W m^-2 sr^-1 nm^-1, for the lamps' irradiance as given.
+    /// Radiance, W m^-2 sr^-1 nm^-1, for the lamps' irradiance as given. For [`Question::Irradiance`] it is the
+    /// irradiance of the direct light, W m^-2 nm^-1.
     pub radiance: [f32; 3],
     /// Transmittance, dimensionless, or the second quantity that the [`Question`] names.
     pub transmittance: [f32; 3],

@@ -88,12 +88,14 @@ impl Name {
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub kind: PassKind,
-    /// Order that is gathered, and whether the orders after it are added as a geometric series.
+    /// Order that is gathered.
     pub order: u32,
+    /// Whether the orders after it are added as a geometric series.
     pub last: bool,
     /// Tables that the pass reads: sources, radiances, light, sum of sources, sum of light, norms, as `sky/build.wgsl`
     /// binds them.
     pub reads: [Name; 6],
+    /// Tables that the pass draws.
     pub draws: Vec<Name>,
 }
 
@@ -102,7 +104,7 @@ impl Pass {
         Self { kind, order, last, reads, draws: draws.to_vec() }
     }
 
-    /// Work of one texel, in cells of a march, measured on the software driver.
+    /// Work of one texel, in nodes of a march, measured on the software driver.
     pub fn texel_cost(&self, s: &SkySettings) -> f64 {
         let directions = f64::from(2 * s.rule_zeniths * s.rule_azimuths);
         match self.kind {
@@ -113,8 +115,8 @@ impl Pass {
         }
     }
 
-    /// Time of one texel, in units of the time of a march's cell, measured on the software driver. Strips of a build
-    /// are cut by it, so that each frame takes the same time.
+    /// Time of one texel, in units of the time of a march's node, measured on the software driver. Strips of a build
+    /// are cut by this time, so that each frame takes equally long.
     pub fn texel_time(&self, s: &SkySettings) -> f64 {
         match self.kind {
             PassKind::Scatter => 0.24 * self.texel_cost(s),

@@ -67,8 +67,8 @@ impl TableSet {
     }
 }
 
-/// Finds the table `name`. The set always has all results; the first table only stands in for a name that is not among
-/// them.
+/// Finds the table `name` among the results. For a name that is not among them, which never happens, it is the first
+/// table.
 pub(super) fn find(results: &[(Name, SkyTable)], name: Name) -> &SkyTable {
     &results.iter().find(|(n, _)| *n == name).unwrap_or(&results[0]).1
 }

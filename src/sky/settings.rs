@@ -2,14 +2,14 @@
 
 use crate::error::{Error, Result};
 
-/// Model of the sky. All models share the same look-up functions, so that only the tables depend on the choice;
-/// [`SkyModel::BruteForce`] marches in them.
+/// Model of the sky. All models share the same look-up functions, so that only the tables depend on the choice. With
+/// [`SkyModel::BruteForce`] the look-up functions march.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkyModel {
     /// Light scattered once, from a table over (altitude, view angle, sun angle); the phase functions are applied
-    /// afterwards (Elek 2008). The table has the sun's azimuth only. By day it is within 3 %; at sunset, away from the
-    /// sun, it is wrong by a factor of 2 to 3, and by more from space. Light scattered more than once is missing (20 to
-    /// 50 %).
+    /// afterwards (Elek 2008). The table is computed for views in the sun's azimuth, and used for all azimuths. By day
+    /// it is within 3 %; at sunset, away from the sun, it is wrong by a factor of 2 to 3, and by more from space. Light
+    /// scattered more than once is missing (20 to 50 %).
     Table3d,
     /// Light scattered more than once is taken as equal in all directions (Hillaire 2020). The error is -3 to -6 % near
     /// the horizon and +3 % at the zenith. The tables take a tenth of the default's time to build.
@@ -66,8 +66,8 @@ pub struct SkySettings {
     /// Colours are then right where three wavelengths are too few, but the build takes that many times as long. See
     /// [`crate::sky`] for errors and costs.
     pub wavelengths: u32,
-    /// Number of scattering orders that are computed one by one, `[3, 16]`, default 5; the rest is added as a geometric
-    /// series.
+    /// Number of scattering orders that are computed one by one, `[3, 16]`, default 5. Higher orders are added as a
+    /// geometric series.
     pub orders: u32,
     /// Number of sun angles in the planet's tables, `[16, 128]`, default 64.
     pub suns: u32,
@@ -148,9 +148,9 @@ impl SkySettings {
         Self { model, ..Self::default() }
     }
 
-    /// Returns settings for a draft: small tables over the planet, a twentieth of the work with the default settings,
-    /// which are shown until the full tables are built. Light scattered once keeps its resolution, because the
-    /// observer's tables march it.
+    /// Returns settings for a draft: small tables over the planet, which are shown until the full tables are built.
+    /// With the default settings a draft is a twentieth of the work. Light scattered once keeps its resolution, because
+    /// the observer's tables march it.
     pub(crate) fn draft(&self) -> Self {
         Self {
             orders: self.orders.min(4),
@@ -219,10 +219,11 @@ impl SkySettings {
         ]
     }
 
-    /// Checks every number against its range.
+    /// Checks every number against its range, the wavelengths against the model, and the widths and heights of the
+    /// tables against 2048 texels.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field and the range.
+    /// [`crate::Status::InvalidArgument`] naming the field and what is accepted.
     pub fn check(&self) -> Result<()> {
         for (name, value, lo, hi) in self.numbers() {
             if !(lo..=hi).contains(&value) {

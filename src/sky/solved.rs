@@ -61,7 +61,7 @@ const QUERY: Options = Options {
         panel_points: 2,
         haze_directions: (25, 13),
     },
-    // Equal to the number in the tests that compare the drawn sky with the reference.
+    // The tests that compare the drawn sky with the reference use the same number.
     disc_strips: 3,
     threads: 1,
 };
@@ -76,8 +76,11 @@ pub(crate) struct SolvedSky {
 /// Ray of a query and the direction of its lamp, in (east, north, up) of the observer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sightline {
+    /// Altitude of the observer, m.
     pub altitude_m: f64,
+    /// Unit direction of the ray.
     pub direction: DVec3,
+    /// Unit vector towards the lamp.
     pub to_lamp: DVec3,
 }
 

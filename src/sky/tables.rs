@@ -1,4 +1,4 @@
-//! Tables over a planet as one simulator shows them. They are built at once or by parts, and follow a change of the
+//! Tables over a planet as one simulator shows them. They are built at once or in parts, and follow a change of the
 //! planet's air without a jump.
 
 use std::path::Path;
@@ -22,12 +22,12 @@ use crate::gpu::Device;
 pub(crate) struct AirChange<'a> {
     /// Planet under the present weather.
     pub now: &'a Planet,
-    /// Planet under the weather to which the present one is changing; `now` where none is known to come.
+    /// Planet under the weather to which the present one is changing; equal to `now` if no change is known.
     pub ahead: &'a Planet,
 }
 
 impl AirChange<'_> {
-    /// Whether the air is changing to one that is known.
+    /// Whether the air is changing to a known air.
     fn goes_on(&self) -> bool {
         self.now != self.ahead
     }
@@ -56,7 +56,9 @@ enum FadeTo {
     Air,
 }
 
+/// Progress towards the tables to show next.
 enum State {
+    /// No other tables are wanted.
     Idle,
     /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
@@ -72,9 +74,10 @@ enum State {
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
-/// Largest step of the weight per call while the air changes: it spreads what a build has missed.
+/// Largest step of the weight per call while the air changes. It spreads over several calls the change that took place
+/// during a build.
 const ALONG: f32 = 1.0 / 64.0;
-/// Share of a build from which it is never given up.
+/// Share done from which a build is never abandoned for another planet.
 const KEPT_FROM: f64 = 0.5;
 /// Change of the weight that is too small to draw.
 const UNSEEN_SHARE: f32 = 1e-4;
@@ -138,7 +141,7 @@ impl SkyTables {
         self.shown.as_ref().map(|s| &s.planet)
     }
 
-    /// Revision that changes whenever something shown changes, so that an observer's tables can follow.
+    /// Number that changes whenever the shown tables change, so that an observer's tables can follow.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -159,8 +162,8 @@ impl SkyTables {
     /// With a `fraction` of 1 the tables of `planet` are built and shown at once. Otherwise the first planet is shown
     /// at once as a draft. A later planet whose air differs much from the shown one's also gets a draft, which fades in
     /// over sixteen calls. The whole tables are built meanwhile over 8/7 of 1/`fraction` calls, because every eighth
-    /// call rests, and then fade in like a draft. If another planet is given during that build, it follows afterwards;
-    /// if it differs much, the build is abandoned for it.
+    /// call rests, and then fade in like a draft. If another planet is given during that build, its tables are built
+    /// afterwards; if it differs much, a build that is less than half done is abandoned for it.
     ///
     /// The result depends only on the sequence of calls, not on time. This call submits what it builds. It records what
     /// it shows into `encoder`, which must be submitted afterwards.
@@ -283,7 +286,7 @@ impl SkyTables {
         }
     }
 
-    /// Begins the fade to finished tables, or drops them where the present air has turned away from them.
+    /// Begins the fade to finished tables, or drops them if the present air no longer changes towards their air.
     fn begin_fade(&mut self, set: Arc<TableSet>, change: AirChange<'_>) {
         let Some(shown) = &self.shown else { return };
         let place = place_on_way(&shown.planet, &set.planet, change.now);
@@ -295,7 +298,8 @@ impl SkyTables {
         self.state = to.map_or(State::Idle, |to| State::Fading(TablesFade { set, weight: 0.0, to }));
     }
 
-    /// Continues a fade. One that follows the air ends where the air turns away, and the mix is shown from then on.
+    /// Continues a fade. A fade that follows the air ends when the air rests or changes in another direction. From then
+    /// on the mix of that moment is shown; a mix of draft and whole tables instead fades to its end.
     fn fade(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -406,7 +410,8 @@ impl SkyTables {
         self.revision += 1;
     }
 
-    /// Shows the tables of the first planet, if they are in the cache or shown by others.
+    /// Shows the tables of `planet`, if they are in the cache or other users of the library show them. Used for the
+    /// first planet.
     pub(crate) fn begin_with(&mut self, planet: &Planet, cache: &Path) -> Result<()> {
         planet.check()?;
         match self.kit.finished_or_kept(planet, cache)? {

@@ -41,8 +41,8 @@ pub fn air_uniform(planet: &Planet) -> Vec<u8> {
 }
 
 impl AirUniform {
-    /// Values of the planet in f32. Media without thickness become thin ones without effect, so that no shader divides
-    /// by 0.
+    /// Values of the planet in f32. A medium without thickness gets a small thickness and no effect, so that no shader
+    /// divides by 0.
     pub fn of(planet: &Planet) -> Self {
         let f = |v: [f64; 3]| v.map(|x| x as f32);
         let unless_flat = |flat: bool, v: [f64; 3]| if flat { [0.0; 3] } else { f(v) };

@@ -34,7 +34,7 @@ impl SkyView {
         Ok(Self { tables: tables.clone(), rebuild_work: rebuild_work(volume.settings()), volume })
     }
 
-    /// Work of building default tables, in pixels of a picture with these settings.
+    /// Work of building default tables, in units of the work of one pixel of the sky with these settings.
     pub fn rebuild_work(&self) -> f64 {
         self.rebuild_work
     }

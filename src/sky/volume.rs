@@ -49,11 +49,11 @@ impl Fade {
     }
 }
 
-/// Movement of the sun after which the tables are drawn again, rad: usually, and in frames that already work on other
-/// tables.
+/// Change of the sine of a lamp's elevation after which the tables are drawn again: usually, and in frames that already
+/// work on the planet's tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
-/// Smallest scale height of the gas and the haze that are there, m; 0 without any.
+/// Smaller of the scale heights of gas and haze, m. A medium that the air does not have is left out; 0 without both.
 fn least_scale_height_m(air: &AirUniform) -> f64 {
     let media = [(air.rayleigh_scattering, air.rayleigh_scale_height_m), (air.mie_extinction, air.mie_scale_height_m)];
     let there = media.iter().filter(|(per_m, _)| per_m.iter().any(|v| *v > 0.0));
@@ -61,16 +61,17 @@ fn least_scale_height_m(air: &AirUniform) -> f64 {
     if least_m.is_finite() { least_m } else { 0.0 }
 }
 
-/// Change of altitude after which the tables are drawn again, m: 0.2 % of the altitude, or a thousandth of the smallest
-/// scale height of the air, over which its light changes by as much; near the ground, where the horizon moves fastest,
-/// at most 5 cm and 30 %. Directions are looked up from the observer's own altitude meanwhile, so the horizon follows
-/// at once.
+/// Change of altitude after which the tables are drawn again, m. It is the larger of two: 0.2 % of the altitude plus
+/// 1 cm; and a thousandth of the smallest scale height of the air, over which the light changes by about as much, but
+/// at most 30 % of the altitude plus 5 cm, because near the ground the horizon moves fastest. Meanwhile look-ups use
+/// the observer's own altitude for directions, so the horizon follows at once.
 fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
     (2e-3 * altitude_m.abs() + 1e-2).max((1e-3 * least_scale_height_m(air)).min(0.05 + 0.3 * altitude_m.abs()))
 }
 
-/// Bounds for following an observer. Light is mixed over a twentieth of a scale height, and over a part of a lamp's way
-/// that is short where its light changes fast: near the horizon and below it.
+/// Bounds for following an observer. Tables are mixed over an altitude difference of at most a twentieth of a scale
+/// height plus 2 % of the altitude. For a lamp whose elevation has the sine s they are mixed over a difference of s of
+/// at most 6e-4 + 0.15 max(s, 0)^2, which is small where the light changes fast: near the horizon and below it.
 fn bounds(air: &AirUniform, place: &ObserverPlace) -> Bounds {
     let of_lamp = |mu_s: Option<f64>| 6e-4 + 0.15 * mu_s.unwrap_or(0.0).max(0.0).powi(2);
     let [sun, moon] = place.mu_s.map(of_lamp);
@@ -255,7 +256,7 @@ impl SkyVolume {
             drawn = self.follow(encoder, tables, shown, &ObserverPlace { altitude_m, mu_s })?;
         }
         for drawn in &mut self.drawn {
-            // A mix of two sets is what these tables already show.
+            // If the shown set is the mix of two sets that these tables already contain, they are up to date.
             *drawn = drawn.map(|d| match d.over.is_some() && shown.mixes == d.over.map(|over| (d.set, over)) {
                 true => DrawnFor { set: shown.id, over: None, ..d },
                 false => d,
@@ -320,8 +321,8 @@ impl SkyVolume {
         }
     }
 
-    /// Follows an observer that moves: draws a slice of the tables ahead of it, and mixes those at its place if the
-    /// present ones do not serve it. Returns whether anything was drawn.
+    /// Follows an observer that moves: draws a slice of the tables ahead of it. If the present tables are too far from
+    /// its place, mixes the tables of the pair for its place. Returns whether anything was drawn.
     fn follow(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -360,7 +361,7 @@ impl SkyVolume {
         Ok(true)
     }
 
-    /// Place of the present tables, if those of all lamps of `place` are there and none is fading.
+    /// Place of the present tables, if there are tables for all lamps of `place` and none of them is fading.
     fn drawn_at(&self, place: &ObserverPlace, shown: &TableSet) -> Option<ObserverPlace> {
         let mut found = None::<ObserverPlace>;
         for (i, _) in place.mu_s.iter().enumerate().filter(|(_, mu_s)| mu_s.is_some()) {
@@ -420,7 +421,8 @@ fn write_observer(tables: &SkyTables, blocks: &[wgpu::Buffer; 2], drawn_for: &Dr
     }
 }
 
-/// Draws a lamp's tables into two layers, whole or `rows` of them, which follow each other from the first on.
+/// Draws a lamp's tables into two layers: whole, or only `rows`. Slices must be drawn in order, and the one that begins
+/// at row 0 clears the layers.
 fn draw_observer(
     kit: &Kit,
     encoder: &mut wgpu::CommandEncoder,

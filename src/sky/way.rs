@@ -5,12 +5,12 @@ use crate::planet::{FIELDS, Planet};
 /// Relative change of optical depth above which two planets are far apart: a draft for one then has a smaller error
 /// than the whole tables of the other.
 const FAR: f64 = 0.03;
-/// Change of the ground's albedo with the same effect.
+/// Change of the ground's albedo above which two planets are far apart.
 const FAR_ALBEDO: f64 = 0.1;
 /// Count of the numbers that the air's light depends on.
 const NUMBERS: usize = 15;
 /// Largest distance of a planet from the way between two others, as a share of the way's length, at which a mix of
-/// their tables still stands for it. A distance of 1 (far apart) is allowed on a way of any length.
+/// their tables may still be used for it. A distance of 1, in units of a far change, is allowed on a way of any length.
 const BESIDE: f64 = 0.5;
 
 /// Length of light's way through the air, in vertical depths, for which a mix of two tables is right.
@@ -22,18 +22,18 @@ const SLANT: f64 = 2.0;
 pub(super) struct PlaceOnWay {
     /// Share of the way, 0 at its start and 1 at its end.
     pub share: f64,
-    /// Whether a mix of the tables at both ends stands for the planet.
+    /// Whether a mix of the tables at both ends may be used for the planet.
     pub is_near: bool,
 }
 
-/// Returns the place of the air of `now` on the way between the airs of `start` and `end`, which are one body under
-/// three weathers.
+/// Returns the place of the air of `now` on the way between the airs of `start` and `end`. The three planets are one
+/// body under three weathers.
 pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceOnWay {
     if now == end {
         return PlaceOnWay { share: 1.0, is_near: true };
     }
     let (way, gone) = (differences(start, end), differences(start, now));
-    // Both are measured in the units of the whole way, which depend on its ends.
+    // Both changes are measured in the units of the whole way, which depend on its ends.
     let units = units(start, end);
     let sum =
         |a: &[f64; NUMBERS], b: &[f64; NUMBERS]| (0..NUMBERS).map(|i| a[i] * b[i] * units[i].powi(2)).sum::<f64>();
@@ -50,8 +50,8 @@ pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceO
 /// Weights of the tables at the two ends of a way from one air to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightWay {
-    /// Change of the vertical optical depth over the way, times [`SLANT`]; held to ±40, where the light has long
-    /// arrived.
+    /// Change of the vertical optical depth over the way, times [`SLANT`]; clamped to ±40, beyond which the weights no
+    /// longer change.
     depth: f64,
 }
 
@@ -118,7 +118,8 @@ fn differences(a: &Planet, b: &Planet) -> [f64; NUMBERS] {
     std::array::from_fn(|i| b[i] - a[i])
 }
 
-/// Returns the factors that turn changes of the numbers into shares of a far change, for planets between `a` and `b`.
+/// Returns the factors that turn changes of the numbers into multiples of a far change, for planets between `a` and
+/// `b`.
 fn units(a: &Planet, b: &Planet) -> [f64; NUMBERS] {
     let (a, b) = (numbers(a), numbers(b));
     let whole = |n: &[f64; NUMBERS], i: usize| n[i] + n[3 + i] + n[6 + i];

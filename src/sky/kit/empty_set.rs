@@ -57,8 +57,8 @@ impl Kit {
         })
     }
 
-    /// Returns tables that mix two sets of one detail, with the weight of the second. They stand for the air between
-    /// both.
+    /// Returns tables that mix two sets of one detail; `weight` is the weight of the second. They are used for an air
+    /// between the airs of both sets.
     ///
     /// # Errors
     /// As [`Kit::empty_set`].

@@ -7,8 +7,8 @@ use super::{Build, Kit, Name, table_named};
 use crate::error::{Error, Result, Status};
 use crate::gpu::readback;
 
-/// Time after which a GPU that has not drawn one texel counts as hung. At most the host's own work is before it in the
-/// queue.
+/// Time after which a GPU that has not drawn one texel counts as hung. Only the host's own work can be before the texel
+/// in the queue.
 const LIMIT: Duration = Duration::from_secs(20);
 
 impl Kit {

@@ -13,9 +13,10 @@ use super::ray::horizon_mu;
 #[derive(Clone, Debug)]
 pub struct Altitudes {
     top_m: f64,
-    /// Heights and shares of the terms 1 - exp(-h / height) that make the nodes dense; the shares are divided by their
-    /// value at the top.
+    /// Height and share of each term share (1 - exp(-h / height)), which makes the nodes dense below that height. The
+    /// shares are scaled so that all terms add up to 1 at the top, with the linear one.
     terms: Vec<(f64, f64)>,
+    /// Share of the linear term.
     linear_share: f64,
     /// Nodes from 0 to the top, m.
     pub nodes_m: Vec<f64>,
@@ -54,6 +55,7 @@ impl Altitudes {
 /// Nodes of the sun's zenith angle.
 #[derive(Clone, Debug)]
 pub struct SunAngles {
+    /// Sun angle at which the nodes are densest, and width of the dense part, rad.
     center: f64,
     width: f64,
     /// Share of the nodes that follow the arc tangent, which is dense at the terminator.

@@ -30,15 +30,15 @@ pub struct Cutting<'a> {
     pub panel_depth: f64,
 }
 
-/// Optical depth beyond which nothing can be seen (e^-46 = 1e-20).
+/// Optical depth beyond which the air hides everything (e^-46 = 1e-20).
 const BLACK: f64 = 46.0;
 /// Largest number of halvings of a panel. On any accepted planet, 2^24 parts of the longest panel are shorter than a
 /// metre.
 const MAX_HALVINGS: u32 = 24;
 
-/// Fills `samples` (cleared first) with the samples of `ray` between two distances, and returns the columns of that
-/// interval. `cuts` are further distances at which panels end (the edges of the shadow). Samples stop where nothing can
-/// be seen any more.
+/// Fills `samples` (cleared first) with the samples of `ray` between the two distances of `span`, and returns the
+/// columns of that interval, in m at density 1. `cuts` are further distances at which panels end (the edges of the
+/// shadow). Samples stop where the air before them hides everything.
 pub fn march(
     ray: &Ray,
     medium: &Medium,
@@ -100,7 +100,7 @@ impl RayWalk<'_> {
             (0..MEDIA).for_each(|k| total[k] += rule.weights[i] * point[k]);
         }
         let (depths, before) = (self.medium.optical_depth(&total), self.medium.optical_depth(&self.columns));
-        // A wavelength that nothing is seen at any more asks for no finer panels.
+        // Where the air before the panel hides everything at a wavelength, that wavelength needs no finer panels.
         let seen = || depths.iter().zip(&before).filter(|(_, before)| **before < BLACK).map(|(depth, _)| *depth);
         let thickest = seen().fold(0.0, f64::max);
         if thickest > self.cutting.panel_depth && halvings < MAX_HALVINGS {

@@ -73,7 +73,7 @@ impl Medium {
     }
 
     /// Altitudes that divide the air into intervals in which densities are smooth enough for one integration panel;
-    /// ascending, from 0 to the top. Media without extinction add none.
+    /// ascending, from 0 to the top. A medium without extinction adds no altitude.
     pub fn panel_altitudes(&self) -> Vec<f64> {
         let mut marks = vec![0.0, self.top_m];
         for (h, beta) in self.scale_height_m.iter().zip(&self.extinction) {

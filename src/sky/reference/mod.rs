@@ -9,9 +9,9 @@
 //! Conventions: altitude 0 is the ground's sphere. Below it the density stays at its ground value, and the ground lies
 //! at the point's own level. Angles are in radians: zenith angles from the vertical at the observer, and the azimuth of
 //! the view relative to the sun's. Radiances are in the unit of [`Planet::solar_irradiance`] per steradian. Sun rays
-//! are parallel. Refraction is left out (see `src/sky/disc.rs` for the disc's displacement). No device is used. Threads
-//! are spawned only if [`Options::threads`] is above 1. All results depend only on the arguments and are equal for any
-//! number of threads.
+//! are parallel. Refraction is left out (see `shaders/sky/disc.wgsl` for its lift of the disc). No device is used.
+//! Threads are spawned only if [`Options::threads`] is above 1. All results depend only on the arguments and are equal
+//! for any number of threads.
 
 pub mod grid;
 pub mod march;
@@ -40,14 +40,14 @@ use crate::planet::Planet;
 /// Number of times that light may have been scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Orders {
-    /// Exactly this many, at least 1; the ground counts as a scatterer.
+    /// Exactly this many, `[1, 1e4]`; the ground counts as a scatterer.
     Exactly(usize),
     /// Orders until the tail is below `tolerance` of the light at every relevant grid point, `(0, 0.1]`, but at most
     /// `limit` orders. The tail is estimated from the last two orders as a geometric series, and is then added.
     Converged {
         /// Largest share of the light that the added tail may have.
         tolerance: f64,
-        /// Number of orders after which the tail is added however large it is.
+        /// Number of orders after which the tail is added however large it is, `[3, 1e4]`.
         limit: usize,
     },
 }
@@ -55,8 +55,8 @@ pub enum Orders {
 /// Settings of a reference solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Orders of scattering. By default they are converged with a tail of 2 %, at most 60 orders. The tail is itself
-    /// within a hundredth of its value, so the light is within 0.05 %.
+    /// Orders of scattering. By default they are converged with a tail of 2 %, at most 60 orders. The added tail is
+    /// within a hundredth of its true value, so the light is within 0.05 %.
     pub orders: Orders,
     /// Sizes of the grids. Default: [`Resolution::QUICK`].
     pub resolution: Resolution,
@@ -80,13 +80,13 @@ impl Default for Options {
 /// Position of the observer, of the sun, and the direction of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Altitude of the observer above the ground's sphere, m, at least -1e5.
+    /// Altitude of the observer above the ground's sphere, m, `[-1e5, 1e12]`.
     pub altitude_m: f64,
     /// Zenith angle of the sun, radians, `[0, pi]`.
     pub sun_zenith: f64,
     /// Zenith angle of the view, radians, `[0, pi]`.
     pub view_zenith: f64,
-    /// Azimuth of the view relative to the sun's, radians.
+    /// Azimuth of the view relative to the sun's, radians, `[-1e6, 1e6]`.
     pub azimuth: f64,
 }
 
@@ -216,7 +216,7 @@ impl Reference {
         self.orders
     }
 
-    /// Largest share of the light at any grid point that the tail has, estimated as a geometric series.
+    /// Share of the tail in the light, estimated as a geometric series, at the grid point where it is largest.
     pub fn tail(&self) -> f64 {
         self.tail
     }
@@ -279,11 +279,14 @@ impl Reference {
         Ok(Irradiance { direct, sky })
     }
 
+    /// Zenith angles of the strips of the sun's disc, with their shares.
     fn strips(&self, sun_zenith: f64) -> Vec<(f64, f64)> {
         let strips = disc_strips(sun_zenith, self.planet.sun_angular_radius_deg.to_radians(), self.options.disc_strips);
         strips.into_iter().map(|(zenith, share)| (zenith.clamp(0.0, PI), share)).collect()
     }
 
+    /// Light along a ray up to `distance_m`. With `exact_sun` the sun's transmittance is integrated for every sample,
+    /// otherwise looked up in a table.
     fn along(&self, view: &View, distance_m: f64, rule: &Gauss, exact_sun: bool) -> Along {
         let ray = Ray::new(&self.medium, view.altitude_m, view.view_zenith.cos());
         let mut out = Along { radiance: [0.0; 3], transmittance: [1.0; 3], ground: false };

@@ -29,26 +29,31 @@ pub struct Solver<'a> {
     panel_rule: Gauss,
     panel_altitudes: Vec<f64>,
     has_haze: bool,
-    /// Flags of the suns so far below the horizon that no air sees them: there order 1 is below `DARK` of its brightest
-    /// value everywhere.
+    /// Whether the light is ignored, for each sun angle. It is ignored where the sun is so low that order 1 is below
+    /// [`DARK`] of its brightest value everywhere.
     dark: Vec<bool>,
 }
 
 /// Share of the brightest light below which light is ignored. It is a millionth of the stars' light.
 const DARK: f64 = 1e-12;
 
-/// Result of the sweep at one altitude: source [sun] and [sun][zenith][azimuth], and the ground's irradiance [sun].
+/// Result of the sweep at one altitude.
 struct Row {
+    /// Source of gas, for each sun angle.
     gas: Vec<Moments>,
+    /// Source of haze, ordered by sun angle, zenith angle and azimuth.
     haze: Vec<[f64; 3]>,
+    /// Irradiance of a level surface facing up, for each sun angle.
     irradiance: Vec<[f64; 3]>,
 }
 
 /// A ray of the sweep with the values that do not depend on the sun.
 struct Prepared {
     ray: Ray,
+    /// Weight of the ray in the rule over zenith angles.
     weight: f64,
     samples: Vec<(Sample, Place)>,
+    /// Interval of the ray inside the air, m from its start.
     span: (f64, f64),
     /// Distance to the ground, and transmittance over it, if the ray ends there.
     ground: Option<(f64, [f64; 3])>,
@@ -58,7 +63,8 @@ struct Prepared {
 enum SweepLight<'a> {
     /// Direct sunlight.
     Sun,
-    /// Light that has been scattered before.
+    /// Light that has been scattered before: its source in the air, and the radiance that the ground reflects for each
+    /// sun angle.
     Scattered(&'a Source, &'a [[f64; 3]]),
 }
 
@@ -284,10 +290,10 @@ impl<'a> Solver<'a> {
         out
     }
 
-    /// Phase function of the haze between the directions of the table and those of the quadrature rule, as cosine
-    /// series in azimuth: [zenith of the table][ray][mode], times the rule's weight and 2 pi. Rows are normalised so
-    /// that equal light from all sides is scattered equally into all directions; for sharp peaks the rule alone does
-    /// not achieve that.
+    /// Phase function of the haze between the table's directions and the quadrature's directions, as cosine series in
+    /// azimuth: [zenith of the table][ray][mode], times the rule's weight and 2 pi. Rows are normalised so that equal
+    /// light from all sides is scattered equally into all directions; for sharp peaks the rule alone does not achieve
+    /// that.
     fn kernel(&self, rays: &[Prepared]) -> Vec<f64> {
         let (zeniths, modes) = (self.resolution.haze_directions.0, self.azimuths.len());
         // Enough azimuths for the sharpest peak that the modes can represent.
@@ -349,7 +355,7 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Whether haze contributes to a sample's light. Its look-up is the expensive one.
+/// Whether haze contributes noticeably to a sample's light. The look-up of its source is the expensive one.
 pub fn haze_matters(s: &Sample) -> bool {
     (0..3).any(|c| s.haze[c] > 1e-7 * s.gas[c] && s.haze[c] > 1e-14)
 }

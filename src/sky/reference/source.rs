@@ -47,7 +47,7 @@ impl Nodes {
     }
 }
 
-/// Position along a ray for a look-up of the source, without what depends on the sun.
+/// Position along a ray for a look-up of the source: the coordinates that do not depend on the sun.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Coordinate in altitude, in node units.
@@ -180,8 +180,9 @@ impl Source {
     }
 }
 
-/// Logarithm above a floor. In twilight the light falls by a factor of e for each 0.7 degrees that the sun sinks. On a
-/// grid with steps of about that size, the logarithm can be interpolated, but not the light itself.
+/// Logarithm of a value, at least that of the floor. In twilight the light falls by a factor of e for each 0.7 degrees
+/// that the sun sinks. On a grid with steps of about that size, the logarithm can be interpolated, but not the light
+/// itself.
 fn to_log(v: f64, floor: f64) -> f64 {
     v.max(floor).max(f64::MIN_POSITIVE).ln()
 }
@@ -212,7 +213,8 @@ fn logs_to_moments(m: &Moments, floor: f64) -> Moments {
     out
 }
 
-/// Cubic stencil at `x` (node units), which may reach one node beyond either end.
+/// First node and weights of cubic interpolation at `x` (node units). The four nodes may reach one node beyond either
+/// end.
 fn mirrored(x: f64, n: usize) -> (isize, [f64; 4]) {
     let x = x.clamp(0.0, (n - 1) as f64);
     let first = (x as isize).min(n as isize - 2) - 1;

@@ -28,8 +28,8 @@ pub fn disc_strips(sun_zenith: f64, angular_radius: f64, strips: usize) -> Vec<(
 }
 
 /// Table of the columns towards the sun, for the many look-ups of multiple scattering. It holds the logarithms of the
-/// columns of the exponential media, with linear interpolation; ozone's column has a closed form. Tests compare it with
-/// quadrature.
+/// columns of gas and haze, which are interpolated linearly; ozone's column has a closed form. Tests compare the table
+/// with quadrature.
 pub struct SunTable {
     medium: Medium,
     altitudes: usize,
@@ -38,7 +38,7 @@ pub struct SunTable {
     columns: Vec<[f64; 2]>,
 }
 
-/// Smallest column at density 1; shorter ones count as this. A millimetre of air takes no light.
+/// Smallest column at density 1, m; shorter columns count as this. A millimetre of air takes no light.
 const LEAST_COLUMN_M: f64 = 1e-3;
 
 impl SunTable {
