@@ -31,7 +31,8 @@ pub fn scale_height_m(temperature_c: f64) -> f64 {
     SCALE_HEIGHT_M_PER_K * (temperature_c + 273.15)
 }
 
-/// Returns the air of the weather: quantities at sea level, reduced along the standard lapse rate.
+/// Returns the clear air of a weather. The Rayleigh density ratio and scale height are those at sea level, to which the
+/// temperature is reduced along the standard lapse rate.
 pub(super) fn air(w: &Weather) -> Air {
     let station_pressure = station_pressure_hpa(w.pressure_hpa, w.station_altitude_m);
     let sea_level_c = w.temperature_c + STANDARD_LAPSE_K_PER_M * w.station_altitude_m;

@@ -47,10 +47,11 @@ fn burden_per_m(c: &Conditions) -> f64 {
 impl Conditions {
     /// Returns the weather between `self` (at `t` = 0) and `other` (at 1); `t` outside is clamped, NaN counts as 0.
     ///
-    /// All extinctions share one weight that makes the total geometric (see the module). Cloud layers blend slot by
-    /// slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the light that a cloud stops. The
-    /// share of clear sky never exceeds that at the clearer end, while one overcast replaces another. Wind blends as a
-    /// vector, so a turn by more than 90 degrees passes through a lull. Everything else is linear.
+    /// All extinctions share one weight, chosen so that the visibility changes by equal factors in equal steps of `t`.
+    /// Cloud layers blend slot by slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the light
+    /// that a cloud stops. While one overcast replaces another, the share of clear sky never exceeds that at the
+    /// clearer end. Wind blends as a vector, so a turn by more than 90 degrees passes through a lull. The geometry and
+    /// optics of a layer are weighted by its amount at each end. Everything else is linear.
     pub fn lerp(&self, other: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *other;

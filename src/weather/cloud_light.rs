@@ -75,9 +75,9 @@ impl Conditions {
     /// Returns the light that the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky
     /// light x sky.
     ///
-    /// `cos_sun_zenith`: cosine of the sun's zenith angle, at least 0.03. `ground_albedo`: 0 to 1, 0.2 for most land.
-    /// Layers are combined from the top by adding (van de Hulst 1980), each as a mixture of cover and holes. The host's
-    /// [`super::CloudLightOverride`] is blended in last.
+    /// `cos_sun_zenith`: cosine of the sun's zenith angle; values below 0.03 count as 0.03. `ground_albedo`: clamped to
+    /// 0 to 1; 0.2 for most land. Layers are combined from the top by adding (van de Hulst 1980), each as a mixture of
+    /// cover and holes. The host's [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
         self.cloud_light_at(cos_sun_zenith, ground_albedo, f64::NEG_INFINITY)
     }
@@ -150,7 +150,7 @@ impl Conditions {
         }
     }
 
-    /// Returns the light under the zenith over open land, which reflects [`LAND_ALBEDO`].
+    /// Returns the cloud light at an altitude for a sun in the zenith, over open land, which reflects [`LAND_ALBEDO`].
     pub(crate) fn zenith_light_over_land(&self, altitude_m: f64) -> CloudLight {
         self.cloud_light_at(1.0, LAND_ALBEDO, altitude_m)
     }

@@ -17,11 +17,12 @@ struct Substance {
     fibre: f64,
 }
 
-/// Returns the composition of a kind of cloud. Water and droplets of stratus and cumulus from Diem (1948) and aufm
-/// Kampe and Weickmann (1957) as commonly tabulated (stratus 0.2 g/m^3, 7 um; fair-weather cumulus 0.5, 4). Towering
-/// cumulus fills half of its layer with the 2.5 g/m^3 of its core; a cumulonimbus is diluted by entrainment; ice from
-/// Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of stratocumulus are some
-/// three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud atlas).
+/// Returns the composition of a kind of cloud. Water and droplets of stratus and cumulus are those of Diem (1948) and
+/// aufm Kampe and Weickmann (1957) as commonly tabulated (stratus 0.2 g/m^3, 7 um; fair-weather cumulus 0.5, 4).
+/// Towering cumulus fills half of its layer with the 2.5 g/m^3 of its core; a cumulonimbus is diluted by entrainment.
+/// Ice follows Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of
+/// stratocumulus are some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud
+/// atlas).
 fn substance(kind: CloudKind) -> Substance {
     let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
              convection,
@@ -129,8 +130,8 @@ fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f
     [-own.speed_m_s * sine, -own.speed_m_s * cosine]
 }
 
-/// Returns the index of the layer from which rain falls: the lowest that covers half the sky, else the one that covers
-/// most.
+/// Returns the index of the layer from which rain falls: the first that the host names as cumulonimbus, towering
+/// cumulus or nimbostratus; else the lowest that covers at least half the sky; else the one that covers most.
 fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
     let low = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.base_m.total_cmp(&b.1.base_m);
     let most = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.cover.total_cmp(&b.1.cover);
@@ -147,8 +148,8 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
 /// high.
 ///
 /// Rain needs cloud. The layer from which it falls holds at least [`water_path_for_rate_kg_m2`], and if the host named
-/// no cloud at all, an overcast of nimbostratus at 600 m is added (`rain_needs_cloud` false switches both off). Ice
-/// crystals fall from a clear sky.
+/// no cloud at all, an overcast at 600 m is added: nimbostratus, in showers towering cumulus, in drizzle stratocumulus
+/// (`rain_needs_cloud` false switches both off). Ice crystals fall from a clear sky.
 pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;

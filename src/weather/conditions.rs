@@ -191,7 +191,8 @@ pub struct WindProfile {
     pub roughness_length_m: f64,
     /// Roughness length of the sea, m (Charnock 1955).
     pub sea_roughness_length_m: f64,
-    /// Upward velocity above 100 m, m/s, which decreases linearly to 0 at the ground; 0 but in weather regions.
+    /// Upward velocity from 100 m above ground on, m/s; below, it decreases linearly to 0 at the ground. 0 outside
+    /// weather regions.
     #[serde(default, skip_serializing_if = "is_none")]
     pub up_m_s: f64,
 }
@@ -234,7 +235,7 @@ fn whole() -> f64 {
     1.0
 }
 
-/// Whether a value is 0, as in states saved before it could be another.
+/// Whether a value is 0, which saved states leave out.
 fn is_none(value: &f64) -> bool {
     *value == 0.0
 }

@@ -76,8 +76,9 @@ pub struct Fog {
     pub top_m: Option<f64>,
     /// Share of the ground under fog. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial fog.
     pub coverage: Option<f64>,
-    /// Visibility inside the fog, m. Range [1, 10 000]. Default `visibility_m`; or 200 m if the fog is shallow or in
-    /// patches and the reported visibility is the better one above or beside it.
+    /// Visibility inside a layer that `visibility_m` does not describe, m: shallow fog; patches or partial fog with a
+    /// `visibility_m` of at least 1 km; drifting snow or dust without fog. Range [1, 10 000]; default 200 in fog, 500
+    /// in drifting snow or dust. Without effect on other layers, inside which `visibility_m` holds.
     pub visibility_inside_m: Option<f64>,
 }
 
@@ -144,8 +145,8 @@ pub struct Wind {
     /// Range over which the direction varies, clockwise from the first to the second angle, degrees. Range [0, 360]
     /// each; default none. (0, 360) means all directions (VRB).
     pub variable_deg: Option<(f64, f64)>,
-    /// Ratio of the standard deviation of the speed to its mean. Range [0, 1]; default from the roughness (neutral log
-    /// law).
+    /// Ratio of the standard deviation of the speed to its mean. Range [0, 1]; default the larger of that from the
+    /// roughness (neutral log law) and that from `gust_m_s`.
     pub turbulence_intensity: Option<f64>,
 }
 

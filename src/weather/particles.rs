@@ -56,9 +56,9 @@ pub fn humidity_growth(kind: AerosolKind, relative_humidity: f64) -> f64 {
     libm::pow(dryness, -properties(kind).growth_exponent)
 }
 
-/// Returns the visibility in clean air, m, for a report that gives only a lower bound. A background aerosol with a
-/// visibility of 40 km at humidity 0.5 grows with humidity ([`humidity_growth`]), and `falling_extinction_per_m` adds
-/// to it.
+/// Returns the visibility, m, for a report that gives only a lower bound. The air holds a continental aerosol with a
+/// visibility of 40 km at humidity 0.5, which grows with humidity ([`humidity_growth`]); `falling_extinction_per_m`
+/// adds to its extinction.
 pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: f64) -> f64 {
     let kind = AerosolKind::Continental;
     let growth = humidity_growth(kind, relative_humidity) / humidity_growth(kind, 0.5);
@@ -66,7 +66,7 @@ pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: 
     LN_20 / (super::air::RAYLEIGH_550_PER_M + background + falling_extinction_per_m)
 }
 
-/// Returns the kind of aerosol: lifted matter replaces a clean background.
+/// Returns the kind of aerosol: blowing dust or sand replaces a kind that is no dry obscuration.
 fn effective_kind(w: &Weather) -> AerosolKind {
     let background = !is_dry_obscuration(w.aerosol.kind);
     match w.lofted.kind {
@@ -200,11 +200,11 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 
 /// Returns the top of the ground layer above the station, m, if the host does not give it.
 ///
-/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI). In an obscured sky, fog is deeper than the vertical
-/// visibility: it is taken as twice that, at least 150 m. Otherwise the sky shows through, and the fog is about one
-/// visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, at least 60 m, and 300 m without such a
-/// cloud. Snow blows up to some tens of metres (Budd, Dingle and Radok 1966) and drifts below eye height; spray reaches
-/// 10 m.
+/// Shallow fog ends at 2 m by definition (WMO-No. 306, MI); patches and partial fog end at 20 m. In an obscured sky,
+/// fog is deeper than the vertical visibility: its depth is taken as twice that, 150 to 600 m. Otherwise the sky shows
+/// through, and the fog is about one visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, at least
+/// 60 m, and 300 m without such a cloud. Snow blows up to some tens of metres (Budd, Dingle and Radok 1966) and drifts
+/// below eye height; spray reaches 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -223,8 +223,8 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
 
 /// Returns the layer at the ground. Droplets of 10 um scatter without colour or absorption (albedo 1, asymmetry 0.85:
 /// Hess et al. 1998, fog). Lifted snow has an asymmetry of 0.89, and dust its own properties. If dry particles are too
-/// thick for the sky's tables, the layer holds the remainder: as much in a vertical column as in `aerosol`, thinning
-/// out up to twice its scale height.
+/// thick for the sky's tables, the layer holds the remainder. It thins out up to twice the scale height of `aerosol`,
+/// so that its vertical optical depth is that of an exponential layer with this scale height.
 pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
         return GroundLayer::NONE;

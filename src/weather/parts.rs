@@ -70,8 +70,8 @@ impl Conditions {
         (self.extinction_per_m - others).max(0.0)
     }
 
-    /// Blends single parts of the weather towards those of `other`: by 0 they stay, by 1 they are the other's. All
-    /// extinctions blend linearly, and their total follows.
+    /// Blends single parts of the weather towards those of `other`: a share of 0 leaves a part as it is, a share of 1
+    /// replaces it. All extinctions blend linearly, and their total follows; that of clear air stays.
     pub(crate) fn blend_parts(&mut self, other: &Self, shares: impl IntoIterator<Item = (WeatherParts, f64)>) {
         let mut fog_per_m = self.counted_fog_per_m();
         for (part, t) in shares {

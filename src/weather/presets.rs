@@ -132,7 +132,7 @@ fn freezing_fog() -> Weather {
     Weather { fog, surface, vertical_visibility_m: Some(60.0), ..day(300.0, -4.0, 1.0) }
 }
 
-/// Returns the weather under a sheet of nimbostratus that rains or snows, with kind and rate, and base of the sheet.
+/// Returns `w` under a closed nimbostratus with its base at `base_m`, from which `rate_mm_h` of `kind` falls.
 fn under_nimbostratus(w: Weather, kind: PrecipitationKind, rate_mm_h: f64, base_m: f64) -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, base_m)];
     Weather { clouds, precipitation: Precipitation::of(kind, rate_mm_h), ..w }

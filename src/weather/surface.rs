@@ -47,8 +47,8 @@ pub fn snow_cover(depth_m: f64) -> f64 {
     if depth_m > 0.25 { 1.0 } else { libm::tanh(depth_m / 0.025) }
 }
 
-/// Returns the wind profile. Turbulence is that of the log law, sigma / U = 1 / ln(10 / z0) (Panofsky and Dutton 1984),
-/// or follows from a reported gust.
+/// Returns the wind profile. The turbulence intensity is as given, else the larger of that of the log law, sigma / U =
+/// 1 / ln(10 / z0) (Panofsky and Dutton 1984), and that which a reported gust implies.
 pub(super) fn wind_profile(w: &Weather) -> WindProfile {
     let roughness = w.surface.roughness_length_m.unwrap_or(GRASS_ROUGHNESS_M);
     let neutral = (1.0 / libm::log(10.0 / roughness).max(1.0)).min(1.0);

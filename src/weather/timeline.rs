@@ -12,7 +12,7 @@ use crate::{
 const MAX_TRANSITION_S: f64 = 3.2e7;
 /// Largest distance of simulation time from 0, s.
 pub(crate) const MAX_TIME_S: f64 = 1e10;
-/// Time that stands for one before all others, s.
+/// Time that stands for the infinite past, s.
 const EVER_S: f64 = -1e12;
 /// Version number at the beginning of a saved timeline; increases when the format changes.
 const VERSION: u32 = 1;
@@ -80,8 +80,9 @@ impl Timeline {
     /// `transition_s` (\[0, 3.2e7\] s; 0 is a cut).
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] if it begins before the last update or
-    /// before a change that was given earlier. The timeline then stays as it was.
+    /// [`Status::InvalidArgument`] naming the field, or for more than 1024 changes under way or to come;
+    /// [`Status::WrongOrder`] if it begins before the last update or before a change that was given earlier. The
+    /// timeline then stays as it was.
     pub fn change(&mut self, weather: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
         check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
@@ -136,7 +137,7 @@ impl Timeline {
         self.advance_keeping(now_s, now_s);
     }
 
-    /// Advances as [`Timeline::advance`], but keeps changes from `keep_s` on, for readers that lag behind.
+    /// Advances as [`Timeline::advance`], but keeps the changes that end after `keep_s`, for readers that lag behind.
     pub fn advance_keeping(&mut self, now_s: f64, keep_s: f64) {
         self.now_s = self.now_s.max(now_s);
         if let Some(ended) = self.last_ended(now_s.min(keep_s)) {

@@ -58,7 +58,7 @@ fn temperature_of_dew_c(dew_c: f64) -> f64 {
 /// those that are assumed.
 ///
 /// A missing temperature is 15 C, or follows from the dew point at a humidity of 70 %. It is at most the bound that the
-/// weather sets.
+/// weather sets, but not below the reported dew point.
 pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     if let Some(t) = p.temperature_c {
         w.temperature_c = t;
@@ -78,9 +78,9 @@ pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mu
     }
 }
 
-/// Returns the largest visibility that the present weather allows if the report gives none, m: below 1 km in fog and in
-/// dust and sand storms, at most 5 km in mist, haze, smoke, dust and sand (WMO-No. 306, code table 4678 and 15.8.17);
-/// infinite otherwise.
+/// Returns the largest visibility that the present weather allows if the report gives none, m: 1 km in fog and in dust
+/// and sand storms; 5 km in mist, haze, smoke, volcanic ash, dust and sand (WMO-No. 306, code table 4678 and 15.8.17);
+/// infinite otherwise. Shallow, patchy, partial and drifting phenomena set no bound.
 pub(super) fn visibility_bound_m(p: &Parsed) -> f64 {
     use {Descriptor as D, Phenomenon as P};
     let bound = |g: &WeatherGroup| {

@@ -283,6 +283,7 @@ pub(super) fn pressure(text: &str) -> Option<Reading<f64>> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SeaGroup {
     pub temperature_c: Reading<f64>,
+    /// State of the sea, WMO code table 3700.
     pub state: Reading<u8>,
     pub wave_height_m: Reading<f64>,
 }

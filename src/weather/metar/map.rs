@@ -39,8 +39,8 @@ fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
 const RAIN_CLASSES_MM_H: [[(f64, f64); 3]; 2] =
     [[(0.1, 2.5), (2.5, 7.6), (7.6, 50.0)], [(0.1, 2.5), (2.5, 10.0), (10.0, 50.0)]];
 
-/// Returns the rate of rain, mm/h: the middle of the class, or less if so much rain would allow less visibility than
-/// reported, but not below the class.
+/// Returns the rate of rain, mm/h: the middle of the class, but at most the rate with `extinction_per_m`, the
+/// extinction that the reported visibility leaves for rain. The rate stays within the bounds of the class.
 fn rain_rate_mm_h(kind: PrecipitationKind, intensity: Intensity, convective: bool, extinction_per_m: f64) -> f64 {
     let (lo, hi) = RAIN_CLASSES_MM_H[usize::from(convective)][class(intensity)];
     let middle = class_rate_mm_h(kind, convective)[class(intensity)];

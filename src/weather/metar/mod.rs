@@ -31,9 +31,9 @@ impl Weather {
     /// The weather's `station_altitude_m` is 0, because no report contains it: set it from a list of airports.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] for a text without a station, without an observation (NIL) or without any weather
-    /// group; the message gives line and column (both from 1, in characters), what was expected there and what was
-    /// found. Never panics, whatever the text.
+    /// [`crate::Status::Parse`] for a text that is longer than [`MAX_METAR_BYTES`], or has no station, no observation
+    /// (NIL) or no weather group. Unless the text is too long, the message gives line and column (both from 1, in
+    /// characters), what was expected there and what was found. Never panics, whatever the text.
     pub fn from_metar(text: &str) -> Result<MetarReport> {
         Self::from_metar_with(text, &MetarOptions::default())
     }

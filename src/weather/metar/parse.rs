@@ -43,7 +43,7 @@ pub(super) struct Parsed {
     /// Words that are no group, in the report's order.
     pub unread: Vec<String>,
     pub places: MetarPlaces,
-    /// Whether the following words no longer describe the weather now.
+    /// Whether the words from here on no longer describe the weather at the time of the report.
     ended: bool,
     /// Number of weather groups so far, with those marked as missing.
     groups: usize,
@@ -130,7 +130,7 @@ fn is_trend(text: &str) -> bool {
 ///
 /// # Errors
 /// [`Status::Parse`] with line, column and what was expected, if there is no station, no observation, or no weather
-/// group.
+/// group; without a place, if the text is longer than [`MAX_METAR_BYTES`].
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -289,7 +289,7 @@ fn pieces(word: &str, p: &mut Parsed) -> bool {
 const MAX_GLUED_BYTES: usize = 40;
 
 /// Splits a word without spaces into groups. At least one of them must have figures, because letters alone form words
-/// of any language.
+/// of any language. `figures`: whether a group before `word` has some.
 fn split(word: &str, figures: bool) -> Option<Vec<&str>> {
     let has_figures = |t: &str| {
         groups::wind(t).flatten().is_some()

@@ -54,9 +54,9 @@ pub struct MetarReport {
     pub automatic: bool,
     /// Whether it is a correction (COR).
     pub corrected: bool,
-    /// Whether the report gives only a lower bound of the visibility (CAVOK, 9999, 10SM, P6SM). `weather.visibility_m`
-    /// is then [`crate::weather::unlimited_visibility_m`] for its humidity and precipitation, but at least the reported
-    /// value.
+    /// Whether the report gives only a lower bound of the visibility (CAVOK, 9999, 10SM, P6SM), or no visibility.
+    /// `weather.visibility_m` is then [`crate::weather::unlimited_visibility_m`] for its humidity and precipitation,
+    /// but at least the reported bound; if there is none, at most what the reported fog or haze allows.
     pub visibility_is_minimum: bool,
     /// Lowest visibility in some direction, if the report gives one beside the prevailing visibility (`4000 1500NE`,
     /// `9999 3100`), m. For information only: extinction follows the prevailing one.

@@ -3,8 +3,8 @@
 
 use super::phenomena;
 
-/// Whether a word is such a group. Some groups are very short. After the pressure (`ended`) every word that begins like
-/// a runway state counts; before it, only words that cannot be another group.
+/// Whether a word is such a group. After the pressure (`ended`) every word that begins like a runway state counts;
+/// before it, only words that cannot be another group.
 pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED")
         || text.starts_with("BLACK");
