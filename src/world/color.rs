@@ -13,8 +13,8 @@ use crate::{
 /// sum of these colours times their factors ([`Conversion::fitted`]). Where two wavelengths are too close to tell
 /// colours apart, each wavelength is one channel.
 ///
-/// Adapted (von Kries) so that unscattered sunlight is white, as for daylight film and eyes; on a D65 display it would
-/// look yellow.
+/// The colours are adapted (von Kries) so that unscattered sunlight is white, as for daylight film and eyes. Without
+/// this, sunlight would look yellow on a D65 display.
 pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
     let conversion = Conversion::of(planet);
     let white = sun_rec709();

@@ -1,4 +1,4 @@
-//! Dug ground of a world, as effects tell each other of it: which heights have changed, and how wet that ground is.
+//! Dug ground of a world, in the form that effects exchange: which heights have changed, and how wet that ground is.
 
 use std::collections::BTreeMap;
 

@@ -61,8 +61,8 @@ impl World {
         }
     }
 
-    /// Returns the scene now at a camera at `eye`, which an error calls `name`. It is the one in `kept` if that has the
-    /// same time, place, weather and settings; else a new one, which replaces it.
+    /// Returns the present scene of a camera at `eye`; errors call this position `name`. The scene is the one in `kept`
+    /// if that has the same time, place, weather and settings; else a new one, which replaces it.
     ///
     /// # Errors
     /// As [`World::scene_named`]; `kept` stays as it was.

@@ -176,7 +176,7 @@ impl World {
     }
 }
 
-/// Returns the apparent direction, and the flattening of a disc there.
+/// Returns the apparent, refracted direction of a light in the true direction `d`, and the flattening of its disc.
 fn refracted(d: DVec3, pressure_hpa: f64, temperature_c: f64) -> (DVec3, f64) {
     let elevation = libm::asin(d.z.clamp(-1.0, 1.0));
     let lift = sun::refraction_deg(elevation.to_degrees(), pressure_hpa, temperature_c).to_radians();

@@ -8,8 +8,8 @@ use super::{kept::KeptScene, state::World};
 use crate::{error::Result, moment::SceneMoment};
 
 impl World {
-    /// Returns the state at a camera at `eye`, which an error calls `name`. `kept` is the scene of an earlier call; it
-    /// is reused if nothing has changed since.
+    /// Returns the state at a camera at `eye`; errors call this position `name`. `kept` is the scene of an earlier
+    /// call; it is reused if nothing has changed since.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.

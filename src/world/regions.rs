@@ -1,4 +1,4 @@
-//! The regions of a world: those with rain of their own, and those with a weather of their own.
+//! Rain areas and weather regions of a world.
 
 use glam::DVec3;
 
@@ -15,11 +15,11 @@ use crate::{
 };
 
 impl World {
-    /// Replaces the regions.
+    /// Replaces the rain areas.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; the regions then stay as
-    /// they were.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; the areas then stay as they
+    /// were.
     pub fn set_regions(&mut self, areas: &[RainArea]) -> Result<()> {
         if areas.len() > MAX_AREAS {
             return Err(Error::range("rain_areas", &format!("at most {MAX_AREAS}"), areas.len()));
@@ -35,7 +35,7 @@ impl World {
         Ok(())
     }
 
-    /// Checks a region's fields and its own time.
+    /// Checks a rain area's fields, its place and its own time.
     fn check_region(&self, area: &RainArea) -> Result<()> {
         area.validate()?;
         self.frame.place_at("rain_area.center_m", DVec3::from(area.center_m))?;
@@ -49,7 +49,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether saved regions could have been set in this world with `timeline`.
+    /// Whether saved rain areas could have been set in this world with `timeline`.
     pub(super) fn are_valid(&self, regions: &[Region], timeline: &Timeline) -> bool {
         let is_place = |center_m: [f64; 3]| self.frame.place_at("center_m", DVec3::from(center_m)).is_ok();
         let is_timed = |kept: &Region| match (kept.area.motion, kept.carried_m) {
@@ -64,7 +64,8 @@ impl World {
             })
     }
 
-    /// Stores the displacements that the timeline is about to forget by advancing to `now_s`.
+    /// Stores the displacement of the air at the own time of each rain area that the wind moves, if that time is not
+    /// after `now_s`. The timeline may then forget it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.

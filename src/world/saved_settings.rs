@@ -15,12 +15,12 @@ use crate::{
     wind::{MAX_NODES, WindGrid, WindGridKind},
 };
 
-/// Exposure, tone curve, planet, shelters, lamps and wind grid as text.
+/// Exposure, tone curve, planet, shelters, lamps, wind grid and cloud map as text.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSettings {
     exposure: Exposure,
-    /// Absent in states saved before it could be set; they belong to a context with the same tone curve.
+    /// Absent in states saved before it could be set. Such a state loads only into a context with the same tone curve.
     #[serde(default)]
     pub tone_curve: Option<ToneCurve>,
     /// Absent in states saved before planets could be set.

@@ -77,10 +77,12 @@ impl ZenithDepths {
     }
 }
 
-/// Times for which a change of the weather is looked ahead, s, and the largest change of the air's vertical optical
-/// depth for which the longer ones serve. The sky's tables at both ends of such a time, mixed, stand for the air
-/// between them, and the error of the mix grows with the depth. The last time is far longer than a draft takes.
+/// Look-ahead times for a change of the weather, s. The sky's tables at the two ends of such a time are mixed for the
+/// air in between; the error of the mix grows with the change of the air's vertical optical depth. The first time with
+/// a change of at most [`AHEAD_DEPTH`] is used, else the last one, which is still far longer than a draft of the tables
+/// takes.
 const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
+/// Largest change of the air's vertical optical depth over a look-ahead time other than the last.
 const AHEAD_DEPTH: f64 = 0.15;
 
 /// Albedo of the grey ground to which the eye adapts, and the albedo that replaces it on snow-covered ground. Snow of
@@ -112,8 +114,8 @@ fn air_mass(elevation_deg: f64) -> f64 {
     1.0 / (libm::sin(h.to_radians()) + 0.505_72 * libm::pow(h + 6.079_95, -1.6364)).max(0.02)
 }
 
-/// Returns the light of a source of `spectrum` above clear air over ground of an `albedo`: (direct on a surface facing
-/// it, sky on level ground).
+/// Returns the light, lux per channel, of a source of `spectrum` above clear air over ground of an `albedo`: (direct on
+/// a surface facing it, sky on level ground).
 ///
 /// By day the sky's share is the light that the two-stream slab (Meador & Weaver 1980) transmits diffusely, with the
 /// ground's light that the slab sends back. Below 5 degrees it blends into measured twilight. From 6 degrees on and for
@@ -186,8 +188,8 @@ impl World {
     /// form; no device is used.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position, which an error calls `name`, is not a place on or above the
-    /// planet, or the weather is not known at the time.
+    /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet, or the weather is not
+    /// known at the time. Errors call the position `name`.
     pub fn scene_named(&self, name: &str, position: DVec3, time_s: f64) -> Result<Scene> {
         Ok(self.scene_and_wind(name, position, time_s)?.0)
     }
@@ -219,9 +221,9 @@ impl World {
         Ok([mapped, under_areas])
     }
 
-    /// Returns the planet under the weather to which the weather at `position` is changing, as it will be after one of
-    /// [`AHEAD_S`]. Both the timeline and regions that move change it. `now` is the planet under the present weather.
-    /// `None` while the weather rests.
+    /// Returns the planet under the weather that will be at `position` after one of the times [`AHEAD_S`]. The timeline
+    /// and moving regions change the weather. `now` is the planet under the present weather. `None` if no change of the
+    /// timeline is under way and there are no weather regions.
     pub fn planet_ahead(&self, position: DVec3, now: &Planet) -> Option<Planet> {
         let now_s = self.time_s;
         if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {

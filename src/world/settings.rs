@@ -68,11 +68,12 @@ pub(crate) struct Settings {
     pub cloud_map: Option<Arc<CloudMap>>,
     /// The host's wind that varies in space.
     pub host_wind: Option<Arc<HostWind>>,
+    /// Directions of sun and moon that the host gives in place of the almanac's.
     pub given_sun: Option<GivenDirection>,
     pub given_moon: Option<GivenDirection>,
     /// Universal time at simulation time 0.
     pub utc_at_zero: Utc,
-    /// Whether a law of the host's replaces the weather's low layer, which then dims no light.
+    /// Whether the host's fog law replaces the weather's low layer, which then dims no light.
     pub undimmed: bool,
     pub planet: Planet,
     /// Colours of light at the planet's wavelengths. They are fitted once, which takes some milliseconds.

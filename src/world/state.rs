@@ -244,8 +244,8 @@ impl World {
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// Returns the extinction of the precipitation of the weather `c` outside all regions; none where a law of the
-    /// host's replaces it.
+    /// Returns the extinction of the precipitation of the weather `c` outside all regions; none if the host's fog law
+    /// replaces it.
     pub fn falling(&self, c: &Conditions) -> FallingLayer {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }

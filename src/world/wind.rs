@@ -25,7 +25,7 @@ impl World {
         host.or(self.solved_wind.as_deref()).filter(|v| v.holds_at(time_s))
     }
 
-    /// Replaces the host's grid by a valid one.
+    /// Replaces the host's grid by one that was validated; `None` removes it.
     pub fn set_wind_grid(&mut self, grid: Option<Arc<WindGrid>>) {
         self.set.host_wind = grid.map(|grid| self.host_wind(grid));
     }
