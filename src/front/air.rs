@@ -24,8 +24,8 @@ impl Context {
     /// snow, and clouds if they are drawn as a volume. For rain areas it is the mean over their curtains.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if a position is invalid, or both are the same; for times as
-    /// [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if a position is invalid, or the two are less than a millimetre apart; for
+    /// times as [`Context::conditions_at`].
     pub fn between(&self, from: DVec3, to: DVec3, time_s: f64) -> Result<Between> {
         let scene = self.world.scene_named("from", from, time_s)?;
         self.world.frame.place_at("to", to)?;

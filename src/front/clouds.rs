@@ -33,7 +33,7 @@ impl Context {
         self.refresh()
     }
 
-    /// Returns the map of cloud layers.
+    /// Returns the map of cloud cover; `None` without one.
     pub fn cloud_map(&self) -> Option<&CloudMap> {
         self.world.set.cloud_map.as_deref()
     }

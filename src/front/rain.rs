@@ -10,8 +10,8 @@ use crate::{
 };
 
 impl Context {
-    /// Sets the regions with rain of their own, in place of those before. Where clouds are a volume
-    /// ([`Context::set_cloud_model`]), each region has cloud above it.
+    /// Sets the rain areas, which have rain of their own, in place of those before. Where clouds are a volume
+    /// ([`Context::set_cloud_model`]), each area has cloud above it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`](crate::rain::MAX_AREAS), or naming the field;
@@ -21,7 +21,7 @@ impl Context {
         self.refresh()
     }
 
-    /// Returns the regions with rain of their own, as they were set.
+    /// Returns the rain areas, as they were set.
     pub fn rain_areas(&self) -> impl ExactSizeIterator<Item = &RainArea> {
         self.world.set.regions.iter().map(|kept| &kept.area)
     }

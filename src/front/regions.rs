@@ -38,8 +38,8 @@ impl WayMedia {
 }
 
 impl Context {
-    /// Sets the regions with a weather of their own, in place of those before. They move by themselves; a host may also
-    /// set them again each frame, at their new places. [`crate::regions`] has the rules.
+    /// Sets the weather regions, which have a weather of their own, in place of those before. They move by themselves;
+    /// a host may also set them again each frame, at their new places. [`crate::regions`] has the rules.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than
@@ -49,7 +49,7 @@ impl Context {
         self.refresh()
     }
 
-    /// Returns the number of regions with a weather of their own.
+    /// Returns the number of weather regions.
     pub fn weather_region_count(&self) -> usize {
         self.world.set.weather_regions.len()
     }

@@ -87,17 +87,19 @@ impl Context {
     }
 
     /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
-    /// place on the ground of a position counts, not its height. There is no water where the terrain's tiles lie above
-    /// the surface, except in cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers
-    /// are those of the water around. `shortest_wave_m`, [0, 1e4], leaves out shorter waves, and tiles that hold no
-    /// longer ones; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may be off.
+    /// horizontal place of a position counts, not its height. There is no water where the terrain's tiles lie above the
+    /// surface, except in cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers are
+    /// those of the water around. Waves shorter than `shortest_wave_m`, m, [0, 1e4], are left out, and so are the sea's
+    /// tiles that hold only such waves; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may
+    /// be off.
     ///
     /// The first query of a time sums the short waves (some milliseconds); the sums of the last two times are kept.
     /// Nothing is allocated after the first queries.
     ///
     /// # Errors
-    /// [`crate::Status::WrongOrder`] without a sea; [`crate::Status::InvalidArgument`] if a position is not a place or
-    /// `points` is of another length; for times as [`Context::conditions_at`]. `points` stays as it was then.
+    /// [`crate::Status::WrongOrder`] without a sea; [`crate::Status::InvalidArgument`] if a position is not a place,
+    /// `shortest_wave_m` is out of range or `points` is of another length; for times as [`Context::conditions_at`].
+    /// `points` stays as it was then.
     pub fn sea_at(
         &self,
         positions: &[DVec3],

@@ -27,7 +27,8 @@ impl Context {
         self.held.snowpack.books()
     }
 
-    /// Returns how much of the state's time was simulated by fast-forward, s; 0 if every step was an ordinary one.
+    /// Returns how much of the state's time was simulated in steps of ten minutes, s: by [`Context::accumulate`], or by
+    /// an update over more than a day. 0 if every step was an ordinary one.
     pub fn snow_fast_forwarded_s(&self) -> f64 {
         self.held.snowpack.coarse_s()
     }

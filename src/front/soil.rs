@@ -39,8 +39,8 @@ fn local_pose(terrain: &Terrain, pose: &SoilToolPose) -> Result<SoilToolPose> {
 impl Context {
     /// Sets the soil of the terrain's tiles: the kinds and layers of the ground that is dug. The tiles are then the
     /// undug ground. Soil adds what was dug and heaped, and [`Context::terrain_at`], water, snow and wind see the sum.
-    /// The ground is undug at first; `None` takes the soil and everything dug away. Equal settings change nothing. Soil
-    /// is part of the saved state.
+    /// The ground is undug at first; `None` removes the soil and everything dug. Equal settings change nothing. Soil is
+    /// part of the saved state.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain in tiles, and while steps of an update remain;
@@ -81,8 +81,8 @@ impl Context {
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without soil, while steps of an update remain, or for a time that is not after the last
-    /// pose and the last update; [`Status::InvalidArgument`] naming the field, also for an edge that leaves the tiles.
-    /// Nothing changes then.
+    /// pose and the last update; [`Status::InvalidArgument`] naming the field, also for an edge that leaves the tiles,
+    /// and for a pose more than 600 s after the last one or more than 20 m from it. Nothing changes then.
     pub fn move_soil_tool(&mut self, tool: SoilToolId, pose: &SoilToolPose) -> Result<()> {
         self.check_advanced()?;
         let now_s = self.world.time_s;
@@ -125,7 +125,7 @@ impl Context {
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without soil or while steps of an update remain; [`Status::InvalidArgument`] naming the
-    /// parameter: a place, a known kind, a mass in \[0, 1e6\] kg.
+    /// parameter: a place, a known kind, a mass in \[0, 1e6\] kg, and loose soil at most 1000 m deep.
     pub fn bring_soil(&mut self, place: DVec3, kind: SoilKindId, mass_kg: f64) -> Result<bool> {
         self.check_advanced()?;
         let (site, terrain) = self.held.soil.site_mut(&self.world)?;
@@ -151,8 +151,8 @@ impl Context {
     }
 
     /// Returns the rectangles in which soil has changed heights after a revision of the terrain
-    /// ([`Context::terrain_revision`]), by rows from the south; 0 returns all. Hosts with physics or a network of their
-    /// own follow the ground with it: do not set these heights as tiles, which are the undug ground.
+    /// ([`Context::terrain_revision`]), by rows from the south; 0 returns all. A host with its own physics or network
+    /// follows the ground with this list. It must not set these heights as tiles, which are the undug ground.
     pub fn soil_changes(&self, since: u64) -> impl Iterator<Item = SoilChange> + '_ {
         let side = self.terrain().map_or(1, |terrain| terrain.tile_cells);
         self.held.soil.changes_since(since, side)

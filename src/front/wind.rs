@@ -18,8 +18,9 @@ impl Context {
     /// again after a leap of time of more than a minute ([`WindFieldReport::begun_s`]). Part of the saved state.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field; for a field that is too large also the memory that it needs
-    /// and may take. [`crate::Status::WrongOrder`] for a time before the last update or change. Nothing changes then.
+    /// [`crate::Status::InvalidArgument`] naming the field; for a field that is too large, the message also gives the
+    /// memory that it needs and the most that it may take. [`crate::Status::WrongOrder`] for a time before the last
+    /// update or change. Nothing changes then.
     pub fn set_wind_field(&mut self, field: Option<&WindFieldDesc>, start_s: f64) -> Result<()> {
         self.held.flow.set(&self.world, field.copied(), start_s)
     }
