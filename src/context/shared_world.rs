@@ -22,7 +22,7 @@ use crate::{
 pub struct LightAt {
     /// Sun, with directions in (east, north, up) of the place.
     pub sun: Light,
-    /// Moon, likewise in (east, north, up).
+    /// Moon, with directions in (east, north, up) of the place.
     pub moon: Light,
     /// Light that arrives, after air, clouds and fog.
     pub arriving: GroundLight,
@@ -238,8 +238,8 @@ impl Context {
         Ok(())
     }
 
-    /// Places the moon at the host's direction; `None` returns it to the almanac. The moon's phase follows from the
-    /// sun's direction.
+    /// Places the moon at the host's direction; `None` returns it to the almanac. If the host has set either direction,
+    /// the moon's phase follows from both.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the angle.
@@ -290,8 +290,8 @@ impl Context {
         self.world.over().check_time(time_s)
     }
 
-    /// Returns the moment at a camera at `eye`, a position that an error calls `name`. `kept` is the scene of an
-    /// earlier call, which is reused if nothing has changed since.
+    /// Returns the moment at a camera at `eye`; errors call this position `name`. `kept` is the scene of an earlier
+    /// call, which is reused if nothing has changed since.
     ///
     /// # Errors
     /// As [`Context::scene_at`].

@@ -21,8 +21,9 @@ impl Context {
     /// from the station's altitude. A host with terrain should therefore query a point as far above the station as the
     /// real point is above the terrain.
     ///
-    /// Inside a host's grid ([`Context::set_wind_grid`]) the wind is the grid's, at any time. Inside a solved field
-    /// ([`Context::set_wind_field`]) it is the field's, at times within a minute of the field's own time.
+    /// Inside a host's grid ([`Context::set_wind_grid`]) the grid's wind replaces the weather's or is added to it
+    /// ([`WindGridKind`](crate::wind::WindGridKind)), at any time. Inside a solved field ([`Context::set_wind_field`])
+    /// it is the field's, at times within a minute of the field's own time.
     ///
     /// Any thread. Closed form: any time costs the same. [`crate::wind`] has the laws.
     ///
@@ -32,10 +33,10 @@ impl Context {
         self.world.wind_at(position, time_s)
     }
 
-    /// Sets a wind that varies in space. It blows in place of the weather's wind and of a solved field
-    /// ([`Context::set_wind_field`]); `None` returns to these. It affects [`Context::wind_at`], the rain that lands on
-    /// a surface or a windscreen, and drops and flakes near a camera. It does not affect [`Context::wind_displacement`]
-    /// and everything that moves by it.
+    /// Sets a wind that varies in space. It replaces a solved field ([`Context::set_wind_field`]), and it replaces the
+    /// weather's wind or is added to it, by its kind; `None` returns to these. It affects [`Context::wind_at`], the
+    /// rain that lands on a surface or a windscreen, and drops and flakes near a camera. It does not affect
+    /// [`Context::wind_displacement`] and everything that moves by it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -63,8 +64,8 @@ impl Context {
         Ok(self.blowing(time_s)?.drift.displacement_m.extend(0.0))
     }
 
-    /// Returns the velocity whose integral is [`Context::wind_displacement`], m/s: the wind at 10 m with its gusts,
-    /// which carries drops.
+    /// Returns the velocity whose integral is [`Context::wind_displacement`], m/s (east, north, up): the wind at 10 m
+    /// with its gusts, which carries drops.
     ///
     /// # Errors
     /// For times as [`Context::conditions_at`].
