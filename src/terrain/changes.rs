@@ -1,4 +1,4 @@
-//! Recent changes of a terrain, for all that keeps a picture of its cells: it takes over only the cells that changed.
+//! Recent changes of a terrain. A reader that keeps a copy of its cells updates only the cells that changed.
 
 use std::collections::VecDeque;
 

@@ -123,7 +123,7 @@ impl Tile {
         }
     }
 
-    /// Sets the height of a cell with the change of the soil, m. Returns whether it is another one.
+    /// Sets the height of a cell with the change of the soil, m. Returns whether the height has changed.
     pub fn set_dug(&mut self, cell: usize, height_m: f32) -> bool {
         if self.heights_m[cell] == height_m {
             return false;

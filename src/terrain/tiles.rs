@@ -293,7 +293,7 @@ impl Terrain {
     }
 
     /// Sets heights of a tile's cells with the change of the soil, m, as a change with this revision. Returns the
-    /// rectangle of those that are others.
+    /// smallest rectangle around the cells whose height has changed; `None` if there are none.
     pub fn set_dug(&mut self, slot: u32, heights: &[(usize, f32)], revision: u64) -> Option<CellRect> {
         let tile = Arc::make_mut(&mut self.tiles[slot as usize]);
         let (key, before) = (tile.key, hash_of(tile));
