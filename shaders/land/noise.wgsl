@@ -1,5 +1,5 @@
 // Noise of the ground's materials: octaves with the mean 0, each of which fades out before it is finer than the pixels
-// (N-41: fBm, filtered by the footprint of a pixel).
+// (fractional Brownian motion, filtered by the footprint of a pixel).
 //!include "land/uniform.wgsl"
 
 // Multipliers that spread the numbers of a cell's three axes over the bits.

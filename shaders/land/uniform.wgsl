@@ -38,7 +38,7 @@ struct LandUniform {
     altitude: f32,
     // Curvature of the planet, 1/m.
     curvature: f32,
-    // Of each level, the distance at which its vertices begin to move, cells, and 1 over the distance on which they
+    // For each level: the distance at which its vertices begin to move, cells, and 1 over the distance over which they
     // move.
     levels: array<vec4f, 27>,
     // Directions to sun and moon in east, north, up at the camera; lux on a surface that faces them.

@@ -8,7 +8,7 @@ use crate::{terrain::SurfaceClass, world::HeldEffect};
 pub(crate) struct HeldLand {
     /// `None` where the host draws its terrain itself.
     pub drawing: Option<TerrainDrawing>,
-    /// Class of cells for which the host gives none: that of the ground.
+    /// Class of cells for which the host gives none; the same as the ground's default class.
     pub surface_class: SurfaceClass,
 }
 

@@ -10,7 +10,7 @@ use crate::{
     terrain::{CellRect, Terrain},
 };
 
-/// Heights of the camera above the ground below which the camera's own light is used, m.
+/// Height of the camera above the ground below which the camera's own light is used, m.
 const AT_GROUND_M: f64 = 2.0;
 
 /// Light on the ground, lux per channel of linear Rec. 709. Directions are east, north, up at the camera.
@@ -28,7 +28,7 @@ pub(super) struct LandLight {
 }
 
 impl LandLight {
-    /// Returns the light of a scene, for a camera whose axes are `to_local` of the scene's.
+    /// Returns the light of a scene. `to_local` rotates from the scene's axes to the camera's.
     fn of(scene: &Scene, to_local: glam::DMat3) -> Self {
         let light = &scene.ground;
         let level = |i: usize| {

@@ -2,24 +2,25 @@
 //!
 //! **Ground**. Each square of four neighbouring cells is split along the diagonal from its south-western to its
 //! north-eastern cell into two triangles; a triangle is ground if its three cells have ground. Pictures and queries of
-//! heights have these triangles alike.
+//! heights use the same triangles.
 //!
 //! **Levels of detail**. A quadtree of nodes with 16 x 16 squares, whose sides double from level to level, covers the
-//! lattice. Level n has every 2^n-th cell, with the cell's own height. It is used up to the distance d / (e a), where e
-//! is the error that the host accepts, pixels, a the angle of a pixel, and d the vertical error of level n + 1 that
-//! 99.7 % of the ground keeps, as measured at random cells of the terrain. The distance is at least 40 and at most 160
-//! sides of the squares. In its last part each odd vertex moves onto its even neighbour (Strugar 2010, Continuous
-//! Distance-Dependent Level of Detail), so the mesh of a level becomes that of the next one before they meet. There are
-//! no cracks, no skirts and no jumps.
+//! lattice. Level n has every 2^n-th cell, with the cell's own height. It is used up to the distance d / (e a), or up
+//! to that at which its squares are 10 pixels wide if this is farther. Here e is the error that the host accepts,
+//! pixels, a the angle of a pixel, and d the vertical error of level n + 1 within which 99.7 % of the ground stays,
+//! measured at random cells of the terrain. The distance is at least 40 and at most 160 sides of the squares. In its
+//! last part each odd vertex moves onto its even neighbour (Strugar 2010, Continuous Distance-Dependent Level of
+//! Detail), so the mesh of a level becomes that of the next one before they meet. There are no cracks, no skirts and no
+//! jumps.
 //!
-//! **Pages**. What the GPU needs of a node lies in a page of 66 x 66 texels: heights of vertices, slopes, classes.
-//! Pages that were used last are kept. A change of the terrain writes the texels of all pages that depend on it, in
-//! the frame that follows; the cost grows with the changed rectangle.
+//! **Pages**. A page holds a node's data on the GPU: the heights of its 17 x 17 vertices, and slopes and classes in up
+//! to 66 x 66 texels. Pages that were used last are kept. A change of the terrain writes the texels of all pages that
+//! depend on it, in the frame that follows; the cost grows with the changed rectangle.
 //!
 //! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise.
 //!
 //! **Light** is that of sun, moon and sky at the ground below the camera, for the ground's own slope; hills cast no
-//! shadows. What the composition adds to the host's own surfaces it adds to the terrain: water, lying snow, shadows of
+//! shadows. The composition adds to the terrain what it adds to the host's own surfaces: water, lying snow, shadows of
 //! clouds, air and fog.
 //!
 //! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers

@@ -45,6 +45,7 @@ pub(super) struct PageWriter {
     heights: Vec<f32>,
     /// Slopes of the next coarser level at the same positions.
     coarse: Vec<[f32; 2]>,
+    /// Slopes and classes of the texels written last, and heights, m, of the vertices written last.
     pub slopes: Vec<SlopeTexel>,
     pub classes: Vec<ClassTexel>,
     pub vertices: Vec<f32>,

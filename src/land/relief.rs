@@ -18,9 +18,10 @@ pub(super) const MOST_LEVELS: u8 = 26;
 pub(super) const LEVELS: usize = MOST_LEVELS as usize + 1;
 /// Number of places at which the error of each level is measured.
 const SAMPLES: u32 = 1024;
-/// Share of the measured errors that the ranges hold: three standard deviations of a normal distribution.
+/// Quantile of the measured errors that counts as a level's error: three standard deviations of a normal distribution.
 const HELD_SHARE: f64 = 0.9973;
-/// Rise over run of the cone under which higher ground does not lift the reference height.
+/// Slope, rise over run, at which the reference height falls with the distance from high ground
+/// ([`Relief::reference_m`]).
 const CONE: f64 = 0.125;
 
 /// Node of the quadtree over the lattice: `NODE` x `NODE` squares whose sides are 2^level cells. Nodes of a level are
@@ -100,7 +101,7 @@ impl Relief {
         self.top
     }
 
-    /// Vertical error of each level that most of the ground keeps, m.
+    /// Vertical error of each level within which [`HELD_SHARE`] of the ground stays, m.
     pub fn errors_m(&self) -> &[f64; LEVELS] {
         &self.errors_m
     }
@@ -180,8 +181,9 @@ impl Relief {
         self.roots.extend(keys.filter(|key| self.bounds.contains_key(key)));
     }
 
-    /// Returns the height from which the eye's height above the ground counts: the highest of all ground, each less an
-    /// eighth of its distance from the eye, m. It changes continuously as the eye moves. `eye` is in cells.
+    /// Returns the reference height, m, from which the eye's height above the ground counts: the maximum, over all
+    /// ground, of its height less an eighth of its distance from the eye. It changes continuously as the eye moves.
+    /// `eye` is in cells.
     pub fn reference_m(&mut self, eye: DVec2, cell_m: f64) -> f64 {
         let mut best = f64::NEG_INFINITY;
         self.open.clear();
@@ -220,8 +222,8 @@ fn leaf_bounds(cells: &mut CellReader<'_>, key: NodeKey) -> Option<[f32; 2]> {
     Some(heights.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)]))
 }
 
-/// Measures how far the triangles of each level lie above or below the cells, at random cells: the error that
-/// `HELD_SHARE` of the places keep, m.
+/// Measures how far the triangles of each level lie above or below the cells, at random cells: the error within which
+/// [`HELD_SHARE`] of the places stay, m.
 fn level_errors_m(terrain: &Terrain, top: u8) -> [f64; LEVELS] {
     let tiles: Vec<_> = terrain.all().map(|(_, tile)| tile.key).collect();
     let (mut cells, mut chance) = (CellReader::new(terrain), RandomStream::new(0, 44));

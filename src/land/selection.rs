@@ -19,7 +19,8 @@ const LONGEST_REACH: f64 = 160.0;
 /// Diagonal of a node, in sides of its squares, rounded up. A node that begins within the reach of its level ends
 /// within this distance beyond it.
 const DIAGONAL: f64 = 23.0;
-/// Longest side of a square in the picture, pixels.
+/// Side of a square in the picture, pixels: in perspective a level is used at least down to this size, with parallel
+/// rays at most up to it.
 const LONGEST_SIDE_PX: f64 = 10.0;
 /// Factor by which distances may exceed the true ones ([`Relief::reference_m`]).
 const FARTHER: f64 = 1.07;
@@ -93,8 +94,8 @@ impl LevelDistances {
         Self { eye, above, spread: 1.0, reach }
     }
 
-    /// Returns the reaches for those that each level should have, in sides of its squares. A level reaches so far
-    /// beyond the one below it that its vertices have room to move.
+    /// Returns the reach of each level, cells. `wanted` returns the reach that a level should have, in sides of its
+    /// squares. A level reaches so far beyond the one below it that its vertices have room to move.
     pub fn reach_for(wanted: impl Fn(usize) -> f64) -> [f64; LEVELS] {
         let (mut reach, mut begins): ([f64; LEVELS], f64) = ([0.0; LEVELS], 0.0);
         for (level, reach) in reach.iter_mut().enumerate() {

@@ -5,7 +5,7 @@ use crate::error::{Result, check_range};
 /// Settings with which a context's views draw the tiles of its terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDrawing {
-    /// Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels, \[0.25, 16\], default 1.
+    /// Vertical error of the drawn triangles within which 99.7 % of the ground stays, pixels, \[0.25, 16\], default 1.
     /// The error sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is so
     /// rough that more would be needed is drawn with a larger error.
     pub error_px: f64,
