@@ -7,7 +7,7 @@ pub const MAX_HEIGHT_SAMPLES: u64 = 1 << 28;
 /// Largest height above or below 0, m, the same as for terrain.
 pub(super) const MOST_M: f64 = 1e5;
 
-/// Least and largest distance between samples.
+/// Least and largest distance between samples, in the file's own unit.
 pub(super) const CELL_RANGE: [f64; 2] = [1e-9, 1e6];
 
 /// Rectangle of heights in metres, in rows from south to north; each row runs from west to east.
@@ -45,7 +45,8 @@ impl HeightMap {
         Self { columns, rows, heights_m, cell: None, south_west: None }
     }
 
-    /// Returns the map with the distance between neighbouring samples to the east and to the north.
+    /// Returns the map with the distance between neighbouring samples to the east and to the north, in the unit of
+    /// [`HeightMap::cell`].
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] unless both are in \[1e-9, 1e6\].
@@ -141,7 +142,7 @@ pub(super) fn check_cell(cell: [f64; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Returns an empty list with room for so many values.
+/// Returns an empty list with room for `count` values.
 pub(super) fn room_for<T>(count: u64) -> Result<Vec<T>> {
     let full = || {
         let bytes = count.saturating_mul(size_of::<T>() as u64);

@@ -90,8 +90,8 @@ pub struct HeightSettings {
     /// Height of a number. The number of an ESRI ASCII grid is the one in the text; that of a Terragen file is its
     /// height in metres.
     pub scale: HeightScale,
-    /// Number in the file that means no data, before it is scaled, as -9999 or -32768. NaN always means no data, and so
-    /// do the number that an ESRI ASCII grid names and transparent pixels of a PNG. Default: none.
+    /// Number in the file that means no data, before it is scaled, such as -9999 or -32768. NaN always means no data,
+    /// and so do the number that an ESRI ASCII grid names and transparent pixels of a PNG. Default: none.
     pub no_data: Option<f64>,
     /// Layout of a raw file. `None`, the default, for files of the other formats, which are recognised by their first
     /// bytes.

@@ -22,8 +22,8 @@ impl HeightMap {
     /// Reads a file of heights in a format of [`HeightMap::from_bytes`].
     ///
     /// # Errors
-    /// [`Status::Io`] if the file cannot be read; otherwise the errors of [`HeightMap::from_bytes`], after the name of
-    /// the file.
+    /// [`Status::Io`] if the file cannot be read; [`Status::Unsupported`] for a file of more than 4 GiB; otherwise the
+    /// errors of [`HeightMap::from_bytes`], after the name of the file.
     pub fn load(path: impl AsRef<Path>, settings: &HeightSettings) -> Result<Self> {
         settings.check().map_err(|e| e.within("settings"))?;
         let path = path.as_ref();
@@ -70,7 +70,7 @@ impl HeightMap {
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming a field of the settings, or the first height that has no number by this
-    /// scale.
+    /// scale; [`Status::OutOfMemory`].
     pub fn to_raw(&self, settings: &HeightSettings) -> Result<Vec<u8>> {
         settings.check().map_err(|e| e.within("settings"))?;
         raw::write(self, settings)
@@ -87,12 +87,12 @@ impl HeightMap {
     }
 
     /// Writes a Terragen terrain with the chunks in the order of its specification. Its scale is the distance between
-    /// samples, which must be known and the same in both directions. Steps of height are as fine as the format allows:
-    /// the range of the heights and twice that distance, in 65 536 parts.
+    /// samples, which must be known and the same in both directions. A step of height is as fine as the format allows:
+    /// about the sum of the heights' range and twice that distance, divided by 65 536.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a height that is not known, sides above 32 767, a distance that is not known or
-    /// not the same in both directions, and one too small for the heights.
+    /// not the same in both directions, and one too small for the heights; [`Status::OutOfMemory`].
     pub fn to_ter(&self) -> Result<Vec<u8>> {
         terragen::write(self)
     }
