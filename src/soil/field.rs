@@ -372,7 +372,8 @@ impl SoilField {
         self.patches[slot as usize].stamps[0] == self.sweeps
     }
 
-    /// Takes up a loaded patch: its heights, and whether it is awake, has changed, and has unchecked walls.
+    /// Completes a loaded patch: computes its heights, and marks whether it is awake, has changed, and has unchecked
+    /// walls.
     pub fn restore(&mut self, slot: u32, [is_awake, has_changed, is_unchecked]: [bool; 3]) {
         let patch = &mut self.patches[slot as usize];
         for cell in 0..CELLS {

@@ -17,7 +17,7 @@ const SWEEPS_BETWEEN: f64 = 0.02;
 const SWEEPS_AFTER: f64 = 3.0;
 /// Azimuths at which the heap is measured, degrees.
 pub const HEAP_AZIMUTHS_DEG: [f64; 5] = [0.0, 11.25, 22.5, 33.75, 45.0];
-/// Radius of a heap, in cells.
+/// Least and largest radius of a heap, cells.
 const RADIUS_CELLS: [f64; 2] = [3.0, 160.0];
 
 struct LevelGround;

@@ -52,7 +52,7 @@ pub(crate) struct HeldSoil {
     ground: (u64, u64),
     /// As `ground`, for the heights that were published last.
     shown: (u64, u64),
-    /// Revision of the terrain at which the heights of each patch last changed, by places north and east.
+    /// Revision of the terrain at which the heights of each patch last changed, by the patch's place, north and east.
     listed: BTreeMap<[i32; 2], u64>,
     /// Beginning of the update in which the last step was done.
     begun: Option<Instant>,
@@ -235,8 +235,8 @@ impl HeldSoil {
     /// Takes the soil out of a saved state.
     ///
     /// # Errors
-    /// [`Status::Parse`] for values that cannot be soil; [`Status::InvalidArgument`] if the tiles are missing or
-    /// others.
+    /// [`Status::Parse`] for values that cannot be soil; [`Status::InvalidArgument`] if the tiles are missing, have
+    /// cells of another size, or a setting is outside its range.
     pub fn read(&self, world: &World, state: &mut toml::Table) -> Result<LoadedSoil> {
         let saved: Option<SavedSite> =
             state.remove(KEY).map(|v| v.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))).transpose()?;

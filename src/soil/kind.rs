@@ -126,7 +126,8 @@ pub struct SoilHorizon {
 pub struct SoilSettings {
     /// The host's own kinds of soil; their numbers follow those of the seven built-in kinds. At most 9.
     pub own_kinds: Vec<SoilKind>,
-    /// Layers of undisturbed ground from the surface down; 1 to 8. Default 0.3 m of topsoil on loam.
+    /// Layers of undisturbed ground, 1 to 8: the first begins at depth 0, each other one deeper than the one before.
+    /// Default 0.3 m of topsoil on loam.
     pub horizons: Vec<SoilHorizon>,
     /// Share of the pores of the bank that water fills without rain and sun, \[0, 1\]. Default 0.3, moist. Bank at 0
     /// (dry sand) and at 1 (below the water table) has no cohesion ([`super::laws::cohesion_share`]).

@@ -15,14 +15,19 @@
 //! **Slides** (`field.rs`, `src/slides.rs`). Loose soil lies up to its angle of repose. Bank stands as a wall up to
 //! the height of Culmann's law (`walls.rs`). A higher one breaks, and what lies above the slope of repose slides.
 //!
-//! **Time** (`site.rs`). Steps of [`SOIL_STEP_S`] end at whole multiples of it. A step runs once every live tool has a
-//! pose at or after its end, so the same timed poses give the same bits at any frame rate. A step does at most eight
-//! sweeps; a site in which nothing moves is skipped.
+//! **Time** (`site.rs`). Steps of [`SOIL_STEP_S`] end at whole multiples of it. [`SoilSite::advance`] runs a step once
+//! every live tool has a pose at or after its end; in a context a tool without a later pose stands still. The same
+//! timed poses therefore give the same bits at any frame rate. A step does at most eight sweeps; a site in which
+//! nothing moves is skipped.
+//!
+//! **Context** (`held.rs`, `weather.rs`). A context holds a site on the tiles of its terrain, and adds the change of
+//! the soil to their heights. Once a minute the bank takes up water from a wet surface or drains, which changes its
+//! cohesion, and cold air freezes it from the surface down; tools do not cut bank that is frozen deeper than 5 cm. A
+//! host may also keep a [`SoilSite`] of its own, which has no weather.
 //!
 //! Limits: a cell has one column, so a cell that is cut in part gives its upper layers first, and nothing overhangs.
-//! Soil has no moisture and no frost. A context does not hold a site yet: the host keeps the [`SoilSite`], which draws
-//! nothing and reads no weather. So there are no `view.rs`, `passes.rs`, `candidates.rs` and `held.rs`; `laws/` is the
-//! physics in f64 in place of `reference.rs`.
+//! Soil is drawn only as the heights of the tiles, so there are no `view.rs`, `passes.rs` and `candidates.rs`; `laws/`
+//! is the physics in f64 in place of `reference.rs`.
 
 mod field;
 mod heap;

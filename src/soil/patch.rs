@@ -129,7 +129,7 @@ impl SoilPatch {
         }
     }
 
-    /// Takes over the undug heights. Returns whether any is another one.
+    /// Takes over the undug heights. Returns whether any has changed.
     pub fn set_ground(&mut self, ground: &dyn UndugGround, materials: &SoilMaterials) -> bool {
         let heights = undug_units(self.key, ground);
         if heights.iter().map(|v| v.to_bits()).eq(self.ground.iter().map(|v| v.to_bits())) {
@@ -160,7 +160,8 @@ impl SoilPatch {
         self.cut[cell] > 0 || self.press(cell).sunk > 0
     }
 
-    /// Depth of bank, in the coordinates of undisturbed ground, that a dig of `depth` units takes.
+    /// Depth of bank, in the coordinates of undisturbed ground, that a dig of `depth` units takes, and the compaction
+    /// that is left.
     fn bank_taken(&self, cell: usize, depth: i64) -> (i64, Pressed) {
         let press = self.press(cell);
         let thickness = press.packed - press.sunk;

@@ -31,7 +31,7 @@ const MOST_POSES: usize = 65_536;
 /// Settings of a site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SoilSiteDesc {
-    /// Distance between neighbouring cells, m, \[0.01, 4\].
+    /// Distance between neighbouring cells, m, \[0.01, 4\]. Default 0.1.
     pub cell_m: f64,
     /// Kinds and layers of the ground.
     pub settings: SoilSettings,
@@ -78,7 +78,7 @@ pub struct SoilPoint {
     pub loose_kg_m3: f64,
     /// Kind on the surface: that of most of the loose soil, or of the bank.
     pub kind: SoilKindId,
-    /// Revision of the site at the last change near this place; 0 where nothing was dug.
+    /// Revision of the site (in a context: of the terrain) at the last change near this place; 0 where nothing was dug.
     pub revision: u64,
 }
 
@@ -302,7 +302,7 @@ impl SoilSite {
         Ok(self.time_s())
     }
 
-    /// Runs one step; of a quiet site all of them up to `due`. A tool without a later pose stands still.
+    /// Runs one step. A quiet site skips to the step `due` at once. A tool without a later pose stands still.
     pub(super) fn run(&mut self, due: i64, ground: &dyn UndugGround) {
         if self.is_quiet() {
             self.steps = due;

@@ -48,17 +48,19 @@ pub enum SoilToolShape {
     },
 }
 
-/// Pose of a tool at a time. Places are east, north and up of the lattice's origin, m.
+/// Pose of a tool at a time. Places are east, north and up of the lattice's origin, m; in calls of a context, in the
+/// host's world. They lie within 1e7 m of the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolPose {
     /// Simulation time, s.
     pub time_s: f64,
     /// Cutting edge, or the line of contact of a wheel or track: its left and its right end for a viewer inside the
-    /// tool who looks out of the opening.
+    /// tool who looks out of the opening, 0.05 to 20 m apart.
     pub edge: [DVec3; 2],
-    /// Edge of the opening opposite to the cutting edge, left and right; not used for wheels and tracks.
+    /// Edge of the opening opposite to the cutting edge, left and right, 0.05 to 20 m apart and 0.02 to 20 m from the
+    /// cutting edge; not used for wheels and tracks.
     pub upper: [DVec3; 2],
-    /// Direction out of the opening; need not have unit length. Not used for wheels and tracks.
+    /// Direction out of the opening, of a length in \[1e-6, 1e6\]. Not used for wheels and tracks.
     pub facing: DVec3,
     /// Load of a wheel or track on the ground, N, \[0, 1e7\]; 0 for other tools.
     pub load_n: f64,

@@ -1,4 +1,4 @@
-//! Walls of bank: which ones are higher than their soil stands, and what falls with them.
+//! Walls of bank: which ones are higher than their soil can stand, and what falls with them.
 //!
 //! A wall between two cells fails where the bank's top lies higher above a cell than the law's highest face with its
 //! toe there ([`super::laws::WallLaw::height_over_m`]), with the cohesion that its water leaves, and the face is
@@ -11,7 +11,7 @@ use super::{
     patch::{CELLS, NEAR, NO_PATCH, UndugGround},
 };
 
-/// Share by which the fall of the ground must grow at a crest.
+/// Factor by which the fall of the ground must grow at a crest.
 const CREST: f64 = 1.05;
 /// Most cells behind a toe that a fall can reach.
 const MOST_BROKEN: i32 = 512;
@@ -27,7 +27,8 @@ struct Fall {
     toe_height: f64,
 }
 
-/// Lets walls fall that are higher than they stand, among the patches that have changed. Returns whether any falls.
+/// Lets walls fall that are higher than their soil can stand, among the patches that have changed. Returns whether any
+/// falls.
 pub(super) fn break_walls(field: &mut SoilField, ground: &dyn UndugGround) -> bool {
     if !field.patches.iter().any(|patch| patch.is_unchecked) {
         return false;

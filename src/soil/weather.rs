@@ -12,7 +12,8 @@ pub(super) const WEATHER_STEPS: i64 = 60 * 64;
 const THIN_FROST_M: f64 = 0.05;
 
 impl SoilSite {
-    /// Lets the last minute act: the bank takes up water and drains, and freezes or thaws in air of this temperature.
+    /// Applies the weather of the last minute: the bank takes up water and drains, and freezes or thaws in air of this
+    /// temperature.
     pub(super) fn weather(&mut self, temperature_c: f64) {
         let seconds = WEATHER_STEPS as f64 * SOIL_STEP_S;
         let at_rest = self.field.materials.saturation;

@@ -18,7 +18,8 @@ use super::{
 const PASSED: f64 = 0.999_999;
 /// Cells from the edge beyond which a tool forgets what it has passed.
 const MEMORY_CELLS: f64 = 3.0;
-/// Cells in front of an edge where pushed soil lands: so many that the cells around the point lie in front of the edge.
+/// Distance in front of the edge at which pushed soil lands, cells: the four cells around that point lie in front of
+/// the edge.
 const AHEAD_CELLS: f64 = 1.5;
 /// Share of a cell by which the ground ahead must be higher than an edge that is in it.
 const IN_GROUND_CELLS: f64 = 0.1;
@@ -98,8 +99,8 @@ impl WorkedGround<'_> {
         }
     }
 
-    /// Puts soil onto the four cells around a point in cells, by their nearness. Returns what no cell could take, all
-    /// of it or nothing.
+    /// Puts soil onto the four cells around a point in cells, by their nearness. Returns what no cell could take: all
+    /// of the parcel, or nothing.
     fn scatter(&mut self, parcel: SoilParcel, point: DVec2) -> SoilParcel {
         let corner = point - 0.5;
         let low = corner.floor();

@@ -1,14 +1,14 @@
 //! Heaps: rated heaps of buckets, cones, and the swell of dug soil.
 
-/// Returns the volume of soil heaped on a level opening of these sides, m, m^3: a hipped roof that rises by `rise` per
-/// unit of length from all four sides (SAE J296 and ISO 7451 rate excavator buckets with 1, CECE and the loaders of SAE
-/// J742 and ISO 7546 with 0.5).
+/// Returns the volume, m^3, of soil heaped on a level opening with the sides `sides_m`: a hipped roof that rises by
+/// `rise` per unit of length from all four sides (SAE J296 and ISO 7451 rate excavator buckets with 1, CECE and the
+/// loaders of SAE J742 and ISO 7546 with 0.5).
 pub fn heap_volume_m3(sides_m: [f64; 2], rise: f64) -> f64 {
     let (short, long) = (sides_m[0].min(sides_m[1]), sides_m[0].max(sides_m[1]));
     rise * (short * short * short / 6.0 + short * short * (long - short) / 4.0)
 }
 
-/// Returns the radius of the base of a cone of this volume and slope in radians, m.
+/// Returns the radius of the base, m, of a cone of this volume and this slope, radians.
 pub fn cone_radius_m(volume_m3: f64, slope: f64) -> f64 {
     libm::cbrt(3.0 * volume_m3 / (std::f64::consts::PI * libm::tan(slope)))
 }

@@ -1,6 +1,6 @@
 //! Water in the ground: what it leaves of the soil's cohesion, and how soon rain and dry weather change it.
 
-/// Saturation up to which cohesion grows: 2 % of water by mass where a fifth fills the pores.
+/// Saturation up to which cohesion grows: 2 % of water by mass in soil whose pores hold 20 %.
 const PLATEAU_FROM: f64 = 0.1;
 /// Saturation from which cohesion falls.
 const PLATEAU_TO: f64 = 0.85;

@@ -6,11 +6,11 @@ const LEAST_EXPONENT: f64 = 0.3;
 /// Bekker's description of how a soil yields under a plate: p = (kc / b + kphi) z^n (Bekker 1956, 1969).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinkageSet {
-    /// Cohesive modulus kc, kN/m^(n + 1).
+    /// Cohesive modulus kc, kN/m^(n + 1); in a kind of soil \[0, 1e6\].
     pub kc: f64,
-    /// Frictional modulus kphi, kN/m^(n + 2).
+    /// Frictional modulus kphi, kN/m^(n + 2); in a kind of soil \[0.1, 1e8\].
     pub kphi: f64,
-    /// Exponent n.
+    /// Exponent n; in a kind of soil \[0.1, 3\].
     pub n: f64,
 }
 
