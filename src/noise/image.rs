@@ -16,8 +16,8 @@ pub struct NoiseImage {
 
 impl NoiseImage {
     /// Computes noise in a texture of `size` texels, with a full chain of mip levels. Width, height and depth are
-    /// powers of two, at least 8; a depth of 1 makes a two-dimensional texture. The bytes are the same on every
-    /// machine.
+    /// powers of two, 8 to 8192 in two dimensions and 8 to 1024 in three, with at most 2^27 texels; a depth of 1 makes
+    /// a two-dimensional texture. The bytes are the same on every machine.
     ///
     /// A volume of 128^3 takes about a second; [`super::NoiseTexture`] draws it faster.
     ///

@@ -72,8 +72,8 @@ pub struct NoiseTexture {
 
 impl NoiseTexture {
     /// Creates a texture of `size` texels with the noise of one, two or four settings in its channels. Width, height
-    /// and depth are powers of two, at least 8; a depth of 1 makes a two-dimensional texture. Nothing is drawn yet: see
-    /// [`NoiseTexture::step`].
+    /// and depth are powers of two, 8 to 8192 in two dimensions and 8 to 1024 in three, with at most 2^27 texels; a
+    /// depth of 1 makes a two-dimensional texture. Nothing is drawn yet: see [`NoiseTexture::step`].
     ///
     /// # Errors
     /// The errors of [`NoiseSettings::check`]; [`crate::Status::InvalidArgument`] for another number of channels;

@@ -38,9 +38,9 @@ impl NoiseImage {
     /// and computes none.
     ///
     /// # Errors
-    /// [`Status::Unsupported`] for other files and formats, cube maps, arrays, and textures of more than 2^27 texels;
-    /// [`Status::Parse`] for bytes that are cut short or contradict themselves; [`Status::OutOfMemory`]. The message
-    /// names the field of the file.
+    /// [`Status::Unsupported`] for other files and formats, cube maps, arrays, textures of more than 2^27 texels, and
+    /// files of more than 2^28 bytes; [`Status::Parse`] for bytes that are cut short or contradict themselves;
+    /// [`Status::OutOfMemory`]. The message names the field of the file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         check_length(bytes.len() as u64)?;
         if bytes.starts_with(&dds::MAGIC) {
