@@ -161,6 +161,8 @@ fn check_depth(depth: &wgpu::Texture) -> Result<()> {
 }
 
 impl OccluderMaps {
+    /// Creates the pipelines, without maps.
+    ///
     /// # Errors
     /// A missing shader file.
     pub fn new(device: &Device) -> Result<Self> {
