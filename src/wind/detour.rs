@@ -5,7 +5,7 @@
 //! Let e be the wind that enters the grid, and s the distance that free air travels; w and e are divided by the speed
 //! of e. The air at a place then lags by
 //!
-//! L = integral of (e - w) e^(-s / life) ds,
+//! L = integral of (e - w) exp(-s / life) ds,
 //!
 //! and the patches at the place are those that free air would have carried L farther. Eddies stir patches: what
 //! happened to the air more than a patch's life ago no longer shows, and no lag grows longer than that life. With an

@@ -1,7 +1,7 @@
 //! The wind of a seed along the timeline: the displacement of the air, and its velocity.
 //!
-//! Between the starts and ends of changes the mean wind is one polynomial of time, which eight points of Gauss and
-//! Legendre integrate exactly while at most five changes overlap. Gusts and wander are integrated in closed form.
+//! Between the starts and ends of changes the mean wind is one polynomial of time, which the Gauss-Legendre rule of 8
+//! points integrates exactly while at most five changes overlap. Gusts and wander are integrated in closed form.
 //! Nothing is stepped, so any time costs the same. The state that is kept when changes are forgotten is the same for
 //! any sequence of updates.
 

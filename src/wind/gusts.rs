@@ -11,7 +11,7 @@ use crate::chance::RandomStream;
 
 /// Number of waves along the wind, and of waves across it.
 const TONES: usize = 24;
-/// Longest and shortest wave, m. Longer ones are changes of weather; shorter ones do not move all of a scene alike.
+/// Longest and shortest wave, m. Longer ones are changes of weather; shorter ones do not move a whole scene together.
 const WAVES_M: (f64, f64) = (3000.0, 8.0);
 /// Turbulence scale at 10 m above ground, m: 0.7 of the height (IEC 61400-1, 6.3).
 const SCALE_M: f64 = 7.0;

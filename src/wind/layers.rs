@@ -3,7 +3,7 @@
 //! A layer moves with the mean wind at its height, or with its own wind
 //! ([`CloudSlab::wind_m_s`](crate::weather::CloudSlab)). Its drift is counted in distances from cloud to cloud, and
 //! time in lives, so that a weather with wider or longer-lived clouds does not shift the existing ones. Both are
-//! integrals over the timeline, computed between the starts and ends of changes by eight points of Gauss and Legendre.
+//! integrals over the timeline, computed between the starts and ends of changes by the Gauss-Legendre rule of 8 points.
 //! Any sequence of updates therefore gives the same bits.
 
 use glam::{DMat2, DVec2};
