@@ -12,6 +12,7 @@ use welkin::{
     weather::Weather,
 };
 use welkin_support::{
+    accept,
     coarse_sky::coarse_sky,
     level_ground::level_ground,
     processor::{holds, median, processor_ns},
@@ -20,7 +21,7 @@ use welkin_support::{
 
 /// Returns the number of frames before the measurement, in which tables and pipelines are built, and of measured ones.
 fn frames() -> (usize, usize) {
-    if is_quiet() { (40, 30) } else { (24, 12) }
+    if accept() { (40, 30) } else { (24, 12) }
 }
 
 fn world(device: &Arc<Device>, weather: &str) -> Context {
@@ -78,21 +79,16 @@ fn nanoseconds(device: &Device, context: &mut Context, groups: &mut [Vec<Channel
     spent.iter_mut().map(|spent| median(spent)).collect()
 }
 
-/// Returns whether this is the long run on an idle machine, for which the narrow bounds hold.
-fn is_quiet() -> bool {
-    std::env::var_os("WELKIN_ACCEPT").is_some()
-}
-
 #[test]
 fn a_pixel_costs_no_more_in_a_larger_picture() {
     let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     let all = [(320, 180), (640, 360), (1280, 720), (1920, 1080)];
-    let sizes = if is_quiet() { &all[..] } else { &all[..2] };
+    let sizes = if accept() { &all[..] } else { &all[..2] };
     let weathers = ["rain", "broken", "clear", "fog", "snow"];
-    for weather in if is_quiet() { &weathers[..] } else { &weathers[..2] } {
+    for weather in if accept() { &weathers[..] } else { &weathers[..2] } {
         let mut context = world(&device, weather);
         let mut groups: Vec<_> = sizes.iter().map(|size| vec![Channel::new(&device, &context, *size, 0.0)]).collect();
-        let most = vec![if is_quiet() { 1.04 } else { 1.15 }; sizes.len() - 1];
+        let most = vec![if accept() { 1.04 } else { 1.15 }; sizes.len() - 1];
         holds(&format!("{weather}, a pixel over one of the next smaller picture"), &most, || {
             let times = nanoseconds(&device, &mut context, &mut groups, 0.0);
             let a_pixel: Vec<f64> =
@@ -113,7 +109,7 @@ fn several_views_of_a_world_cost_no_more_than_as_often_one() {
         groups.push((0..4).map(channel).collect());
         // Three runs took 0.98 to 1.00.
         let name = format!("{weather}, the sun by {sun_step_deg}: four views over four alone");
-        holds(&name, &[if is_quiet() { 1.05 } else { 1.15 }], || {
+        holds(&name, &[if accept() { 1.05 } else { 1.15 }], || {
             let times = nanoseconds(&device, &mut context, &mut groups, sun_step_deg);
             vec![times[4] / times[..4].iter().sum::<f64>()]
         });

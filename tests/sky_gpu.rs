@@ -6,6 +6,7 @@ use welkin::sky::probe::{Probe, Question, Ray};
 use welkin::sky::reference::{Options, Reference, Resolution, View};
 use welkin::sky::spectral::{Conversion, SpectralSet};
 use welkin::sky::{Planet, SkyModel, SkySettings};
+use welkin_support::accept;
 
 fn golden_planet() -> Planet {
     Planet::from_toml(include_str!("../examples/data/planet_golden.toml")).unwrap()
@@ -320,7 +321,7 @@ fn colour_views() -> Vec<(f64, f64)> {
 fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
     let planet = Planet::earth();
     // The whole comparison runs only with WELKIN_ACCEPT: it needs a planet for every three wavelengths.
-    let long = std::env::var_os("WELKIN_ACCEPT").is_some();
+    let long = accept();
     let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.024) };
     let set = SpectralSet::new(many).unwrap();
     let coarse = Resolution {

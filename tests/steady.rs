@@ -34,7 +34,7 @@ use welkin::{
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind},
 };
-use welkin_support::textures::texture;
+use welkin_support::{accept, textures::texture};
 
 struct Counting;
 
@@ -592,7 +592,7 @@ fn recording_allocates_nothing_of_its_own() {
             // Three flashes a minute come and go meanwhile; the first one creates the pipelines of all.
             quiet("a storm", &mut RustHost::under(backends, &storm(), night), 3600, 3600);
             // The long soak of the acceptance suite: most of an hour at 60 frames a second.
-            let frames = if std::env::var_os("WELKIN_ACCEPT").is_some() { 200_000 } else { frames };
+            let frames = if accept() { 200_000 } else { frames };
             steady("noop through the C functions", &mut CHost::new(WK_BACKEND_NOOP), frames, bare.calls);
         }
     }

@@ -8,6 +8,7 @@ use welkin::{
     scene::Camera,
     weather::{CloudKind, CloudLayer, Weather},
 };
+use welkin_support::accept;
 
 use crate::drawn::{BROKEN, SIZE, Sky};
 
@@ -82,7 +83,7 @@ fn the_base_that_is_seen_is_the_one_asked_for() {
         (CloudKind::Stratus, [150.0, 300.0, 900.0]),
         (CloudKind::Cumulonimbus, [500.0, 1000.0, 2000.0]),
     ] {
-        for base_m in if std::env::var_os("WELKIN_ACCEPT").is_some() { &bases[..] } else { &bases[1..2] } {
+        for base_m in if accept() { &bases[..] } else { &bases[1..2] } {
             let base_m = *base_m;
             let mut sky = Sky::new(BROKEN, CloudModel::default());
             let clouds = vec![CloudLayer::of(kind, 0.5, base_m)];

@@ -14,6 +14,7 @@ use welkin::{
     scene::{Camera, DepthKind, DepthMapping},
     weather::{Weather, Wind},
 };
+use welkin_support::accept;
 
 use crate::drawn::{BROKEN, CLOSED, SIZE, Sky, p95};
 
@@ -65,7 +66,7 @@ fn a_climb_through_layers_shows_no_jump() {
         (BROKEN, 100.0, 860.0, 990.0, 3),
         (CLOSED, 10.0, 905.0, 917.0, 3),
     ];
-    let flights = if std::env::var_os("WELKIN_ACCEPT").is_some() { long } else { quick };
+    let flights = if accept() { long } else { quick };
     for (report, speed_m_s, from_m, to_m, every) in flights {
         let seen = fly(report, speed_m_s, from_m, to_m, every);
         let off = seen.iter().map(|[flown, fresh]| (flown / fresh - 1.0).abs());

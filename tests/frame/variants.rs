@@ -11,7 +11,10 @@ use welkin::{
     scene::HostLight,
     weather::{Fog, FogKind, Precipitation, PrecipitationKind, Weather},
 };
-use welkin_support::frame_host::{Host, camera, texture};
+use welkin_support::{
+    accept,
+    frame_host::{Host, camera, texture},
+};
 
 /// Set in the process of its own in which memory is measured.
 const ALONE: &str = "WELKIN_ALONE";
@@ -85,7 +88,7 @@ fn memory_levels_off_however_formats_models_and_lamps_change() {
         assert!(outcome.success());
         return;
     }
-    let count = if std::env::var_os("WELKIN_ACCEPT").is_some() { 60 } else { 6 };
+    let count = if accept() { 60 } else { 6 };
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
     let colors = FORMATS.map(|format| texture(&host.device, format, 1));
     let mist = Weather {

@@ -2,10 +2,13 @@
 //! consistent.
 
 use welkin::heights::{HeightSettings, RawHeights};
-use welkin_support::fuzz::{
-    dice::Dice,
-    targets::{height_files, heights_by, raw_layouts},
-    texts::damage,
+use welkin_support::{
+    accept,
+    fuzz::{
+        dice::Dice,
+        targets::{height_files, heights_by, raw_layouts},
+        texts::damage,
+    },
 };
 
 /// Words in place of a header's or a chunk's numbers.
@@ -41,7 +44,7 @@ fn mend_checksums(file: &mut [u8]) {
 
 #[test]
 fn damaged_height_files_are_read_or_refused_by_place() {
-    let times = if std::env::var_os("WELKIN_ACCEPT").is_some() { 40_000 } else { 4000 };
+    let times = if accept() { 40_000 } else { 4000 };
     let raw = raw_layouts().into_iter().map(|(layout, file)| (Some(layout), file));
     let files: Vec<(Option<RawHeights>, Vec<u8>)> =
         height_files().into_iter().map(|file| (None, file)).chain(raw).collect();

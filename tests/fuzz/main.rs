@@ -16,6 +16,7 @@ use std::{
 
 use welkin::capi::{abi, status::WK_ERROR_DEVICE_LOST};
 use welkin_support::{
+    accept,
     fuzz::{
         calls::{Answer, CALLS, ELSEWHERE, World},
         dice::Dice,
@@ -89,8 +90,7 @@ fn random_calls_are_answered_by_name() {
     if let Some(seed) = only {
         play(seed, &judge, &mut tally, true);
     } else {
-        let accept = std::env::var_os("WELKIN_ACCEPT").is_some();
-        let (least, time) = if accept { (200, Duration::from_secs(60)) } else { (60, Duration::ZERO) };
+        let (least, time) = if accept() { (200, Duration::from_secs(60)) } else { (60, Duration::ZERO) };
         let start = Instant::now();
         for seed in 1.. {
             if seed > least && start.elapsed() >= time {
@@ -125,7 +125,7 @@ fn random_calls_are_answered_by_name() {
 fn damaged_texts_are_read_or_refused_by_name() {
     let judge = Judge;
     let mut tally = Tally::default();
-    let many = if std::env::var_os("WELKIN_ACCEPT").is_some() { 10 } else { 1 };
+    let many = if accept() { 10 } else { 1 };
     let readers = [
         ("wk_weather_from_metar", 20_000),
         ("wk_context_create", 150),
@@ -187,7 +187,7 @@ fn a_lost_device_is_answered_by_every_call() {
 #[test]
 fn threads_that_break_the_rules_are_answered() {
     let judge = Judge;
-    for round in 0..if std::env::var_os("WELKIN_ACCEPT").is_some() { 40 } else { 6 } {
+    for round in 0..if accept() { 40 } else { 6 } {
         let mut world = World::on_noop();
         let worlds = std::thread::scope(|scope| {
             let start = |thread: u64| {

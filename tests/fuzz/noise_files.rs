@@ -1,7 +1,10 @@
 //! Damaged files of noise: each is read or refused; noise that is read is consistent.
 
 use welkin::noise::{NoiseImage, NoiseSettings};
-use welkin_support::fuzz::{dice::Dice, texts::damage};
+use welkin_support::{
+    accept,
+    fuzz::{dice::Dice, texts::damage},
+};
 
 /// A number as damaged headers hold it.
 fn header_word(dice: &mut Dice) -> u32 {
@@ -15,7 +18,7 @@ fn header_word(dice: &mut Dice) -> u32 {
 
 #[test]
 fn damaged_noise_files_are_read_or_refused_by_name() {
-    let times = if std::env::var_os("WELKIN_ACCEPT").is_some() { 400_000 } else { 40_000 };
+    let times = if accept() { 400_000 } else { 40_000 };
     let settings = NoiseSettings { frequency: [2; 3], ..Default::default() };
     let image = |size| NoiseImage::generate(size, &settings).expect("good settings");
     let files: Vec<_> =

@@ -9,6 +9,7 @@ mod time;
 
 use scenes::{Bench, PlanScene};
 use welkin::plan::{Budget, GaveWay, PartWish, Reason, difference, estimate::WORST};
+use welkin_support::accept;
 
 /// Frames until a gauge has a result and the fade to the plan's choice has ended.
 const SETTLED: u64 = 22;
@@ -44,7 +45,7 @@ fn planned_pictures_with_clouds_as_a_volume_are_sufficient() {
 fn planned_pictures_are_sufficient_and_minimal() {
     let mut bench = Bench::new();
     // 14 scenes use every second preset, 112 each of them four times.
-    let (scenes, step) = if std::env::var_os("WELKIN_ACCEPT").is_some() { (112, 1) } else { (28, 2) };
+    let (scenes, step) = if accept() { (112, 1) } else { (28, 2) };
     let (mut left_out, mut planned_less, mut exceeded, mut needless) = (0, 0, 0, Vec::new());
     for seed in (0..scenes).step_by(step) {
         let shot = PlanScene::seeded(seed);

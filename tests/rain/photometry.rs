@@ -15,6 +15,7 @@ use welkin::{
     weather::{Weather, derive},
 };
 use welkin_support::{
+    accept,
     brute_rain::{Film, speed_m_s, sphere_radiance},
     rain_scene::{Host, NEAR_M, rain, upright},
 };
@@ -341,7 +342,7 @@ fn save(host: &Host, frame: &[[u8; 3]], name: &str) {
 /// same pixel size.
 #[test]
 fn trainees_see_rain_by_day_and_no_snow() {
-    let size = if std::env::var_os("WELKIN_ACCEPT").is_some() { (1280, 720) } else { (384, 216) };
+    let size = if accept() { (1280, 720) } else { (384, 216) };
     let mut host = hills(size);
     let parts = shown(&host);
     println!("| rain | exposure, s | gain | sky, % | hills, % | meadow, % | alike 5 pixels along | 2 pixels across |");

@@ -10,11 +10,7 @@ mod spectrum;
 
 use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
-
-/// Whether WELKIN_ACCEPT is set, which runs the long variants.
-fn accept() -> bool {
-    std::env::var("WELKIN_ACCEPT").is_ok_and(|v| v == "1")
-}
+use welkin_support::accept;
 
 fn resolution() -> Resolution {
     if accept() { Resolution::FINE } else { Resolution::QUICK }

@@ -4,8 +4,8 @@ use welkin::light::{EARTH_WAVELENGTHS_NM, luminance};
 use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 use welkin::sky::spectral::{Conversion, SpectralSet};
+use welkin_support::accept;
 
-use super::accept;
 
 /// Cases by their angles: the sun's zenith angle, then view zenith angle and azimuth; `None` stands for the direct
 /// light of the sun.

@@ -15,6 +15,7 @@ use welkin::{
     ground::GroundModel,
     snowpack::LyingSnowModel,
 };
+use welkin_support::accept;
 
 use crate::inputs::{INPUTS, Input, Tiles, roof, snowfall};
 
@@ -131,7 +132,7 @@ const GROUNDS: [&[&str]; 5] = [
 
 /// Pairs of ground and input: all in the long suite, else each input on one ground, in turn.
 fn pairs() -> impl Iterator<Item = (&'static [&'static str], &'static Input)> {
-    let is_long = std::env::var_os("WELKIN_ACCEPT").is_some();
+    let is_long = accept();
     INPUTS.iter().enumerate().flat_map(move |(i, input)| {
         let on = move |(j, _): &(usize, &[&str])| is_long || i % GROUNDS.len() == *j;
         GROUNDS.into_iter().enumerate().filter(on).map(move |(_, ground)| (ground, input))

@@ -6,6 +6,7 @@ use welkin::{
     rain::RainSurface,
     weather::{Overrides, Weather, derive_with},
 };
+use welkin_support::accept;
 
 use crate::{
     host::{Dice, Host},
@@ -77,10 +78,6 @@ impl Asked {
     }
 }
 
-fn is_long() -> bool {
-    std::env::var_os("WELKIN_ACCEPT").is_some()
-}
-
 /// Fails if there are faults: prints one of each kind with its number.
 pub fn report(count: usize, faults: &[(String, Given)]) {
     let mut kinds = std::collections::BTreeMap::new();
@@ -95,7 +92,7 @@ pub fn report(count: usize, faults: &[(String, Given)]) {
 #[test]
 fn every_random_weather_answers() {
     let host = Host::new();
-    let count = if is_long() { 100_000 } else { 1500 };
+    let count = if accept() { 100_000 } else { 1500 };
     let (mut asked, mut dice, mut faults) = (Asked::new(&host), Dice(1), Vec::new());
     for _ in 0..count {
         let (given, elevation) = (Given::random(&mut dice), dice.below(100) as f64 - 20.0);
@@ -128,7 +125,7 @@ fn every_pair_of_extremes_answers() {
     let ends: Vec<_> = FIELDS.iter().flat_map(|f| f.range.map(|v| (f, v))).collect();
     for (i, (a, va)) in ends.iter().enumerate() {
         for (b, vb) in &ends[i..] {
-            if !is_long() && dice.below(4) > 0 && a.name != b.name {
+            if !accept() && dice.below(4) > 0 && a.name != b.name {
                 continue;
             }
             let mut given = Given::of_kinds(&mut dice);

@@ -10,7 +10,7 @@ use welkin::{
     sky::SkySettings,
     weather::{AerosolKind, Fog, FogKind, derive_with},
 };
-use welkin_support::{coarse_sky::coarse_sky, frame_host::Host};
+use welkin_support::{accept, coarse_sky::coarse_sky, frame_host::Host};
 
 use crate::{accepted::report, host::Dice, random::Given};
 
@@ -68,7 +68,7 @@ fn every_random_weather_is_drawn_finite_in_the_other_half() {
 }
 
 fn random_weathers_are_drawn_finite(half: usize) {
-    let count = if std::env::var_os("WELKIN_ACCEPT").is_some() { 600 } else { 8 };
+    let count = if accept() { 600 } else { 8 };
     let (mut dice, mut faults) = (Dice(5), Vec::new());
     let mut cases: Vec<_> = (0..count)
         .map(|n| {

@@ -7,6 +7,7 @@ use welkin::{
     context::{Context, GivenDirection},
     weather::*,
 };
+use welkin_support::accept;
 
 use crate::host::{Dice, Host};
 
@@ -276,10 +277,6 @@ fn a_layer_that_closes_hides_no_more_at_once() {
     assert!((before / at - 1.0).abs() < 1e-3 && (after / at - 1.0).abs() < 1e-3);
 }
 
-fn is_long() -> bool {
-    std::env::var_os("WELKIN_ACCEPT").is_some()
-}
-
 #[test]
 fn no_preset_becomes_another_with_a_jump() {
     let host = Host::new();
@@ -292,7 +289,7 @@ fn no_preset_becomes_another_with_a_jump() {
             context.set_weather(to, START_S, LENGTH_S).unwrap();
             // In these two changes the wind stops lifting dust or spray while some is still in the air.
             let lulls = [("dust_storm", "shallow_fog"), ("storm_at_sea", "fog")].contains(&(a, b));
-            let between = is_long() || pairs % 29 == 0 || lulls;
+            let between = accept() || pairs % 29 == 0 || lulls;
             let found = jumps(&context, up_m, &[START_S, START_S + LENGTH_S], between, 1.0);
             faults.extend(found.into_iter().map(|f| format!("{a} to {b}: {f}")));
             pairs += 1;
@@ -357,7 +354,7 @@ fn no_chain_of_changes_jumps() {
     let presets = Weather::preset_names().map(|n| Weather::preset(n).unwrap());
     let all: Vec<Weather> = reports.into_iter().chain(presets).collect();
     let (mut dice, mut faults) = (Dice(17), Vec::new());
-    for n in 0..if is_long() { 400 } else { 8 } {
+    for n in 0..if accept() { 400 } else { 8 } {
         let (mut context, up_m) = lit(&host, n);
         let (mut start, mut seams) = (START_S, Vec::new());
         context.set_weather(&all[dice.below(all.len())], 0.0, 0.0).unwrap();

@@ -4,7 +4,10 @@ use std::{f64::consts::PI, fs, path::Path, process::Command};
 
 use welkin::weather::CloudKind;
 use welkin_probe::cloud_shape;
-use welkin_support::cloud_shape::{CloudMask, CloudShape, clouds_of, measure};
+use welkin_support::{
+    accept,
+    cloud_shape::{CloudMask, CloudShape, clouds_of, measure},
+};
 
 /// Side of the pictures, pixels.
 const SIDE: usize = 1024;
@@ -230,7 +233,7 @@ fn output_of(command: &mut Command) -> Result<String, String> {
 /// `WELKIN_ACCEPT=1`.
 #[test]
 fn objscale_finds_the_same_numbers() {
-    if std::env::var_os("WELKIN_ACCEPT").is_none() {
+    if !accept() {
         println!("skipped: objscale is asked with WELKIN_ACCEPT=1");
         return;
     }
