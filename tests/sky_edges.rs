@@ -351,14 +351,14 @@ fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
     let directory = std::env::temp_dir().join(format!("welkin-sky-tables-{}", std::process::id()));
     let planet = golden_planet();
     let mut tables = SkyTables::new(&device, &settings).unwrap();
-    let mut told = Vec::new();
+    let mut progress = Vec::new();
     let mut stop = |share: f32| {
-        told.push(share);
-        told.len() < 3
+        progress.push(share);
+        progress.len() < 3
     };
     let e = tables.build(&planet, Some(&directory), &mut stop).unwrap_err();
     assert_eq!(e.status, welkin::Status::Aborted);
-    assert!(told.len() == 3 && tables.planet().is_none() && !directory.exists());
+    assert!(progress.len() == 3 && tables.planet().is_none() && !directory.exists());
     let mut shares = Vec::new();
     let mut go = |share: f32| {
         shares.push(share);
@@ -368,13 +368,13 @@ fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
     assert!(shares.len() >= 16 && shares.windows(2).all(|w| w[0] < w[1]) && shares.last() == Some(&1.0), "{shares:?}");
     let built = tables.read_light().unwrap().irradiance(100.0, 0.5);
     let mut again = SkyTables::new(&device, &settings).unwrap();
-    let mut told = Vec::new();
+    let mut progress = Vec::new();
     let mut once = |share: f32| {
-        told.push(share);
+        progress.push(share);
         true
     };
     again.build(&planet, Some(&directory), &mut once).unwrap();
-    assert_eq!((again.builds(), told), (0, vec![1.0]), "a cached planet is not built");
+    assert_eq!((again.builds(), progress), (0, vec![1.0]), "a cached planet is not built");
     assert_eq!(again.read_light().unwrap().irradiance(100.0, 0.5), built);
     let rays = [Ray::at(0.3, 0.2, 0.0), Ray::at(1.5, 2.0, 0.0)];
     let ask =
@@ -384,7 +384,7 @@ fn tables_are_built_with_progress_can_be_aborted_and_come_back_from_disk() {
 }
 
 #[test]
-fn who_shows_the_same_planet_shares_its_tables() {
+fn observers_of_the_same_planet_share_its_tables() {
     let (device, settings) = (device(), coarse(SkyModel::Directional));
     let library = SkyLibrary::default();
     let make = || SkyTables::of_library(&library, &device, &settings).unwrap();

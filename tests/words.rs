@@ -131,7 +131,7 @@ fn one_name_of_a_type_has_one_meaning() {
 }
 
 #[test]
-fn a_question_changes_nothing() {
+fn functions_named_as_questions_change_nothing() {
     let asks = |line: &&str| {
         let Some(rest) =
             line.trim_start().trim_start_matches("pub ").trim_start_matches("pub(crate) ").strip_prefix("fn ")

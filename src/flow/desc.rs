@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_field_is_refused_by_name() {
+    fn bad_fields_are_refused_by_name() {
         let good = WindFieldDesc::default();
         good.validate().expect("the default");
         for (bad, sentence) in [

@@ -48,7 +48,7 @@
 //! | same vortices, Stam's scheme | 0.644 and 0.407 | `probe taylor-green --n 64 --cfl 1 --scheme semi-lagrangian` |
 //! | shear layers, 64^2 compared to 128^2, CFL 1 and 4 | 0.4 % and 0.9 % | `shear` |
 //! | vortex of 8 cells in radius, carried over 96 cells, CFL 1 and 4 | 1.3 % and 2.9 % of its speed | `whirl_drifts` |
-//! | vortex that leaves the box, seen a vortex's width from the side | 5.3 % of its speed while it leaves, then less than 0.4 % | `what_leaves` |
+//! | vortex that leaves the box, seen a vortex's width from the side | 5.3 % of its speed while it leaves, then less than 0.4 % | `vortex_leaves` |
 //! | drag coefficient of a cube of 10 cells an edge, mean over 20 edges/U; reference 1.05 | 1.21 (16 % more) | `cube`, accept |
 //! | cube on the floor of a turbulent channel: distance behind it, in edges, where the flow reattaches; reference 1.6 (Martinuzzi and Tropea 1993); 8 and 16 cells an edge | 2.84 and 1.94 | `floor`, accept |
 //! | largest divergence times cell size over speed, hills and boxes | below the tolerance, 1e-4 by default | `no_air_is_made` |

@@ -214,7 +214,7 @@ fn leaving(length: u32) -> FlowField {
 }
 
 #[test]
-fn what_leaves_is_not_reflected() {
+fn a_vortex_leaves_without_reflection() {
     let [mut short, mut long] = [48, 96].map(leaving);
     // The compared places are at least 9 m, about two radii of the vortex, from the outflow side. While the vortex
     // leaves, the velocities there may differ by 7 % of its speed, later by 1 %.
@@ -370,7 +370,7 @@ fn no_air_passes_a_thin_wall_or_enters_where_it_cannot_leave() {
 }
 
 #[test]
-fn a_field_rests_or_says_that_it_does_not() {
+fn settle_returns_whether_the_field_has_come_to_rest() {
     let settings = FlowSettings { cells: [24, 16, 1], cell_m: DVec3::ONE, ..Default::default() };
     let mut still = field(&settings, &FlowObstacles::default(), |_| DVec3::ZERO);
     assert_eq!(still.settle(1.0, 1e-3, 1), Ok(true));
@@ -384,7 +384,7 @@ fn a_field_rests_or_says_that_it_does_not() {
 /// Checks that a field depends only on the numbers of its air. The arrays that a step exchanges also have unused
 /// entries, which must stay 0.
 #[test]
-fn a_field_has_the_numbers_of_its_air_alone() {
+fn a_field_depends_only_on_the_numbers_of_its_air() {
     let mut moved = town(Scheme::Reflection);
     moved.step(0.4).expect("a step");
     moved.shift([2, -1, 1], |p| dvec3(4.0 + 0.1 * p.z, 1.0, 0.0)).expect("a shift");

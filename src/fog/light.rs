@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn what_enters_is_what_the_ground_and_space_take() {
+    fn light_that_enters_leaves_to_the_ground_and_to_space() {
         for ground in [0.0, 0.1, 0.6, 1.0] {
             for depth in [0.0, 1e-6, 0.3, 5.0, 80.0] {
                 for mu0 in [0.01, 0.3, 1.0] {

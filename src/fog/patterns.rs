@@ -90,7 +90,7 @@ mod tests {
     /// The mean transmittance over all places equals that of even rain at every distance. Without the variance term it
     /// would be higher. Near the eye and far beyond all waves there is no pattern.
     #[test]
-    fn as_much_is_left_as_by_even_rain() {
+    fn curtains_leave_the_mean_transmittance_of_even_rain() {
         let n = 20_000;
         for (range, per_m) in [(100.0, 6e-3), (500.0, 3e-3), (2000.0, 1.5e-3), (5000.0, 6e-4)] {
             let depth = range * per_m;

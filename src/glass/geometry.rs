@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_window_is_refused_by_name() {
+    fn bad_windows_are_refused_by_name() {
         let [a, b, c, d] = quad();
         let lifted = c + DVec3::Z * 0.4;
         let lost = DVec3::new(f64::NAN, 0.0, 0.0);

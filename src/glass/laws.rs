@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn glass_meets_what_any_surface_meets() {
+    fn glass_gets_the_drops_and_the_water_of_any_surface() {
         for rate in [0.1, 1.0, 10.0, 150.0, 500.0] {
             let rain = DropSizes::of_rain(rate, 1.0);
             for (up, approach) in [(1.0, 0.0), (0.0, 20.0), (0.5, 12.0), (0.5, -3.0), (-0.3, 5.0)] {

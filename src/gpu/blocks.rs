@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_comes_up_once() {
+    fn changed_bytes_are_uploaded_once() {
         let (device, blocks) = (noop(), Blocks::new());
         let [a, b] = [8 * CHUNK, 12].map(|bytes| blocks.block(&device, bytes));
         let changed = || blocks.with(|pages| pages[0].changed.clone());

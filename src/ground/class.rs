@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_the_headers_and_none_is_made_up() {
+    fn class_numbers_are_those_of_the_header_and_others_are_refused() {
         for (i, class) in SurfaceClass::ALL.into_iter().enumerate() {
             assert_eq!((class as usize, SurfaceClass::from_number("x", i as u8).unwrap()), (i, class));
         }
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_paved_holds_puddles_of_its_own_and_leaves_never_mirror() {
+    fn only_paved_ground_has_hollows_and_plants_and_water_have_no_film() {
         let with = |f: fn(&SurfaceClass) -> bool| SurfaceClass::ALL.into_iter().filter(f).collect::<Vec<_>>();
         assert_eq!(with(|c| c.has_hollows()), [SurfaceClass::Paved]);
         assert_eq!(with(|c| c.surface_look().film == 0.0), [SurfaceClass::Vegetation, SurfaceClass::Water]);

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_refused_by_name() {
+    fn bad_grids_are_refused_by_name() {
         grid().validate().unwrap();
         let torn = |v: f32| {
             let mut torn = grid();

@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_is_on_the_ground_or_has_gone_where_it_is_said_to() {
+    fn rain_is_on_the_ground_or_in_the_reported_losses() {
         let terrain = terrain(48, 40, rough(48, 40, 2));
         let mut water = TerrainWater::new(&terrain, |_| GroundWater::default());
         assert!(water.is_dry());
@@ -369,7 +369,7 @@ mod tests {
     /// Hours of showers and sun on rough ground: skipping gives the same bits as stepping all cells and hollows, in
     /// less time.
     #[test]
-    fn passing_over_what_rests_changes_no_bit_and_saves_most_of_the_time() {
+    fn skipping_cells_at_rest_changes_no_bit_and_saves_most_of_the_time() {
         let (columns, rows) = (256, 256);
         let terrain = terrain(columns, rows, rough(columns as usize, rows as usize, 8));
         let dry = || TerrainWater::new(&terrain, |_| GroundWater::default());

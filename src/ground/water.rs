@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reported_ground_has_water_that_looks_like_it() {
+    fn water_of_a_reported_cover_gives_that_cover_again() {
         for (wetness, puddles) in [(0.0, 0.0), (0.3, 0.0), (0.7, 0.1), (0.95, 0.3)] {
             let cover = SurfaceCover { wetness, puddles, ice: 0.0, snow_depth_m: 0.0 };
             let (w, p) = GroundWater::of_cover(&cover).cover();

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_ends_it() {
+    fn an_obstacle_ends_a_channel() {
         let flash = &ground_flashes(2000.0, 1.0)[0];
         let whole = Channel::new(flash, 5000.0, struck(flash, &[], 0.0));
         let mut channel = whole.clone();

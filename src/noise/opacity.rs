@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_density_is_refused_by_name() {
+    fn bad_densities_are_refused_by_name() {
         for (answer, field) in [
             (CloudFunction::from_density(0.5, 1.01), "density"),
             (CloudFunction::from_density(-0.1, 0.9), "cutoff"),

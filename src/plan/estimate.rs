@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_lies_above_the_percentile_and_the_worst_pixel_is_said() {
+    fn the_bound_lies_above_the_percentile_and_the_worst_pixel_is_reported() {
         let ladder = Ladder::new(&PARTS);
         let e = seen(2000, |i| [i as f32 / 2000.0, 0.0, 0.0]).estimate(&ladder, 1);
         assert!((e.p95 - 0.95).abs() < 1e-3 && e.bound > 0.956 && e.bound < 0.96 && e.worst > 0.99, "{e:?}");

@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn least_loss_for_the_time_goes_first_and_what_gave_way_is_said() {
+    fn parts_of_least_loss_for_their_time_go_first_and_the_limit_that_gave_way_is_reported() {
         let mut picture = Picture::new([0.05, 0.3, 0.02], [0.4, 0.5, 0.2]);
         let mut governor = Governor::default();
         governor.report(21.0, &picture.all, 0);

@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn in_a_short_time_little_more_is_missed_than_must_be() {
+    fn within_a_budget_little_more_is_lost_than_with_the_best_set() {
         let mut random = RandomStream::seeded(9);
         let (mut sum, mut best_sum) = (0.0, 0.0);
         for case in 0..500 {

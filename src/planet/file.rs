@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_haze_has_the_weathers_and_any_other_its_own() {
+    fn a_file_without_haze_gets_the_weathers_and_a_file_with_haze_keeps_its_own() {
         let (from, to) = (GOLDEN.find("[mie]").unwrap(), GOLDEN.find("[absorption]").unwrap());
         let without = Planet::from_toml(&[&GOLDEN[..from], &GOLDEN[to..]].concat()).unwrap();
         let golden = Planet::from_toml(GOLDEN).unwrap();

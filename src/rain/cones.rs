@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn one_set_grows_at_a_time_and_goes_on_from_where_it_was() {
+    fn at_most_one_set_of_streaks_grows_at_a_time_and_none_jumps() {
         let mut growing = 0;
         for i in 0..160_000 {
             let time_s = 1e5 + f64::from(i) * 1e-4;

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_lamp_is_refused_by_name() {
+    fn bad_lamps_are_refused_by_name() {
         for (bad, name) in [
             (HostLight { position_m: DVec3::splat(f64::NAN), ..lamp() }, "light.position_m"),
             (HostLight { direction: DVec3::ZERO, ..lamp() }, "light.direction"),

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planet_lies_where_its_depth_says() {
+    fn the_place_of_a_planet_on_the_way_follows_from_its_depth() {
         let (clear, haze) = (hazy(2e-5), hazy(6e-4));
         for share in [0.0, 0.2, 0.5, 0.9, 1.0] {
             let place = place_on_way(&clear, &haze, &hazy(2e-5 + share * 5.8e-4));
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn far_is_three_per_cent_of_depth_or_a_tenth_of_albedo() {
+    fn planets_are_far_apart_from_three_per_cent_of_depth_or_a_tenth_of_albedo_on() {
         let earth = Planet::earth();
         let lit = |albedo: f64| Planet { ground_albedo: [albedo; 3], ..earth };
         assert!(!is_far(&lit(0.1), &lit(0.19)) && is_far(&lit(0.1), &lit(0.21)));

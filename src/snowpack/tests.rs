@@ -129,7 +129,7 @@ fn lead_amid(
 }
 
 #[test]
-fn what_falls_lies_to_the_last_bit() {
+fn snowfall_lies_on_the_ground_to_the_last_bit() {
     let land = flat([4, 3], 2.0);
     let mut field = land.field(Column::default());
     let c = weather(-8.0, 0.0, 1.0);
@@ -144,7 +144,7 @@ fn what_falls_lies_to_the_last_bit() {
 }
 
 #[test]
-fn the_books_close_over_ten_thousand_steps_of_drift_slides_and_thaw() {
+fn the_mass_balance_closes_over_ten_thousand_steps_of_drift_slides_and_thaw() {
     // A hill of 6 m with a steep side, and a wall on it.
     let mut land = flat([32, 32], 2.0);
     for cell in 0..land.len() {

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_heap_can_be_is_named() {
+    fn impossible_heaps_are_named() {
         let fault = |volume, repose, cell| heap_radii_m(volume, repose, cell).unwrap_err().to_string();
         assert!(fault(f64::NAN, 35.0, 0.1).starts_with("volume_m3 must be in [0.000001, 1000000] m^3"));
         assert!(fault(1.0, 90.0, 0.1).starts_with("repose_deg must be in [5, 60] deg"));

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_needs_comes_after_who_gives_and_a_circle_is_refused() {
+    fn effects_come_after_those_whose_outputs_they_need_and_a_circle_is_refused() {
         let stars = Exchange { needs: &[Output::FogDepth], gives: &[Output::Stars] };
         let clouds = Exchange { needs: &[Output::Stars], gives: &[Output::Sky] };
         let fog = Exchange { needs: &[], gives: &[Output::FogDepth] };

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_star_is_refused_by_name() {
+    fn bad_stars_are_refused_by_name() {
         let good = Star::new(10.0, 20.0, 3.0, 6000.0);
         let refused = |star: Star, field: &str| {
             let e = star.validate("stars[3]").unwrap_err();

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_view_is_refused_by_name() {
+    fn bad_views_of_maps_are_refused_by_name() {
         let seen = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 1.0, 1.0, 0.1).projection;
         for (bad, name) in [
             (Taken { clip_from_world: DMat4::ZERO, ..taken() }, "clip_from_world"),

@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_far_away_on_both_sides() {
+    fn a_texel_without_a_surface_holds_a_far_distance_on_both_sides() {
         let bits = |v: f64| f32::from_bits(v as u32);
         assert_eq!((bits(NOTHING.r), bits(NOTHING.g)), (1e12, -1e12));
     }

@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_box_is_refused_by_name() {
+    fn bad_boxes_are_refused_by_name() {
         let nan = f64::NAN;
         let cut = |planes: &[[f64; 4]]| Shelter { planes: Planes::new(planes).unwrap(), ..roof() };
         for (bad, name) in [

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn meltwater_comes_a_slot_later() {
+    fn meltwater_is_that_of_the_last_complete_slot() {
         let mut snow = LyingSnow::default();
         let water = |runoff_mm_h| Meltwater { covered: 1.0, runoff_mm_h };
         snow.melts(10.0, 50.0, water(1.0));

@@ -135,7 +135,7 @@ fn a_hole_takes_away_the_triangles_that_meet_it() {
 }
 
 #[test]
-fn what_is_no_terrain_is_refused_by_name() {
+fn bad_terrains_are_refused_by_name() {
     let new = |d: TerrainDesc| Terrain::new(d, &WorldFrame::default()).unwrap_err().to_string();
     for (bad, name) in [
         (TerrainDesc { origin: DVec3::splat(f64::NAN), ..desc() }, "terrain.origin_m must be finite"),
@@ -189,7 +189,7 @@ fn what_is_no_terrain_is_refused_by_name() {
 }
 
 #[test]
-fn there_are_as_many_cells_as_are_said_and_no_more() {
+fn a_terrain_holds_the_stated_number_of_tiles_and_no_more() {
     let big = TerrainDesc { tile_cells: 1024, ..desc() };
     let mut terrain = Terrain::new(big, &WorldFrame::default()).unwrap();
     assert_eq!(big.most_tiles(), 16);

@@ -334,7 +334,7 @@ fn table() -> String {
 }
 
 #[test]
-fn a_gpus_frame_takes_what_the_table_says() {
+fn a_gpus_frame_has_the_counts_of_the_table() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab/counts.md");
     let (page, found) = (std::fs::read_to_string(&path).expect("the page"), table());
     let begin = page.find("| weather |").expect("the page has a table");
@@ -347,7 +347,7 @@ fn a_gpus_frame_takes_what_the_table_says() {
 }
 
 #[test]
-fn the_count_sees_what_constants_leave_out() {
+fn the_count_skips_branches_that_constants_rule_out() {
     let text = "@group(0) @binding(0) var t: texture_2d<f32>;
         override ON: bool = false;
         override ALSO: bool = true;

@@ -159,12 +159,12 @@ fn nobody_sees_what_is_looked_up(is_gpu: bool) {
 }
 
 #[test]
-fn nobody_sees_what_a_software_driver_looks_up() {
+fn interpolated_pixels_of_a_software_driver_look_like_drawn_ones() {
     nobody_sees_what_is_looked_up(false);
 }
 
 #[test]
-fn nobody_sees_what_a_gpu_looks_up() {
+fn interpolated_pixels_of_a_gpu_look_like_drawn_ones() {
     nobody_sees_what_is_looked_up(true);
 }
 

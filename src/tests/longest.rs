@@ -40,7 +40,7 @@ fn table() -> String {
 }
 
 #[test]
-fn the_longest_submissions_take_what_the_page_says() {
+fn the_longest_submissions_are_those_of_the_table() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/lab/counts.md");
     let (page, found) = (std::fs::read_to_string(&path).expect("the page"), table());
     let begin = page.find("| submission |").expect("the page has a table");

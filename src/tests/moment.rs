@@ -73,7 +73,7 @@ impl Host {
 }
 
 #[test]
-fn stages_apart_take_one_scene() {
+fn calls_of_one_frame_share_one_scene() {
     let mut host = Host::new();
     assert_eq!(host.frame(), 1);
     for step in 1..4 {
@@ -90,7 +90,7 @@ type Change = (&'static str, fn(&mut Context));
 
 /// Changes by the host between two calls of a frame show in the later one.
 #[test]
-fn a_change_between_two_calls_takes_another_scene() {
+fn a_change_between_two_calls_computes_another_scene() {
     let changes: [Change; 8] = [
         ("time", |c| c.update(1.0).unwrap()),
         ("weather", |c| c.set_weather(&Weather::preset("snow").unwrap(), 1.0, 0.0).unwrap()),
@@ -116,7 +116,7 @@ fn a_change_between_two_calls_takes_another_scene() {
 }
 
 #[test]
-fn a_call_refused_changes_nothing() {
+fn a_refused_call_changes_nothing() {
     let mut host = Host::new();
     host.frame_id = 1;
     host.call(EACH[0]).unwrap();

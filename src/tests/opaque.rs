@@ -281,7 +281,7 @@ fn masked_pixels_stay_the_hosts() {
 }
 
 #[test]
-fn displays_get_it_by_the_tone_curve_and_opengl_the_right_way_up() {
+fn displays_get_the_plane_by_the_tone_curve_and_opengl_gets_it_the_right_way_up() {
     for (space, format) in [
         (ColorSpace::DisplayLinear, wgpu::TextureFormat::Rgba16Float),
         (ColorSpace::DisplaySrgb, wgpu::TextureFormat::Rgba8Unorm),

@@ -91,7 +91,7 @@ const SEASCAPES: &[Seascape] = &[
 ];
 
 #[test]
-fn pictures() {
+fn pictures_of_the_sea_are_written_to_look_at() {
     let Some(folder) = std::env::var_os("WELKIN_PICTURES") else { return };
     let device: Arc<Device> = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     for scape in SEASCAPES {

@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_of_nothing_are_the_time() {
+    fn the_share_between_two_zeros_is_that_of_the_time() {
         assert_eq!(share(0.0, 0.0, 0.3), 0.3);
         assert!(share(0.0, 2.0, 0.3) > 0.995 && share(2.0, 0.0, 0.3) < 0.005);
         assert_eq!((share(0.0, 2.0, 0.0), share(2.0, 0.0, 1.0)), (0.0, 1.0), "and begin as nothing");

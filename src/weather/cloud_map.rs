@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_is_refused_by_name() {
+    fn bad_maps_are_refused_by_name() {
         map().validate().unwrap();
         let refused = |change: fn(&mut CloudMap), name: &str| {
             let mut bad = map();

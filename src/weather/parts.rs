@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn all_parts_wholly_taken_are_the_other_weather_but_for_its_clear_air() {
+    fn all_parts_taken_in_full_are_the_other_weather_except_its_clear_air() {
         let [day, storm] = two();
         let mut c = day;
         c.blend_parts(&storm, WeatherParts::ALL.singles().map(|part| (part, 1.0)));

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_blends_in_or_out_is_there_between_two_times_and_what_no_change_brings_is_not() {
+    fn fog_is_found_in_every_interval_in_which_it_blends_and_thunder_in_none() {
         let (clear, fog) = clear_and_fog();
         let mut timeline = Timeline::new(clear);
         timeline.change(fog, 100.0, 50.0).unwrap();
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_past_cannot_be_changed_and_what_has_ended_is_forgotten() {
+    fn past_times_cannot_be_changed_and_ended_changes_are_forgotten() {
         let (clear, fog) = clear_and_fog();
         let mut timeline = Timeline::new(clear);
         timeline.change(fog, 10.0, 5.0).unwrap();

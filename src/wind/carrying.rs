@@ -124,7 +124,7 @@ mod tests {
     use crate::weather::{Weather, derive};
 
     #[test]
-    fn what_is_remembered_is_what_a_walk_finds_and_goes_with_the_timeline() {
+    fn remembered_displacements_are_those_computed_anew_and_end_with_the_timeline() {
         let wind = Wind::new(7);
         let remembered = Remembered::default();
         let mut weather = Weather::default();

@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn free_wind_leaves_nothing_behind_however_it_is_told() {
+    fn a_wind_without_obstacles_delays_no_air_in_any_kind_of_grid() {
         let even = |v: DVec2| move |_: DVec3| v;
         for (volume, weathers) in [
             (volume(WindGridKind::Whole, even(DVec2::new(3.0, -2.0))), DVec2::new(40.0, 1.0)),

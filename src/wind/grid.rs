@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_refused_by_name() {
+    fn bad_grids_are_refused_by_name() {
         grid().validate().unwrap();
         let mut torn = grid();
         torn.velocities_m_s[7][1] = f32::NAN;

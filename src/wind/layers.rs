@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_and_lives_are_the_integrals_of_their_rates_and_no_change_throws_them() {
+    fn layers_move_and_age_by_the_integrals_of_their_rates_and_no_change_makes_them_jump() {
         let timeline = changes();
         let at = |t: f64| LayerDrifts::ZERO.until(&timeline, t);
         let step_s = 0.25;
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn forgetting_on_the_way_changes_no_bit() {
+    fn forgetting_ended_changes_alters_no_bit() {
         let whole = LayerDrifts::ZERO.until(&changes(), 1500.0);
         let (mut timeline, mut kept) = (changes(), LayerDrifts::ZERO);
         for now_s in [-10.0, 5.0, 100.0, 365.0, 640.0, 650.0, 900.0] {

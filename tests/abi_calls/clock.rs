@@ -110,13 +110,13 @@ fn sun_and_moon_go_on_over_midnight_the_leap_day_and_the_years_end() {
 /// proceeds as at any other hour.
 #[test]
 fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
-    let told = |utc_s: f64| {
+    let answers_around = |utc_s: f64| {
         let world = World::new();
         let (from, to) = (
             wk_weather { visibility_m: 2000.0, temperature_c: 3.0, ..init("wk_weather") },
             wk_weather { visibility_m: 20_000.0, temperature_c: 12.0, ..init("wk_weather") },
         );
-        let mut told = Vec::new();
+        let mut answers = Vec::new();
         // SAFETY: live pointers with the sizes given.
         unsafe {
             assert_eq!(wk_context_set_weather(world.context, &from, 0.0, 0.0), WK_OK, "{}", message());
@@ -132,14 +132,14 @@ fn the_timeline_and_the_light_go_on_over_the_calendars_seams() {
                 assert_eq!(wk_context_get_conditions(world.context, &at, time_s, &mut now), WK_OK, "{}", message());
                 let got = wk_context_get_light_at(world.context, &at, 1, 24, time_s, light.as_mut_ptr(), size);
                 assert_eq!(got, WK_OK, "{}", message());
-                told.push((now.visibility_m, now.temperature_c, light[0].total_lux + 1.0));
+                answers.push((now.visibility_m, now.temperature_c, light[0].total_lux + 1.0));
             }
         }
-        told
+        answers
     };
-    let noon = told(midnight(2026, 5, 5) + 0.5 * DAY_S);
+    let noon = answers_around(midnight(2026, 5, 5) + 0.5 * DAY_S);
     for [year, month, day] in [[2024, 2, 29], [2024, 3, 1], [2027, 1, 1], [2000, 1, 1], [2100, 3, 1]] {
-        let seam = told(midnight(year, month, day));
+        let seam = answers_around(midnight(year, month, day));
         for (i, pair) in seam.windows(2).enumerate() {
             let change = |a: f64, b: f64| (b / a - 1.0).abs();
             let worst =

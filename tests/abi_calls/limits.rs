@@ -75,7 +75,7 @@ fn ask(world: &World, at: [f64; 3]) -> Vec<(&'static str, wk_status, String)> {
 }
 
 #[test]
-fn a_place_that_is_none_is_named_as_the_header_names_it() {
+fn an_impossible_place_is_named_as_in_the_header() {
     let world = World::new();
     let far = [[0.0, 0.0, 2e9], [0.0, 0.0, -2e4], [1e308, 0.0, 0.0], [0.0, -1e308, 10.0], [2e12, 0.0, 0.0]];
     for at in far {
@@ -197,7 +197,7 @@ fn days_of_the_calendar_follow_each_other() {
 }
 
 #[test]
-fn time_ends_for_starts_where_it_ends_for_updates() {
+fn start_times_have_the_range_of_update_times() {
     let world = World::new();
     let weather = init::<wk_weather>("wk_weather");
     // SAFETY: live handles and locals.
@@ -269,7 +269,7 @@ fn stars_are_refused_by_name() {
 
 /// All places are checked before any result is written.
 #[test]
-fn of_several_answers_none_is_given_where_one_cannot_be() {
+fn no_result_is_written_where_one_of_several_cannot_be() {
     // SAFETY: live locals; what is misaligned is refused before it is written to.
     unsafe {
         let odd = |p: *mut u64| p.wrapping_byte_add(1);

@@ -153,7 +153,7 @@ fn a_plan_goes_from_one_view_to_another() {
 }
 
 #[test]
-fn what_is_no_plan_is_refused_and_the_last_plan_stays() {
+fn a_bad_plan_is_refused_and_the_last_plan_stays() {
     let world = World::new();
     assert_eq!(set(&world, 0, &[at_rung(WK_PART_AIR, 1), at_rung(WK_PART_SKY, 1)]).0, WK_OK);
     assert_eq!(drawn(&world), [1, 0, 1, 0]);

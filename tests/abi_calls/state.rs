@@ -458,15 +458,15 @@ fn states_of_older_formats_load_or_are_refused_by_their_number() {
     assert!(ground.in_puddle == 1 && ground.water_mm > 5.0, "{}", ground.water_mm);
     assert!((0.2..0.3).contains(&wind.velocity_m_s[2]), "the wind grid's updraught: {:?}", wind.velocity_m_s);
     // Its query results are those that were stored when the state was written.
-    let told = answers(second.0, 1234.5);
+    let found = answers(second.0, 1234.5);
     let path = Path::new(FIXTURES).join(format!("format{FORMAT}.answers"));
     if std::env::var_os("WELKIN_BLESS").is_some() {
-        std::fs::write(&path, told.iter().map(|(name, value)| format!("{name} {value:?}\n")).collect::<String>())
+        std::fs::write(&path, found.iter().map(|(name, value)| format!("{name} {value:?}\n")).collect::<String>())
             .unwrap();
     }
     let written = std::fs::read_to_string(&path).unwrap();
-    assert_eq!(written.lines().count(), told.len());
-    for (line, (name, value)) in written.lines().zip(&told) {
+    assert_eq!(written.lines().count(), found.len());
+    for (line, (name, value)) in written.lines().zip(&found) {
         let (of, wanted) = line.split_once(' ').unwrap();
         let wanted: f64 = wanted.parse().unwrap();
         assert!(of == *name && (value - wanted).abs() <= 1e-9 * wanted.abs(), "{name}: {value}, was {line}");

@@ -146,7 +146,7 @@ fn places_are_answered_by_tile_class_and_height() {
 }
 
 #[test]
-fn what_is_no_terrain_is_refused_by_the_names_of_the_header() {
+fn bad_terrains_are_refused_by_the_names_of_the_header() {
     let world = World::new();
     let context = simulated(&world);
     let heights = [0.0f32; SIDE * SIDE];
@@ -194,7 +194,7 @@ fn what_is_no_terrain_is_refused_by_the_names_of_the_header() {
 
 /// Cells without data, named or in holes.
 #[test]
-fn what_is_no_height_is_a_hole_where_the_host_says_so() {
+fn numbers_that_the_host_names_as_no_data_make_holes() {
     let world = World::new();
     let context = simulated(&world);
     let terrain = wk_terrain { tile_cells: SIDE as u32, ..init("wk_terrain") };

@@ -100,9 +100,9 @@ fn agrees_with_queries(scene: &mut Scene, frame_id: u64) {
     let (picture, directions) = scene.take(frame_id, above_opposite(42.0), 0.9);
     let some: Vec<usize> = (0..picture.len()).step_by(97).filter(|i| directions[*i].z > 0.01).collect();
     let asked: Vec<DVec3> = some.iter().map(|i| directions[*i]).collect();
-    let told = scene.context.sky_radiance(EYE, &asked, 0.0).unwrap();
+    let queried = scene.context.sky_radiance(EYE, &asked, 0.0).unwrap();
     let off = |(i, t): (&usize, &[f64; 3])| (luminance(&picture[*i]) / luminance(t) - 1.0).abs();
-    let mut off: Vec<f64> = some.iter().zip(&told).map(off).collect();
+    let mut off: Vec<f64> = some.iter().zip(&queried).map(off).collect();
     off.sort_by(f64::total_cmp);
     let (median, p95) = (off[off.len() / 2], off[off.len() * 95 / 100]);
     println!("off by {median:.4} in the median, {p95:.4} at the 95th percentile of {}", off.len());

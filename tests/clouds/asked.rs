@@ -95,7 +95,7 @@ fn a_cloud_between_two_places_takes_the_light() {
 
 /// Pictures and queries have the same fibres and anvils.
 #[test]
-fn fibres_and_anvils_are_asked_as_they_are_drawn() {
+fn queries_have_the_fibres_and_anvils_of_pictures() {
     for (kind, base_m, height_m) in [(CloudKind::Cirrus, 9000.0, 2.0), (CloudKind::Cumulonimbus, 1000.0, 5000.0)] {
         let mut sky = Sky::new(BROKEN, CloudModel::Volume);
         let wind = Some(LayerWind { speed_m_s: 25.0, from_deg: 240.0 });

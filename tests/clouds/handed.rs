@@ -81,7 +81,7 @@ fn a_host_reads_the_shadow_of_any_place_from_the_map() {
 }
 
 #[test]
-fn shadows_are_laid_once_and_the_mean_counts_without_broken_clouds() {
+fn shadows_are_drawn_once_and_the_mean_holds_without_broken_clouds() {
     let mut sky = Sky::new(SCATTERED, CloudModel::Volume);
     let spread = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(*x)) / v.iter().fold(f64::MAX, |m: f64, x| m.min(*x));
     let laid = over_ground(&mut sky, 1e6, FrameFlags::NO_HISTORY);

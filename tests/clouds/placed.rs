@@ -238,8 +238,8 @@ fn light_near_a_storm_is_that_of_its_sky() {
         let (mut worst, mut before) = (0.0f64, None);
         for share in [0.0, 0.5, 0.8, 1.0, 1.2, 1.5, 2.0, 4.0] {
             let place = DVec3::new(share * half_m, 0.0, 2.0);
-            let told = sky.context.light_at(place, 0.0).unwrap();
-            let (sky_lux, direct) = (luminance(&told.arriving.sky_lux), told.sun.direct_share);
+            let light = sky.context.light_at(place, 0.0).unwrap();
+            let (sky_lux, direct) = (luminance(&light.arriving.sky_lux), light.sun.direct_share);
             let off = sky_lux / seen_lux(&sky.context, place, (12, 24)) - 1.0;
             println!("{kind:?}, {share} of its half width off: {sky_lux:.0} lux, off by {off:+.2}; direct {direct:.3}");
             worst = worst.max(off.abs());

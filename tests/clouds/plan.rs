@@ -65,7 +65,7 @@ fn a_sky_seen_through_a_slit_needs_no_volume_and_one_that_fills_the_picture_does
 /// The driver of a digger sees the sky over the pit's edge in the upper half of the picture. Fair weather is drawn as a
 /// volume there, and as a deck if the tolerance is large.
 #[test]
-fn a_fair_sky_behind_a_diggers_site_is_drawn_as_what_it_is_worth() {
+fn a_fair_sky_over_half_of_the_picture_is_a_volume_or_by_a_large_tolerance_a_deck() {
     let fair = "LOWI 121150Z 00000KT 9999 FEW040 18/12 Q1015";
     let (clouds, _) = planned(fair, SIZE.1 / 2, 0.02);
     println!("fair weather over half of the picture: {:?}, p95 {:.3}", clouds.reason, clouds.last().p95);

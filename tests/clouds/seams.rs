@@ -86,7 +86,7 @@ fn a_climb_through_layers_shows_no_jump() {
 /// The transmittance of a ray through cloud alone ends at 0, not below: the sun's disc behind it takes a root of the
 /// transmittance.
 #[test]
-fn what_passes_whole_clouds_is_never_less_than_nothing() {
+fn transmittance_through_whole_clouds_is_never_negative() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);
     for height_m in (520..560).step_by(2) {
         // Reading fails where a texel is not a number.

@@ -77,16 +77,16 @@ fn the_shadow_on_each_pixel_is_that_of_its_place() {
 }
 
 #[test]
-fn the_mean_over_places_is_the_light_that_the_host_was_told() {
+fn the_mean_share_over_places_is_the_queried_one() {
     let sky = Sky::new(SCATTERED, CloudModel::Volume);
-    let told = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
+    let queried = sky.context.light_at(DVec3::ZERO, 0.0).unwrap().sun.direct_share;
     let place = |i: i32| DVec3::new(f64::from(i % 24) * 1733.0, f64::from(i / 24) * 1541.0, 0.0);
     let shares: Vec<f64> = (0..24 * 24).map(|i| sky.context.sun_share(place(i), 0.0).unwrap()).collect();
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
-    println!("share of direct light: told {told:.3}, on the mean {mean:.3}");
-    assert!((mean - told).abs() < 0.1);
+    println!("share of direct light: queried {queried:.3}, on the mean {mean:.3}");
+    assert!((mean - queried).abs() < 0.1);
     let deck = Sky::new(SCATTERED, CloudModel::Deck);
-    assert_eq!(deck.context.sun_share(DVec3::ZERO, 0.0).unwrap(), told);
+    assert_eq!(deck.context.sun_share(DVec3::ZERO, 0.0).unwrap(), queried);
     assert_eq!(sky.context.sun_share(DVec3::Z * 12e3, 0.0).unwrap(), 1.0, "above all clouds");
 }
 

@@ -119,7 +119,7 @@ fn with_falling(layer: Option<&FogLayer>, falling: &FallingLayer, view: &Viewpoi
 }
 
 #[test]
-fn what_falls_is_drawn_as_the_reference_has_it_beside_fog_and_drops() {
+fn precipitation_is_drawn_as_the_reference_has_it_beside_fog_and_drops() {
     let body = BODY.replace("fog_along(u", "fog_beside_drops(u").replace("i.z, i.w)", "i.z, i.z, i.w)");
     let layers = [
         None,

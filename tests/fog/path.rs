@@ -106,7 +106,7 @@ fn transmittance_is_that_of_quadrature_on_the_curved_planet_and_the_flat_one() {
 
 /// Precipitation is a slab without a lower end, whatever fog lies in it.
 #[test]
-fn what_falls_is_that_of_quadrature_beside_any_fog() {
+fn precipitation_is_that_of_quadrature_beside_any_fog() {
     for (top_m, soft_m) in [(650.0, 100.0), (150.0, 100.0), (2050.0, 100.0), (300.0, 1.0)] {
         let alone = slab(3000.0, -1e4, top_m - 0.5 * soft_m, soft_m);
         let falling = FallingLayer { liquid_per_m: 0.0, solid_per_m: alone.extinction_per_m, top_m, soft_m };

@@ -167,7 +167,7 @@ fn radiance_asked_for_is_the_radiance_drawn() {
 
 /// Returns the largest error of the queried light against the drawn skies of these visibilities over ground with this
 /// much snow.
-fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
+fn queried_over_sum(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
     let mut sky = Sky::new();
     let mut worst = 0.0f64;
     for &visibility_m in visibilities_m {
@@ -176,10 +176,10 @@ fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
         sky.context.set_weather(&weather, 0.0, 0.0).unwrap();
         for elevation_deg in [6.0, 11.0, 30.0, 65.0] {
             sky.context.set_sun(Some(GivenDirection { azimuth_deg: 200.0, elevation_deg })).unwrap();
-            let told = luminance(&sky.context.light_at(DVec3::Z * 2.0, 0.0).unwrap().arriving.sky_lux);
-            let off = told / seen_lux(&sky.context, DVec3::Z * 2.0, (16, 32)) - 1.0;
+            let queried = luminance(&sky.context.light_at(DVec3::Z * 2.0, 0.0).unwrap().arriving.sky_lux);
+            let off = queried / seen_lux(&sky.context, DVec3::Z * 2.0, (16, 32)) - 1.0;
             println!(
-                "visibility {:.0} km, {snow_depth_m} m of snow, sun at {elevation_deg:.0} degrees: {told:.0} lux, off by {off:+.3}",
+                "visibility {:.0} km, {snow_depth_m} m of snow, sun at {elevation_deg:.0} degrees: {queried:.0} lux, off by {off:+.3}",
                 visibility_m / 1e3
             );
             worst = worst.max(off.abs());
@@ -189,13 +189,13 @@ fn told_over_seen(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
 }
 
 #[test]
-fn light_of_a_clear_sky_is_that_of_what_is_seen_of_it() {
-    let worst = told_over_seen(&[3e3, 7e3, 20e3, 150e3], 0.0);
+fn the_queried_light_of_a_clear_sky_is_the_sum_over_its_radiance() {
+    let worst = queried_over_sum(&[3e3, 7e3, 20e3, 150e3], 0.0);
     assert!(worst < 0.06, "{worst}");
 }
 
 #[test]
-fn snow_on_the_ground_brightens_the_sky_that_is_seen_as_the_light_that_is_told() {
-    let worst = told_over_seen(&[7e3, 150e3], 0.5);
+fn snow_on_the_ground_brightens_the_skys_radiance_and_the_queried_light_alike() {
+    let worst = queried_over_sum(&[7e3, 150e3], 0.5);
     assert!(worst < 0.06, "{worst}");
 }

@@ -12,7 +12,7 @@ use welkin_support::frame_host::{Host, camera, texture};
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 #[test]
-fn what_is_refused_is_named_and_neither_submits_nor_changes_anything() {
+fn refused_frames_are_named_and_neither_submit_nor_change_anything() {
     let mut host = Host::new(FORMAT);
     let mut fresh = Host::new(FORMAT);
     let device = host.device.clone();

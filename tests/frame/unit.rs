@@ -43,7 +43,7 @@ fn heard(host: &mut Host, space: ColorSpace, value: f64, unit: f64, sky_first: b
 }
 
 #[test]
-fn a_unit_that_cannot_be_right_is_told_of_once() {
+fn a_unit_that_cannot_be_right_is_warned_of_once() {
     log::set_logger(&Listener).unwrap();
     log::set_max_level(log::LevelFilter::Warn);
     let scene = ColorSpace::SceneLinear;

@@ -155,7 +155,7 @@ fn recorded(scene: &Scene, target: &wk_opengl_target, id: u64) -> (i32, String) 
 }
 
 #[test]
-fn a_window_of_another_size_than_told_is_refused() {
+fn a_window_of_another_size_than_stated_is_refused() {
     for samples in [0, 4] {
         let host =
             Host::new(Api::Core(3, 3), Window::Pbuffer(SIZE.0 as i32, SIZE.1 as i32, samples), GlMode::HostContext);
@@ -187,7 +187,7 @@ fn a_window_of_another_size_than_told_is_refused() {
 }
 
 #[test]
-fn a_framebuffer_of_another_size_than_told_is_refused() {
+fn a_framebuffer_of_another_size_than_stated_is_refused() {
     let host = Host::new(Api::Core(3, 3), Window::None, GlMode::HostContext);
     let device = device(&host);
     let scene = Scene::new(device);
@@ -350,7 +350,7 @@ fn bytes(texels: &mut [[f32; 4]]) -> &mut [u8] {
 }
 
 #[test]
-fn what_is_destroyed_without_a_context_goes_at_the_next_call() {
+fn objects_destroyed_without_a_context_are_freed_at_the_next_call() {
     let host = Host::new(Api::Core(3, 3), Window::None, GlMode::HostContext);
     let color = image_of(texture(&host.gl, glow::RGBA8));
     let depth = image_of(texture(&host.gl, glow::DEPTH_COMPONENT32F));

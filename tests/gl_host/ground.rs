@@ -220,7 +220,7 @@ fn a_hosts_shader_finds_the_cells_water_in_the_texture() {
 }
 
 #[test]
-fn what_a_frame_draws_from_is_what_the_host_samples() {
+fn the_host_samples_the_water_that_the_frame_draws() {
     let api = Api::Core(3, 3);
     let host = Host::new(api, Window::None, GlMode::Shared);
     let color = image_of(image(&host.gl, glow::RGBA8));

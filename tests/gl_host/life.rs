@@ -105,7 +105,7 @@ unsafe extern "C" fn with_other_version(user: *mut c_void, name: *const c_char) 
 }
 
 #[test]
-fn a_host_that_hands_over_nothing_usable_is_told_so() {
+fn a_host_without_usable_functions_or_context_is_refused_by_name() {
     egl::make_none_current();
     let missing = refusal(&GlHostDesc { get_proc: None, ..bare(GlMode::HostContext) });
     assert_eq!(
@@ -147,7 +147,7 @@ fn a_host_that_hands_over_nothing_usable_is_told_so() {
 }
 
 #[test]
-fn a_wrong_second_context_is_told_from_a_right_one() {
+fn a_wrong_second_context_is_refused_and_a_right_one_accepted() {
     let mut host = Host::new(Api::Core(3, 3), Window::None, GlMode::Shared);
     host.contexts.refusal.store(7, Ordering::Relaxed);
     let refused = refusal(&host.desc());

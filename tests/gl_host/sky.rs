@@ -25,9 +25,9 @@ fn builds_ahead(mode: GlMode) {
     drop(entered);
     let context = Context::new(device.clone(), shared, ContextDesc { sky, ..ContextDesc::default() }).unwrap();
     for most in [2, u32::MAX] {
-        let mut told = 0;
+        let mut calls = 0;
         let built = context.build_sky(&mut |_| {
-            told += 1;
+            calls += 1;
             assert!(host.contexts.host.is_current());
             // The callback's own drawing, with state that must be as the host left it at the last call. SAFETY: the
             // host's context is current.
@@ -37,13 +37,13 @@ fn builds_ahead(mode: GlMode) {
                     host.gl.get_parameter_f32_slice(glow::COLOR_CLEAR_VALUE, &mut color);
                     color
                 };
-                assert_eq!(red, (told - 1) as f32 / 64.0);
-                host.gl.clear_color(told as f32 / 64.0, 0.0, 0.0, 1.0);
+                assert_eq!(red, (calls - 1) as f32 / 64.0);
+                host.gl.clear_color(calls as f32 / 64.0, 0.0, 0.0, 1.0);
             }
-            told < most
+            calls < most
         });
         assert_eq!(built.err().map(|e| e.status), (most == 2).then_some(Status::Aborted));
-        assert!(told == most || told >= 14, "{told}");
+        assert!(calls == most || calls >= 14, "{calls}");
         // SAFETY: as above.
         unsafe { host.gl.clear_color(0.0, 0.0, 0.0, 0.0) };
     }

@@ -203,7 +203,7 @@ fn what_the_lens_cannot_draw_is_refused_by_name() {
 }
 
 #[test]
-fn one_call_equals_the_stages_one_by_one_and_costs_are_told() {
+fn one_call_equals_the_stages_one_by_one_and_costs_are_reported() {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, SIZE, 30.0);
     host.view.set_windscreen(Some(&Windscreen { pane: Pane::WholeView(0.4), ..upright() })).unwrap();
     let mut record = |id: u64, stages: &[Stages], flags: FrameFlags| {

@@ -249,7 +249,7 @@ fn level(host: &mut Host, classes: Option<&wgpu::Texture>) -> Vec<[f32; 4]> {
 }
 
 #[test]
-fn the_image_counts_before_the_terrain_and_the_terrain_before_the_default() {
+fn an_image_of_classes_overrides_the_terrain_and_the_terrain_the_default() {
     let mut host = silent();
     host.ground_is(SurfaceState::Wet);
     let grid = |class: fn(u32) -> SurfaceClass| GroundGrid {
@@ -339,7 +339,7 @@ fn normals_say_the_same_in_each_encoding_and_where_they_are_none_depth_is_asked(
 }
 
 #[test]
-fn what_the_ground_is_made_of_is_saved_and_told_apart() {
+fn surface_classes_are_saved_and_change_the_hash() {
     let host = silent();
     let mut context = host.context;
     let bare = context.state_hash().unwrap();

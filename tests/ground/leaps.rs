@@ -85,7 +85,7 @@ fn any_division_into_calls_gives_the_same_state_whatever_is_set_meanwhile() {
 }
 
 #[test]
-fn what_is_not_there_yet_is_shown_as_far_as_it_has_come() {
+fn while_steps_remain_the_state_is_shown_as_far_as_it_has_advanced() {
     let host = Host::new();
     let (mut context, mut behind) = (day(&host), day(&host));
     let at = DVec3::new(6.0, 12.0, 0.0);

@@ -100,7 +100,7 @@ fn is_balanced(b: &SnowBalance) -> bool {
 }
 
 #[test]
-fn it_lies_on_tiles_as_on_a_grid_of_the_same_heights() {
+fn snow_lies_on_tiles_as_on_a_grid_of_the_same_heights() {
     let host = Host::new();
     let (mut tiles, mut grid) = (days(&host, set_tiles), days(&host, set_grid));
     // 1000 steps: the last ones in the thaw.

@@ -55,7 +55,7 @@ fn contexts() -> [Context; 3] {
 }
 
 #[test]
-fn it_has_the_cells_and_stays_until_another_grid_comes() {
+fn the_texture_has_the_cells_and_stays_until_another_grid_comes() {
     for mut context in contexts() {
         let e = context.ground_texture().unwrap_err();
         assert!(e.status == Status::WrongOrder && e.to_string().contains("ground_grid"), "{e}");
@@ -86,7 +86,7 @@ fn it_has_the_cells_and_stays_until_another_grid_comes() {
 }
 
 #[test]
-fn it_freezes_as_the_weather_says() {
+fn water_in_the_texture_freezes_as_the_weather_says() {
     let host = Host::new();
     let mut context = simulated(&host);
     context.set_ground_grid(Some(grid())).unwrap();

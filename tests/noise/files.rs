@@ -111,7 +111,7 @@ fn every_cut_is_refused() {
 }
 
 #[test]
-fn what_is_no_noise_is_refused_by_the_name_of_its_field() {
+fn bad_noise_is_refused_by_the_name_of_its_field() {
     let image = image([16, 8, 8]);
     let (dds, ktx) = (image.to_dds_dx10(), image.to_ktx2());
     let refused = |file: Vec<u8>, status: Status, field: &str| {

@@ -70,7 +70,7 @@ fn a_plan_that_is_no_plan_changes_nothing() {
 }
 
 #[test]
-fn a_pinned_plan_says_what_it_does_not_keep() {
+fn a_pinned_plan_reports_the_limit_that_it_does_not_keep() {
     let mut bench = Bench::new();
     let fog = PlanScene { weather: "fog", ..PlanScene::yard() };
     bench.set(&fog);

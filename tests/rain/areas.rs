@@ -171,7 +171,7 @@ fn rain_falls_inside_of_a_low_deck_and_not_over_it() {
 
 /// The query's closed form against the sum of what `rain_at` returns along the way.
 #[test]
-fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
+fn the_rain_between_two_points_is_the_sum_along_the_way() {
     // A visibility that leaves the rain all of its extinction.
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 1.0);
     let steady = Weather { precipitation, visibility_m: 6000.0, ..fair(6.0) };
@@ -206,7 +206,7 @@ fn what_lies_between_two_points_is_the_sum_of_the_rain_there() {
 /// Ways that are parallel to an area's bounds: along a side of its polygon, up and down, and over an area whose cloud
 /// is lower than the weather's.
 #[test]
-fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain_too() {
+fn the_rain_along_an_areas_sides_and_above_its_cloud_is_the_sum_along_the_way_too() {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 3.0);
     let clouds = vec![CloudLayer::of(CloudKind::Nimbostratus, 1.0, 1200.0)];
     let steady = Weather { precipitation, visibility_m: 3000.0, clouds, ..fair(0.0) };
@@ -246,7 +246,7 @@ fn ways_along_the_sides_and_above_the_cloud_of_an_area_are_the_sum_of_their_rain
 
 /// An area without rain reduces the fog's extinction by that of rain, but not where the picture draws no rain.
 #[test]
-fn what_falls_alone_takes_nothing_away_that_was_not_drawn() {
+fn precipitation_drawn_alone_removes_no_light_that_was_not_drawn() {
     let precipitation = Precipitation::of(PrecipitationKind::Rain, 20.0);
     let weather = Weather { precipitation, visibility_m: 1500.0, ..fair(0.0) };
     let mut host = host(&weather, &[shower(3000.0, 0.0)]);
@@ -395,7 +395,7 @@ fn cameras_in_different_areas_see_each_its_own() {
     }
 }
 
-fn told(context: &mut Context) {
+fn set_moving_areas(context: &mut Context) {
     context.set_weather(&fair(9.0), 0.0, 0.0).unwrap();
     let mut turned = fair(14.0);
     turned.wind.from_deg = 190.0;
@@ -408,7 +408,7 @@ fn told(context: &mut Context) {
 fn areas_go_with_the_wind_the_same_way_in_any_steps_and_after_loading() {
     let make = || {
         let mut host = Host::new((16, 16));
-        told(&mut host.context);
+        set_moving_areas(&mut host.context);
         host.context
     };
     let (mut at_once, mut in_steps, mut loaded) = (make(), make(), make());

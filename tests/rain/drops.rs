@@ -84,7 +84,7 @@ fn drops_cover_as_much_of_the_picture_as_their_extinction_says() {
 /// A camera at 300 m/s sees drops as streaks of 5 m, which are longer than the range of drawn drops. They hide as much
 /// as at rest, which is the amount that the veil leaves out.
 #[test]
-fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
+fn drops_hide_as_much_at_any_speed_of_the_camera() {
     let mut host = white((240, 135));
     let weather = rain(50.0, 0.0);
     host.context.set_weather(&weather, 0.0, 0.0).unwrap();
@@ -114,7 +114,7 @@ fn what_drops_hide_does_not_hang_on_how_fast_the_camera_goes() {
 /// The rain in front of a wall takes the same share of the wall's light with drawn drops and veil as with the veil
 /// alone: nothing is counted twice.
 #[test]
-fn drops_and_veil_together_take_what_the_rain_takes() {
+fn drops_and_veil_together_hide_as_much_as_the_rain() {
     let mut host = white((320, 180));
     // A wall nearer than the distance at which curtains begin.
     host.boxes[0] = upright([0.0, 20.0, 300.0], [2000.0, 1e-3, 2000.0]);
@@ -237,7 +237,7 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
 
 /// The report tells the rain that had no room: for drops the number that each stands for, for splashes their rate.
 #[test]
-fn the_report_says_what_of_the_rain_there_was_no_room_for() {
+fn the_report_says_how_much_rain_had_no_room() {
     let mut host = white((64, 36));
     let report = |host: &mut Host, rate: f64, t: f64| {
         host.context.set_weather(&rain(rate, 0.0), t, 0.0).unwrap();

@@ -33,7 +33,7 @@ fn picture(host: &mut Host) -> Vec<f64> {
 }
 
 #[test]
-fn they_begin_where_the_lattice_has_them_and_cover_as_much_ever_after() {
+fn drops_begin_where_the_lattice_has_them_and_go_on_covering_as_much() {
     let mut host = day((160, 90));
     for (i, (rate, wind)) in [(2.0, 3.0), (20.0, 8.0), (100.0, 15.0)].into_iter().enumerate() {
         let t = 100.0 * (i + 1) as f64;
@@ -107,7 +107,7 @@ fn updraught() -> WindGrid {
 }
 
 #[test]
-fn a_wind_that_varies_in_space_bends_them_and_is_answered_for() {
+fn a_wind_that_varies_in_space_bends_drops_and_is_that_of_the_query() {
     let mut host = day((240, 135));
     host.context.set_weather(&rain(50.0, 0.0), 5.0, 0.0).unwrap();
     host.context.update(5.0).unwrap();
@@ -146,7 +146,7 @@ fn a_wind_that_varies_in_space_bends_them_and_is_answered_for() {
 }
 
 #[test]
-fn a_wind_field_bends_them_round_a_house_and_comes_back_with_the_state() {
+fn a_wind_field_bends_drops_round_a_house_and_comes_back_with_the_state() {
     let mut host = day((160, 90));
     host.context.set_weather(&rain(50.0, 9.0), 1.0, 0.0).unwrap();
     // The lee lies downwind of the house, half its length behind it.

@@ -62,7 +62,7 @@ fn lifted_sand_is_as_dense_as_reported_on_the_mean_and_its_gusts_go_with_the_win
 }
 
 #[test]
-fn pictures_of_what_blows() {
+fn pictures_of_blowing_sand_dust_and_snow() {
     let mut host = Host::new((480, 270));
     host.boxes = (0..12)
         .map(|i| {

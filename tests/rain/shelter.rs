@@ -287,7 +287,7 @@ fn a_cab_that_drives_stays_dry_inside() {
 }
 
 #[test]
-fn what_is_no_map_is_named_and_the_maps_before_stay() {
+fn a_bad_map_is_named_and_the_earlier_maps_stay() {
     let mut host = white((160, 90));
     host.context.set_weather(&rain(60.0, 3.0), 10.0, 0.0).unwrap();
     host.context.update(11.0).unwrap();

@@ -43,7 +43,7 @@ fn drawn(device: &Device) -> wgpu::Texture {
 }
 
 #[test]
-fn what_is_no_number_goes_through_limits_and_fails_the_reading() {
+fn values_that_are_not_numbers_pass_limits_and_fail_the_reading() {
     let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");
     let target = drawn(&device);
     let bytes = readback::bytes(&device, &target, 0).unwrap();

@@ -6,7 +6,6 @@ use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 use welkin::sky::spectral::{Conversion, SpectralSet};
 use welkin_support::accept;
 
-
 /// Cases by their angles: the sun's zenith angle, then view zenith angle and azimuth; `None` stands for the direct
 /// light of the sun.
 fn cases() -> Vec<(f64, Option<(f64, f64)>)> {

@@ -76,7 +76,7 @@ fn rain_ends_at_the_altitude_of_its_cloud() {
 }
 
 #[test]
-fn a_state_is_of_its_geoid_and_one_of_before_is_of_none() {
+fn a_state_loads_only_with_its_geoid_height_and_states_without_one_have_none() {
     let [none, some] = [0.0, GEOID_M].map(|geoid_m| context(WorldKind::Ecef, geoid_m));
     let (of_none, of_some) = (none.save().unwrap(), some.save().unwrap());
     assert!(!String::from_utf8(of_none.clone()).unwrap().contains("geoid"), "states of before know no geoid");

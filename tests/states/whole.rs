@@ -54,13 +54,13 @@ struct Three {
     /// Replaced by a new one that loads the state.
     anew: Context,
     tiles: Tiles,
-    told: Vec<String>,
+    log: Vec<String>,
 }
 
 impl Three {
     fn new(first: &[&str]) -> Self {
         let [kept, loaded, anew] = [context(), context(), context()];
-        let mut three = Self { kept, loaded, anew, tiles: Tiles::default(), told: Vec::new() };
+        let mut three = Self { kept, loaded, anew, tiles: Tiles::default(), log: Vec::new() };
         three.each(|c| {
             c.set_weather(&snowfall(3), 0.0, 0.0).unwrap();
             c.set_shelters(&[roof(1)]).unwrap();
@@ -75,7 +75,7 @@ impl Three {
     }
 
     fn tell(&mut self, (name, act): &Input, n: u32) {
-        self.told.push(format!("{name} {n}"));
+        self.log.push(format!("{name} {n}"));
         let before = self.tiles.clone();
         for context in [&mut self.kept, &mut self.loaded, &mut self.anew] {
             self.tiles = before.clone();
@@ -84,7 +84,7 @@ impl Three {
     }
 
     fn update(&mut self, seconds: f64) {
-        self.told.push(format!("{seconds} s"));
+        self.log.push(format!("{seconds} s"));
         self.each(|c| c.update(c.time_s() + seconds).unwrap());
         self.compare();
     }
@@ -98,9 +98,9 @@ impl Three {
             let differs = kept.lines().zip(state.lines()).skip(1).find(|(a, b)| a != b);
             let short = |line: &str| line.chars().take(300).collect::<String>();
             let lines = differs.map(|(a, b)| format!("{}\n{}", short(a), short(b)));
-            let told = self.told.join(", ");
-            assert!(kept == state, "{which} differs after {told}:\n{}", lines.unwrap_or_default());
-            assert_eq!(hash, other_hash, "{which} has another hash after {told}");
+            let log = self.log.join(", ");
+            assert!(kept == state, "{which} differs after {log}:\n{}", lines.unwrap_or_default());
+            assert_eq!(hash, other_hash, "{which} has another hash after {log}");
         }
     }
 
@@ -112,7 +112,7 @@ impl Three {
         self.anew = context();
         self.tiles.set_on(&mut self.anew);
         self.anew.load(&state).unwrap();
-        self.told.push("load".into());
+        self.log.push("load".into());
         self.compare();
     }
 }
@@ -170,14 +170,14 @@ fn any_sequence_of_changes_saves_and_steps_goes_on_alike() {
 }
 
 #[test]
-fn what_is_set_while_steps_remain_waits_for_them_and_is_in_the_state_after_them() {
+fn settings_while_steps_remain_wait_for_them_and_are_in_the_state_after_them() {
     for (ground, input) in pairs() {
         // Refused while steps remain.
         if ["ploughing", "pressing", "soil", "a bucket", "sand by the truck", "no soil"].contains(&input.0) {
             continue;
         }
         let mut three = Three::new(ground);
-        three.told.push(format!("{} while steps remain", input.0));
+        three.log.push(format!("{} while steps remain", input.0));
         let end_s = three.kept.time_s() + 300.0;
         let before = three.tiles.clone();
         // All at once, and then the change.

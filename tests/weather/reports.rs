@@ -103,7 +103,7 @@ fn every_report_becomes_its_weather() {
 }
 
 #[test]
-fn what_only_some_reports_say() {
+fn groups_that_only_some_reports_have_are_read() {
     assert_eq!(of("ENGM").weather.wind.variable_deg, Some((160.0, 220.0)));
     assert_eq!(of("EDDM").weather.wind.variable_deg, Some((0.0, 360.0)));
     let storm = of("KMIA").weather.precipitation;

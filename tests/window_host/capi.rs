@@ -98,15 +98,15 @@ fn a_c_host_lives_through_its_windows_changes() {
 
         // The window is resized.
         window.resize(200, 150);
-        let mut told = false;
+        let mut outdated = false;
         for _ in 0..4 {
             id += 1;
             let status = draw(view, surface, id);
             assert!(matches!(status, WK_OK | WK_ERROR_SURFACE_OUTDATED), "{status}: {}", message());
-            told |= status == WK_ERROR_SURFACE_OUTDATED;
+            outdated |= status == WK_ERROR_SURFACE_OUTDATED;
         }
         // OpenGL stretches or crops without reporting it.
-        assert!(told || backends == WK_BACKEND_GL, "nobody said that the window changed");
+        assert!(outdated || backends == WK_BACKEND_GL, "nobody said that the window changed");
         ok(configure(surface, 200, 150));
         shows_again(view, surface, (200, 150), &mut id);
 
@@ -128,15 +128,15 @@ fn a_c_host_lives_through_its_windows_changes() {
         // The window is destroyed while an image is acquired. SAFETY: a live handle.
         ok(unsafe { wk_surface_acquire(surface) });
         window.destroy();
-        let mut told = 0;
+        let mut outdated = 0;
         for _ in 0..4 {
             id += 1;
             for status in [draw(view, surface, id), configure(surface, 200, 150)] {
                 assert!(matches!(status, WK_OK | WK_ERROR_SURFACE_OUTDATED), "{status}: {}", message());
-                told += u32::from(status == WK_ERROR_SURFACE_OUTDATED);
+                outdated += u32::from(status == WK_ERROR_SURFACE_OUTDATED);
             }
         }
-        assert!(told >= 6, "{told} of 8 answers");
+        assert!(outdated >= 6, "{outdated} of 8 answers");
         // SAFETY: live handles; the other window is live.
         unsafe {
             ok(wk_surface_destroy(surface));

@@ -99,18 +99,18 @@ fn a_resized_window_is_filled_again() {
         assert_pixel(&window, 99, 59, [255, 0, 0]);
         window.resize(300, 200);
         // The host may learn of the new size before or after the surface does; both orders must work.
-        let mut told = false;
+        let mut outdated = false;
         for _ in 0..4 {
             match show(&device, &mut surface, [0.0, 1.0, 0.0]) {
                 Ok(()) => {}
                 Err(e) => {
                     assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
-                    told = true;
+                    outdated = true;
                 }
             }
         }
         // OpenGL stretches or crops without reporting it; Vulkan reports it.
-        assert!(told || backends == wgpu::Backends::GL, "{backends:?} never said that the window changed");
+        assert!(outdated || backends == wgpu::Backends::GL, "{backends:?} never said that the window changed");
         surface.configure(&size(300, 200)).unwrap();
         assert_eq!(surface.size(), (300, 200));
         for _ in 0..3 {
@@ -123,7 +123,7 @@ fn a_resized_window_is_filled_again() {
 }
 
 #[test]
-fn no_area_and_hidden_are_answers() {
+fn a_window_without_area_or_hidden_gives_a_status() {
     let server = Server::start();
     for backends in BACKENDS {
         let window = Window::open(&server, 100, 60);
@@ -158,7 +158,7 @@ fn no_area_and_hidden_are_answers() {
 }
 
 #[test]
-fn a_window_that_went_is_an_answer() {
+fn a_destroyed_window_gives_a_status() {
     let server = Server::start();
     for backends in BACKENDS {
         let mut window = Window::open(&server, 100, 60);
@@ -167,18 +167,18 @@ fn a_window_that_went_is_an_answer() {
         surface.configure(&size(100, 60)).unwrap();
         show(&device, &mut surface, [1.0, 0.0, 0.0]).unwrap();
         window.destroy();
-        let mut told = 0;
+        let mut outdated = 0;
         for _ in 0..4 {
             let drawn = show(&device, &mut surface, [0.0, 1.0, 0.0]);
             let configured = surface.configure(&size(100, 60));
             for answer in [drawn, configured] {
                 let Err(e) = answer else { continue };
                 assert_eq!(e.status, Status::SurfaceOutdated, "{backends:?}: {e}");
-                told += 1;
+                outdated += 1;
             }
         }
         // The software OpenGL driver draws on as if nothing had happened until the surface is configured again.
-        assert!(told >= 7, "{backends:?}: {told} of 8 answers");
+        assert!(outdated >= 7, "{backends:?}: {outdated} of 8 answers");
         drop(surface);
         // The device still works: it can draw to another window. SAFETY: the window outlives the surface.
         let mut surface = unsafe { Surface::new(&device, &other.xlib()).unwrap() };

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_fall_linearly_with_distance_and_the_whole_hides_what_the_rain_does() {
+    fn drops_thin_out_linearly_with_distance_and_together_hide_what_the_rain_hides() {
         let (lod, classes) = (SourceLod::default(), classes(20.0));
         let drops = lod.drops(&classes, 3);
         let mut rings = [0.0; 8];

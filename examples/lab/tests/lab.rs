@@ -70,7 +70,7 @@ fn a_stopped_run_is_continued_and_a_line_that_was_cut_is_measured_again() {
 }
 
 #[test]
-fn what_is_unknown_is_said_and_nothing_is_written() {
+fn unknown_arguments_are_named_and_nothing_is_written() {
     let dir = Scratch::new("unknown");
     let out = dir.0.to_str().unwrap();
     for (arguments, says) in [
@@ -516,7 +516,7 @@ fn the_committed_rain_chart_says_what_is_drawn_today() {
 }
 
 #[test]
-fn what_stands_beside_others_is_what_the_charts_say() {
+fn the_table_of_peers_agrees_with_the_charts() {
     let table = Table::read(&committed("peers.csv")).unwrap().unwrap();
     let number = |name: &str, when: &str, column: &str| {
         let row = table.rows.iter().find(|r| r[0] == name && r[1] == when).unwrap_or_else(|| panic!("{name}, {when}"));

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn stale_foreign_and_wrong_handles_are_told_apart() {
+    fn stale_foreign_and_wrong_handles_are_distinguished() {
         let ship = insert::<Ship, Ship>(Arc::new(Ship), None).unwrap();
         assert!(get::<Ship>("ship", ship).is_ok());
         let wrong = get::<Boat>("boat", ship.cast()).err().unwrap();

@@ -101,7 +101,7 @@ mod tests {
     const RESTS: Turn = Turn { rests: true, holds: true, ..LEAP };
 
     #[test]
-    fn a_map_is_made_at_once_then_as_it_grows_old_and_rests_when_all_is_made() {
+    fn a_map_is_drawn_at_once_then_as_its_rows_grow_old_and_rests_when_all_are_new() {
         let mut rows = MapRows::default();
         assert_eq!(rows.due((8, 3), &LEAP), Some((0, 8)), "nothing holds");
         assert_eq!(rows.due((8, 3), &RESTS), None, "all made, and nothing changed");
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_map_waits_for_another_and_forgets_no_change_meanwhile() {
+    fn a_map_that_waits_for_another_still_redraws_every_row_after_a_change() {
         let mut rows = MapRows::default();
         let waits = |turn: Turn, waits| Turn { waits, ..turn };
         assert_eq!(rows.due((8, 4), &waits(LEAP, true)), Some((0, 8)), "what does not hold does not wait");

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn how_far_a_map_stays_is_never_too_far() {
+    fn cover_does_not_change_within_the_distance_that_the_map_states() {
         let cover: Vec<f32> = (0..30 * 20).map(|i| if (i % 30) < 7 || i / 30 > 16 { 1.0 } else { 0.0 }).collect();
         let map = CloudMap { first_m: [0.0; 2], cell_m: 1000.0, cells: [30, 20], base_m: [0.0, 2e4], cover };
         let layer = LayerMap::new(&typical(CloudKind::Cumulus, 1.0).unwrap(), &Arc::new(map));

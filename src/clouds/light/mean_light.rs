@@ -65,7 +65,7 @@ fn off(c: &Conditions, grown: &[(Map, Solid)], heights_m: &[f64]) -> (f64, (f64,
 }
 
 #[test]
-fn the_sun_that_is_told_of_is_the_mean_over_places() {
+fn the_queried_share_of_the_sun_is_the_mean_over_places() {
     let grown = grown();
     for kind in &CloudKind::ALL[1..] {
         let (mut below, mut within) = ((0.0f64, 0.0f64), (0.0f64, 0.0f64));
@@ -91,7 +91,7 @@ fn the_sun_that_is_told_of_is_the_mean_over_places() {
 }
 
 #[test]
-fn so_it_is_among_several_layers() {
+fn the_queried_share_of_the_sun_is_the_mean_among_several_layers() {
     use CloudKind::{Altocumulus, Cirrostratus, Cumulus, Nimbostratus, Stratocumulus, Stratus};
     let grown = grown();
     for said in [

@@ -197,7 +197,7 @@ fn led_by(scheme: Scheme, pressure: PressureMethod) -> (DVec3, toml::Table) {
 }
 
 #[test]
-fn another_scheme_or_method_is_another_wind_that_the_state_names() {
+fn each_scheme_and_method_gives_another_wind_and_the_state_names_it() {
     let usual = PressureMethod::default();
     let (wind, state) = led_by(Scheme::Reflection, usual);
     let field = |state: &toml::Table| state[KEY]["field"].as_table().expect("a field").clone();
@@ -256,7 +256,7 @@ fn a_steady_field_rests_and_wakes_with_the_wind_or_a_house() {
 }
 
 #[test]
-fn a_leap_begins_anew_and_says_so_and_shorter_ones_do_not() {
+fn a_long_leap_begins_the_field_anew_and_reports_it_and_a_short_one_does_not() {
     let mut bench = Bench::new(WindFieldMode::Running);
     bench.to(1.0);
     assert_eq!(bench.report().begun_s, 0.0);
@@ -289,7 +289,7 @@ fn a_field_comes_goes_and_follows_its_place_at_its_dates() {
 }
 
 #[test]
-fn what_moves_pushes_the_air_before_it() {
+fn a_moving_box_pushes_the_air_ahead_of_it() {
     let run = |velocity: DVec3| {
         let mut bench = Bench::new(WindFieldMode::Running);
         bench.world.change_weather(derive(&weather(0.0)).expect("a weather"), 0.0, 0.0).expect("calm");

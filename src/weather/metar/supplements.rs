@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_stands_beside_the_weather_is_known() {
+    fn supplementary_groups_are_recognised() {
         for text in [
             "RERA",
             "RE//",

@@ -55,11 +55,11 @@ pub fn assert_shares(scene: &Scene, shares: &[f64]) {
     assert_eq!(shares.len(), (SIDE * SIDE) as usize);
     let (mut off, mut lit) = (Vec::new(), 0);
     for (i, share) in shares.iter().enumerate() {
-        let mut told = 0.0;
+        let mut queried = 0.0;
         // SAFETY: live pointers.
-        ok(unsafe { wk_context_get_sun_share(scene.context, &place(i as u32), 0.0, &mut told) });
-        off.push((share - told).abs());
-        lit += usize::from(told > 0.9);
+        ok(unsafe { wk_context_get_sun_share(scene.context, &place(i as u32), 0.0, &mut queried) });
+        off.push((share - queried).abs());
+        lit += usize::from(queried > 0.9);
     }
     off.sort_by(f64::total_cmp);
     let (half, most) = (off[off.len() / 2], off[off.len() * 95 / 100]);

@@ -5,27 +5,27 @@
 pub struct Dice {
     state: u64,
     /// Bytes still to be used, in reverse order.
-    told: Vec<u8>,
+    given: Vec<u8>,
 }
 
 impl Dice {
     pub fn new(seed: u64) -> Self {
-        Self { state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995, told: vec![] }
+        Self { state: seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995, given: vec![] }
     }
 
     /// Throws from `bytes` first, then a sequence of its own.
     pub fn of_bytes(bytes: &[u8]) -> Self {
-        Self { told: bytes.iter().rev().copied().collect(), ..Self::new(0) }
+        Self { given: bytes.iter().rev().copied().collect(), ..Self::new(0) }
     }
 
     /// Whether all bytes are used.
     pub fn is_spent(&self) -> bool {
-        self.told.is_empty()
+        self.given.is_empty()
     }
 
     pub fn bits(&mut self) -> u64 {
-        if let Some(first) = self.told.pop() {
-            self.state = u64::from(u16::from_le_bytes([first, self.told.pop().unwrap_or(0)]));
+        if let Some(first) = self.given.pop() {
+            self.state = u64::from(u16::from_le_bytes([first, self.given.pop().unwrap_or(0)]));
         }
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;

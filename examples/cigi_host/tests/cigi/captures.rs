@@ -195,7 +195,7 @@ fn what_is_wrong_with_a_datagram_is_named() {
 }
 
 #[test]
-fn early_numbers_are_found_by_what_the_host_has_named() {
+fn a_number_written_a_byte_early_is_recognised_by_the_numbers_in_use() {
     let sea = MaritimeSurfaceConditionsControl { scope: 1, ..Default::default() };
     // What a sender writes for a number too early or in its place, and the number that is meant where these are named.
     let meant = |order: Order, number: u16, is_early: bool, named: &[u16]| {

@@ -170,7 +170,7 @@ fn kinds_that_fall_together_are_one_kind() {
 }
 
 #[test]
-fn layers_of_the_site_s_own_and_what_has_no_place() {
+fn the_site_s_own_layers_are_mapped_and_values_without_a_place_are_reported() {
     let layer = |layer_id| WeatherControl { layer_id, ..rain(0, 0) };
     let rows = "layers = [{ id = 20, means = \"dust\" }, { id = 21, means = \"haze\" }, { id = 4, means = \"snow\" }]";
     let mapped = of(&[layer(20).into(), layer(21).into(), layer(4).into(), layer(22).into()], rows);

@@ -78,7 +78,7 @@ fn in_standby_nothing_but_the_mode_counts() {
 }
 
 #[test]
-fn a_database_is_negative_until_it_is_ready_and_the_host_knows() {
+fn the_database_number_is_negative_until_loaded_and_acknowledged() {
     let mut session = session();
     let mut world = Slope::default();
     let mut step = |database_number: i8, wanted: i8| {
@@ -180,7 +180,7 @@ fn heights_are_answered_by_the_world_or_as_not_valid() {
 }
 
 #[test]
-fn what_is_not_taken_is_counted_by_name() {
+fn ignored_packets_are_counted_by_name() {
     let mut session = session();
     let good = message(Version::V3_3, Order::Little, 1, &[]);
     let mut second = good.clone();
@@ -334,7 +334,7 @@ fn a_scripted_host_and_the_session_go_in_lock_step() {
 }
 
 #[test]
-fn a_session_begins_by_itself_and_takes_no_stranger() {
+fn a_session_sends_the_first_message_and_ignores_other_senders() {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let address = socket.local_addr().expect("an address");
     let host = UdpSocket::bind("127.0.0.1:0").expect("a port");
@@ -365,7 +365,7 @@ fn a_session_begins_by_itself_and_takes_no_stranger() {
 }
 
 #[test]
-fn a_rate_beyond_the_machine_and_a_flood_leave_messages_and_frames_their_time() {
+fn an_impossible_rate_and_a_flood_of_messages_stop_neither_reading_nor_frames() {
     for pace in [Pace::Rate(1e9), Pace::Rate(f64::NAN), Pace::Rate(-1.0), Pace::Rate(1e-300), Pace::Rate(30.0)] {
         let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
         let address = socket.local_addr().expect("an address");

@@ -38,10 +38,10 @@ fn place(i: usize, height_m: f64) -> DVec3 {
 }
 
 /// Returns the share of direct light by the query at a height, and its mean over this many places.
-fn told_and_mean(sky: &Sky, height_m: f64, places: usize) -> (f64, f64) {
-    let told = sky.context.light_at(place(0, height_m), 0.0).unwrap().sun.direct_share;
+fn queried_and_mean(sky: &Sky, height_m: f64, places: usize) -> (f64, f64) {
+    let queried = sky.context.light_at(place(0, height_m), 0.0).unwrap().sun.direct_share;
     let share = |i: usize| sky.context.sun_share(place(i, height_m), 0.0).unwrap();
-    (told, (0..places).map(share).sum::<f64>() / places as f64)
+    (queried, (0..places).map(share).sum::<f64>() / places as f64)
 }
 
 fn set_sun(sky: &mut Sky, elevation_deg: f64) {
@@ -51,7 +51,7 @@ fn set_sun(sky: &mut Sky, elevation_deg: f64) {
 
 /// The report with which the fault was found: the query returned 31,550 lux of sunlight under eight oktas.
 #[test]
-fn under_a_low_overcast_no_sun_is_told_of() {
+fn queries_return_no_sunlight_under_a_low_overcast() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
     for elevation_deg in [0.5, 10.0, 40.0, 90.0] {
         set_sun(&mut sky, elevation_deg);
@@ -64,7 +64,7 @@ fn under_a_low_overcast_no_sun_is_told_of() {
 }
 
 #[test]
-fn the_told_sun_is_the_mean_over_places_at_all_heights() {
+fn the_queried_sunlight_is_the_mean_over_places_at_all_heights() {
     let layer = CloudLayer::of;
     let skies = [
         vec![layer(CloudKind::Stratus, 1.0, 30.0)],
@@ -85,21 +85,22 @@ fn the_told_sun_is_the_mean_over_places_at_all_heights() {
         for elevation_deg in [-2.0, 0.5, 4.0, 12.0, 40.0, 90.0] {
             set_sun(&mut sky, elevation_deg);
             for height_m in [0.0, base_m, within[0], within[1], slabs[0].top_m(), top_m + 1.0] {
-                let (told, mean) = told_and_mean(&sky, height_m, 192);
-                let at = format!("{clouds:?}: sun at {elevation_deg}, {height_m} m: told {told:.3}, mean {mean:.3}");
-                assert!((told - mean).abs() < 0.2, "{at}");
-                (squares, count) = (squares + (told - mean) * (told - mean), count + 1);
+                let (queried, mean) = queried_and_mean(&sky, height_m, 192);
+                let at =
+                    format!("{clouds:?}: sun at {elevation_deg}, {height_m} m: queried {queried:.3}, mean {mean:.3}");
+                assert!((queried - mean).abs() < 0.2, "{at}");
+                (squares, count) = (squares + (queried - mean) * (queried - mean), count + 1);
             }
-            assert_eq!(told_and_mean(&sky, top_m + 1.0, 8), (1.0, 1.0));
+            assert_eq!(queried_and_mean(&sky, top_m + 1.0, 8), (1.0, 1.0));
         }
     }
     let rms = (squares / f64::from(count)).sqrt();
-    println!("the told share of the sun is off by {rms:.3} (rms)");
+    println!("the queried share of the sun is off by {rms:.3} (rms)");
     assert!(rms < 0.05, "{rms}");
 }
 
 #[test]
-fn so_it_is_under_real_reports_of_low_cloud() {
+fn the_queried_sunlight_is_the_mean_under_real_reports_of_low_cloud() {
     let mut sky = Sky::new(REPORTS[0], CloudModel::Volume);
     let mut most = (0.0, String::new());
     for report in REPORTS {
@@ -109,10 +110,12 @@ fn so_it_is_under_real_reports_of_low_cloud() {
         for elevation_deg in [3.0, 12.0, 30.0, 90.0] {
             set_sun(&mut sky, elevation_deg);
             for height_m in [2.0, slab.base_m + 0.3 * slab.thickness_m, slab.base_m + 0.7 * slab.thickness_m] {
-                let (told, mean) = told_and_mean(&sky, height_m, 144);
-                if (told - mean).abs() > most.0 {
-                    most =
-                        ((told - mean).abs(), format!("{report}: {elevation_deg}, {height_m} m: {told:.3} {mean:.3}"));
+                let (queried, mean) = queried_and_mean(&sky, height_m, 144);
+                if (queried - mean).abs() > most.0 {
+                    most = (
+                        (queried - mean).abs(),
+                        format!("{report}: {elevation_deg}, {height_m} m: {queried:.3} {mean:.3}"),
+                    );
                 }
             }
         }
@@ -123,7 +126,7 @@ fn so_it_is_under_real_reports_of_low_cloud() {
 
 /// All light on level ground: by the query, and as the sum of the drawn sky's light and the sunlight at those places.
 #[test]
-fn the_light_that_is_told_of_is_seen() {
+fn the_queried_light_is_that_of_sky_and_sun_together() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
     for (cover, base_m, heights_m) in
         [(1.0, 30.0, [2.0, 100.0, 200.0, 400.0]), (0.75, 91.0, [2.0, 160.0, 250.0, 500.0])]
@@ -133,18 +136,18 @@ fn the_light_that_is_told_of_is_seen() {
         for elevation_deg in [15.0, 45.0] {
             set_sun(&mut sky, elevation_deg);
             for height_m in heights_m {
-                let told = sky.context.light_at(place(0, height_m), 0.0).unwrap();
+                let light = sky.context.light_at(place(0, height_m), 0.0).unwrap();
                 let whole =
-                    luminance(&told.arriving.sun_lux) / told.sun.direct_share.max(1e-300) * told.sun.direction.z;
+                    luminance(&light.arriving.sun_lux) / light.sun.direct_share.max(1e-300) * light.sun.direction.z;
                 // The sun's light changes from place to place more than the sky's does, and costs less to query.
-                let (_, share) = told_and_mean(&sky, height_m, 192);
+                let (_, share) = queried_and_mean(&sky, height_m, 192);
                 let places = if height_m > base_m + 300.0 { 1 } else { 10 };
                 let seen = (0..places).map(|i| seen_lux(&sky.context, place(17 * i, height_m), (4, 8))).sum::<f64>();
                 let mean = seen / places as f64 + share * whole;
-                let off = told.arriving.total_lux / mean - 1.0;
+                let off = light.arriving.total_lux / mean - 1.0;
                 println!(
-                    "cover {cover}, sun at {elevation_deg}, {height_m} m: told {:.0} lux, seen {mean:.0}, off by {off:+.2}",
-                    told.arriving.total_lux
+                    "cover {cover}, sun at {elevation_deg}, {height_m} m: queried {:.0} lux, seen {mean:.0}, off by {off:+.2}",
+                    light.arriving.total_lux
                 );
                 assert!(off.abs() < 0.2, "{cover}, {elevation_deg}, {height_m} m: {off}");
             }
