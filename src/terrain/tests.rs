@@ -94,7 +94,7 @@ fn a_rectangle_changes_its_cells_alone_and_hashes_follow() {
     let near = |t: &Terrain, x: f64| t.hash_within(DVec2::new(x, 0.0), DVec2::new(x + 1.0, 1.0));
     assert_ne!(near(&terrain, -30.0), near(&copy, -30.0));
     assert_eq!(near(&terrain, 600.0), near(&copy, 600.0), "far from it nothing has changed");
-    // Back again: the hash of the same cells is the same, however they came to be.
+    // The old heights again: the hash depends only on the cells, not on how they were set.
     let old = heights(key);
     let none = vec![Some(SurfaceClass::Unspecified); old.len()];
     terrain
@@ -123,7 +123,7 @@ fn a_hole_takes_away_the_triangles_that_meet_it() {
     assert_eq!(terrain.height_at(DVec2::new(3.2, 2.9)), None);
     assert_eq!(terrain.height_at(DVec2::new(3.0, 2.4)), None);
     assert!(terrain.height_at(DVec2::new(2.6, 2.2)).is_none() && terrain.height_at(DVec2::new(3.5, 3.4)).is_none());
-    // The two triangles of the squares beside it that have no corner there, and the cells around it.
+    // Triangles without a corner at the hole stay, and so do the cells around it.
     let beside = terrain.height_at(DVec2::new(3.6, 2.4)).unwrap();
     assert!((beside - (0.25 * 3.6 + 0.5 * 2.4)).abs() < 1e-12, "{beside}");
     assert_eq!(terrain.height_at(DVec2::new(3.0, 2.0)), Some(f64::from(plane(3, 2))));

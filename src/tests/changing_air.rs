@@ -118,7 +118,8 @@ fn the_light_goes_evenly_from_one_air_to_the_other_and_arrives_where_a_fresh_bui
     assert!((whole / lights[0]).abs() > 0.05, "haze shows: {lights:?}");
     let jump = lights.windows(2).map(|w| (w[1] / w[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(jump < 0.03, "{jump}: {lights:?}");
-    // In between, the mix is off by what light is not linear in depth, and the tables by what a build takes.
+    // During the change two errors add up: the mix takes light as linear in optical depth, and the tables lag by the
+    // time of a build.
     for (i, most) in [(50, 0.25), (150, 0.25)] {
         let off = lights[i] / exact(at(i as u32).mie.extinction_per_m[0]) - 1.0;
         println!("at {} % of the change: {:.2} %", i / 2, 100.0 * off);
@@ -134,7 +135,7 @@ fn a_change_that_stops_on_its_way_or_turns_is_followed_without_a_jump() {
         sky.follow(&mixed(CLEAR, HAZE, f64::from(i) / 200.0), &hazy(HAZE));
         lights.push(sky.light());
     }
-    // It stops half-way.
+    // The change stops half-way.
     let half = mixed(CLEAR, HAZE, 0.5);
     for _ in 0..80 {
         sky.follow(&half, &half);
@@ -142,7 +143,7 @@ fn a_change_that_stops_on_its_way_or_turns_is_followed_without_a_jump() {
     }
     let stopped = lights[lights.len() - 1];
     assert_eq!(stopped, exact(half.mie.extinction_per_m[0]));
-    // It goes on, and at half of that way a snow-white ground comes instead.
+    // The change continues, and half-way through the rest it turns towards clear air over a snow-white ground.
     let ends = [half, hazy(HAZE), Planet { ground_albedo: [0.8; 3], ..hazy(CLEAR) }];
     let between = |from: &Planet, to: &Planet, share: f64| {
         let mut planet = *from;

@@ -122,7 +122,7 @@ fn storm() -> WindSea {
     WindSea::Height { significant_m: 9.0, peak_period_s: Some(11.0), gamma: None }
 }
 
-/// Places around the camera, from the anchor, within a distance.
+/// Random places in a square around the camera, relative to the anchor; its sides are `distance_m` from the camera.
 fn places_within(host: &SeaHost, distance_m: f64, count: usize) -> Vec<DVec2> {
     let mut chance = RandomStream::new(3, 3);
     let eye = host.view.effects.sea.eye_place();
@@ -135,7 +135,7 @@ fn vertices_lie_on_the_surface_of_the_queries() {
     for (time_s, origin) in [(0.0, DVec2::ZERO), (1e5, DVec2::new(-300.0, 20.0)), (1e7, DVec2::new(1e6, -7e5))] {
         let mut host = SeaHost::new(18.0, storm());
         host.context.update(time_s).unwrap();
-        // A place where the eye is above the water at 0.8 m above the level.
+        // Finds a place where an eye 0.8 m above the mean level is above the water.
         let sought: Vec<DVec3> = (0..60).map(|i| (origin + DVec2::new(3.0 * f64::from(i), 0.0)).extend(0.0)).collect();
         let mut under = vec![SeaPoint::default(); sought.len()];
         host.context.sea_at(&sought, time_s, 0.0, &mut under).unwrap();
@@ -217,7 +217,8 @@ fn hulls_and_lakes_are_dry_in_the_picture_and_harbours_are_calm() {
         let camera = camera(origin + DVec3::new(4.0, -25.0, 30.0), -40.0);
         host.draw(&camera, DepthAccess::ReadWrite);
         let seen = seen_places(&host, &camera);
-        // What is drawn is water of the queries, at their height; what is not is none, but for a pixel at outlines.
+        // Where the picture shows water, queries find water at that height; where it shows none, they find none. Pixels
+        // at outlines may differ.
         let drawn: Vec<(DVec3, f64)> = seen.iter().filter_map(|(_, point)| *point).filter(|p| p.1 < 120.0).collect();
         let places: Vec<DVec3> = drawn.iter().map(|(place, _)| *place).collect();
         let mut points = vec![SeaPoint::default(); places.len()];
@@ -290,12 +291,12 @@ fn depths_are_those_of_the_queries() {
     assert!(drawn.len() > 4000, "{}", drawn.len());
     let mut points = vec![SeaPoint::default(); drawn.len()];
     host.context.sea_at(&drawn, 0.0, 0.0, &mut points).unwrap();
-    // A ray meets the surface aslant: its distance from the surface counts, over the distance from the eye.
+    // Error of a point: its distance from the surface, along the normal, over its distance from the eye.
     let off = |i: usize| ((drawn[i].z - points[i].height_m) * points[i].normal.z).abs() / ranges[i];
     let mut all: Vec<f64> = (0..drawn.len()).map(off).collect();
     all.sort_by(f64::total_cmp);
     let [middle, most] = [all[all.len() / 2], all[all.len() * 99 / 100]];
-    // A pixel is 0.011 rad.
+    // For comparison: a pixel spans 0.011 rad.
     println!("half within {middle:.5}, 99 of 100 within {most:.5} of the distance");
     assert!(middle < 8e-4 && most < 6e-3, "{middle} {most}");
 }
@@ -306,7 +307,8 @@ fn drawn_slopes_and_the_rest_are_cox_and_munks() {
     let mut host = SeaHost::new(10.0, WindSea::Weather);
     let wanted = mean_square_slope(10.0);
     for height_m in [2.5, 20.0, 300.0] {
-        // Sums of slopes, of those that a pixel does not show, and of areas: places at rest count by what they cover.
+        // Sums over places at rest, each weighted by the area that it covers now: square slopes, the part of them finer
+        // than a pixel, and area.
         let mut sums = [[0.0; 3]; DISTANCES_M.len()];
         for place in 0..12 {
             let position = DVec3::new(1700.0 * f64::from(place), 9.0, height_m);
@@ -365,7 +367,8 @@ fn foam_covers_the_area_of_the_law_and_has_the_published_light() {
     let mut faults = Vec::new();
     for wind in [9.0, 18.0] {
         let mut host = SeaHost::new(wind, WindSea::Weather);
-        // Sums of area, of what is under foam, and of its light: places at rest count by what they cover.
+        // Sums over places at rest, each weighted by the area that it covers now: area, area under foam, and light of
+        // the foam.
         let mut sums = [[0.0; 3]; DISTANCES_M.len()];
         for place in 0..64 {
             let position = DVec3::new(1700.0 * f64::from(place), 9.0, 12.0);
@@ -387,7 +390,7 @@ fn foam_covers_the_area_of_the_law_and_has_the_published_light() {
             println!(
                 "{wind} m/s, {distance_m} m off: {covered:.2} of the law's area, with {thick:.3} of dense foam's light"
             );
-            // 0.22 over 0.55 (Koepke 1984).
+            // 0.4 is the effective reflectance of foam, 0.22, over that of dense foam, 0.55 (Koepke 1984).
             if !(1.0 / 1.5..1.5).contains(&covered) || (thick / 0.4 - 1.0).abs() > 0.2 {
                 faults.push(format!("{wind} m/s, {distance_m} m off: {covered}, {thick}"));
             }
@@ -396,7 +399,7 @@ fn foam_covers_the_area_of_the_law_and_has_the_published_light() {
     assert!(faults.is_empty(), "{faults:?}");
 }
 
-/// Largest change of drawn heights at fixed places while the camera moves in steps and time stands.
+/// Largest change of the drawn heights at fixed places from one step of the camera to the next, at one time, m.
 fn height_change(host: &mut SeaHost, fixed: &[DVec2], [from, step]: [DVec3; 2]) -> f64 {
     let (mut before, mut worst) = (Vec::new(), 0.0f64);
     for n in 0..12 {
@@ -418,18 +421,18 @@ fn heights_stay_while_the_camera_moves() {
     let mut places = |middle: DVec2, side_m: f64| -> Vec<DVec2> {
         (0..2000).map(|_| middle + DVec2::new(chance.even() - 0.5, chance.even() - 0.5) * side_m).collect()
     };
-    // A tenth of a metre a frame, places within 6 m.
+    // The camera moves by a tenth of a metre a frame; the places are within 6 m.
     let near = places(DVec2::new(0.0, 3.0), 4.0);
     let worst = height_change(&mut host, &near, [DVec3::new(-0.5, 0.0, 2.0), DVec3::new(0.1, 0.05, 0.02)]);
     println!("near: heights change by {:.2} mm a frame at most", 1e3 * worst);
     assert!(worst < 2e-3, "{worst}");
-    // 300 m/s at 60 frames a second, in pixels of a picture 1080 high.
+    // The camera moves at 300 m/s at 60 frames a second. Changes are in pixels of a picture 1080 rows high.
     for distance_m in [60.0, 300.0, 1500.0] {
         let far = places(DVec2::new(0.0, distance_m), 0.2 * distance_m);
         let worst = height_change(&mut host, &far, [DVec3::new(0.0, 0.0, 20.0), DVec3::new(0.0, 5.0, 0.0)]);
         let pixels = worst / distance_m / (0.8 / 1080.0);
         println!("{distance_m} m off: {pixels:.3} pixels a frame at most");
-        // A pixel is wanted; 60 m off it is 1.05.
+        // The aim is at most one pixel; 60 m away the change is 1.05.
         assert!(pixels < 1.1, "{distance_m}: {pixels}");
     }
 }

@@ -16,8 +16,8 @@
 //! [`leak_rate`]. There is one ladder for each of [`LEAKS`] rates.
 //!
 //! # Error
-//! `cargo test --lib clouds::light::transport` prints reflectance and transmittance of slabs against discrete
-//! ordinates.
+//! `cargo test --lib clouds::drawn::probe -- --nocapture` prints reflectance and transmittance of drawn slabs against
+//! discrete ordinates.
 
 use std::{
     f64::consts::PI,
