@@ -35,7 +35,7 @@ fn lowest(mut low: f64, mut high: f64, mut is_cloud: impl FnMut(f64) -> bool) ->
     high
 }
 
-/// The lowest height at which a level look meets cloud, and which of the looks that is.
+/// Returns the lowest height at which any of 400 level rays meets cloud, m, and the index of that ray.
 fn met_m(sky: &Sky, base_m: f64) -> (f64, usize) {
     let first = |z: f64| (0..400).find(|i| depth(sky, place(*i, z), place(*i, z) + DVec3::Y * LOOK_M) > SEEN);
     let (low, high) = (0.9 * base_m, 1.1 * base_m);

@@ -28,7 +28,7 @@ impl Sky {
         Self::on(&DeviceOptions::default(), report, model)
     }
 
-    /// The same on a device of one's own choice.
+    /// Creates the sky of a report on a device with these options.
     pub fn on(options: &DeviceOptions, report: &str, model: CloudModel) -> Self {
         let device = Device::headless(options).expect("a software driver is installed");
         let shared = Arc::new(Shared::new(&device).unwrap());
@@ -44,14 +44,14 @@ impl Sky {
         Self { device, context, view, color, frame_id: 0 }
     }
 
-    /// The picture of a frame, cd/m^2 a channel.
+    /// Draws a frame towards `yaw_deg`, degrees from north over east. Returns its picture, cd/m^2 a channel.
     fn take(&mut self, yaw_deg: f64, height_m: f64, flags: FrameFlags) -> Vec<[f64; 3]> {
         let yaw = yaw_deg.to_radians();
         let forward = DVec3::new(yaw.sin(), yaw.cos(), if height_m > 1e3 { -0.2 } else { 0.35 });
         self.look(forward, height_m, None, flags)
     }
 
-    /// The same along a direction, with a host's depth.
+    /// Draws a frame along `forward`, with a host's depth if given. Returns its picture, cd/m^2 a channel.
     pub fn look(
         &mut self,
         forward: DVec3,
@@ -69,7 +69,8 @@ impl Sky {
     }
 }
 
-/// 95th percentile of the difference of luminance over the second picture's.
+/// 95th percentile of the difference of luminance, relative to the luminance of the second picture plus 1 % of its
+/// mean.
 pub fn p95(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let white = b.iter().map(luminance).sum::<f64>() / b.len() as f64;
     let off = |(a, b): (&[f64; 3], &[f64; 3])| (luminance(a) - luminance(b)).abs() / (luminance(b) + 0.01 * white);

@@ -190,7 +190,7 @@ fn in_a_cloud_the_hosts_own_transparent_things_fade_as_the_picture_does() {
     sky.draw(camera, None, &[Stages::BACKGROUND.with(Stages::MEDIUM)]);
     let textures = sky.view.frame_textures().unwrap();
     let through = readback::rgba(&sky.device, &textures.through).unwrap();
-    // The picture's middle at the slices next to 20 m and to 1 km.
+    // Transmittance in the middle of the picture, at the slice nearest to a distance.
     let at = |distance: f64| {
         let slice = ((distance / 20.0 + 1.0).ln() * 3.639_611_2).round();
         let (x, y) = ((slice % 8.0) * 32.0 + 16.0, (slice / 8.0).floor() * 18.0 + 9.0);

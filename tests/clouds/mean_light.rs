@@ -124,7 +124,8 @@ fn the_queried_sunlight_is_the_mean_under_real_reports_of_low_cloud() {
     assert!(most.0 < 0.2, "{most:?}");
 }
 
-/// All light on level ground: by the query, and as the sum of the drawn sky's light and the sunlight at those places.
+/// Compares the queried light on level ground with the sum of two means over places: the light of the queried radiance
+/// of the sky, and the sunlight.
 #[test]
 fn the_queried_light_is_that_of_sky_and_sun_together() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);
@@ -179,8 +180,9 @@ fn a_climb_through_a_deck_changes_light_and_exposure_steadily() {
     }
 }
 
-/// Places above which the sun lights the clouds are lit by the sun, however much of its light the clouds take. A high
-/// moon by day does not replace it, even if a few of its lux pass where a low sun's do not.
+/// Where the sun lights the clouds above a place, the sun lights the place, however much of its light the clouds
+/// absorb. A high moon by day does not replace the sun, even if a few lux of moonlight pass where no light of the low
+/// sun does.
 #[test]
 fn by_day_clouds_are_not_lit_by_the_moon() {
     let mut sky = Sky::new("EGLL 121150Z 00000KT 9999 OVC001 10/09 Q1015", CloudModel::Volume);

@@ -190,7 +190,7 @@ fn clouds_over_rain_are_drawn_as_they_are_asked() {
     assert!(half < 0.02 && most < 0.15, "{half} {most}");
 }
 
-/// How far from the middle of a thunderstorm cloud reaches between two heights in sixteen directions, m.
+/// Returns how far cloud reaches from the middle of a thunderstorm between two heights, in sixteen directions, m.
 fn reaches_m(sky: &Sky, heights_m: [f64; 2]) -> [f64; 16] {
     let has_cloud = |x: f64, y: f64| {
         let [low, high] = heights_m.map(|z| DVec3::new(x, y, z));
@@ -215,11 +215,11 @@ fn the_anvil_of_a_thunderstorm_is_wider_than_its_towers() {
     let kind = AreaRain::Showers;
     let storm = RainArea { shape, kind, rate_mm_h: 40.0, top_m: 1500.0, ..RainArea::default() };
     sky.context.set_rain_areas(&[storm]).unwrap();
-    // A third up to half-way up, and below the top.
+    // Heights of the towers, and of the anvil below the top.
     let [tower, anvil] = [[4000.0, 5500.0], [8000.0, 9000.0]].map(|heights| reach_m(&sky, heights));
     println!("towers reach {tower:.0} m from the middle, the anvil {anvil:.0} m");
     assert!(tower > 3500.0 && anvil > 1.15 * tower, "{tower} {anvil}");
-    // Its sides bulge instead of hanging straight down.
+    // The sides of the storm bulge instead of hanging straight down.
     let sides: Vec<_> = (0..8).map(|i| reaches_m(&sky, [3000.0, 3200.0].map(|h| h + 500.0 * f64::from(i)))).collect();
     let steps = sides.windows(2).flat_map(|two| (0..16).map(|k| (two[1][k] - two[0][k]).abs()));
     let bulges = steps.sum::<f64>() / (16 * 7) as f64;
@@ -256,7 +256,7 @@ fn light_near_a_storm_is_that_of_its_sky() {
     assert!((with / lux(&sky) - 1.0).abs() < 1e-2, "{with}");
 }
 
-/// With the wind that moves its area, the cloud moves too.
+/// The cloud moves with the same wind as its rain area.
 #[test]
 fn a_cloud_goes_with_its_rain() {
     let mut sky = Sky::new(CLEAR, CloudModel::Volume);

@@ -55,7 +55,7 @@ fn fly(report: &str, speed_m_s: f64, from_m: f64, to_m: f64, every: usize) -> Ve
 }
 
 /// During a climb each frame shows the clouds at its own place: nothing jumps, and nothing trails behind. With
-/// WELKIN_ACCEPT all the way from below a layer to above it, and more slowly.
+/// `WELKIN_ACCEPT` the flights go all the way from below a layer to above it, and also more slowly.
 #[test]
 fn a_climb_through_layers_shows_no_jump() {
     let quick =
@@ -77,7 +77,7 @@ fn a_climb_through_layers_shows_no_jump() {
             step(0),
             step(1)
         );
-        // History errs by as much where light changes with height: it does so within a layer, from its base to its top.
+        // Pictures with history lag where light changes with height, as it does from the base of a layer to its top.
         assert!(worst < 0.1 && all < 0.03, "{worst} {all}");
         assert!(step(0) < step(1) + 0.05, "{} {}", step(0), step(1));
     }
@@ -155,7 +155,8 @@ fn clouds_follow_from_seed_and_time_alone() {
     assert_eq!(shot(&first, 4), later);
 }
 
-/// The picture of every kind of target and depth is that of a float target without depth, as far as its steps go.
+/// The picture in every kind of target and with every kind of depth equals that of a float target without depth, within
+/// the steps of the target.
 #[test]
 fn every_target_and_depth_shows_the_same_clouds() {
     let mut sky = Sky::new(BROKEN, CloudModel::Volume);

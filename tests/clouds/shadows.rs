@@ -15,18 +15,19 @@ use crate::drawn::{SIZE, Sky};
 const HEIGHT_M: f64 = 2500.0;
 pub const SCATTERED: &str = "LOWI 121150Z 00000KT 9999 SCT100 18/12 Q1015";
 
-/// The picture over a ground of this luminance, green, of a frame with these flags.
+/// Draws a frame with these flags, looking straight down on level ground of this luminance. Returns the green channel.
 pub fn over_ground(sky: &mut Sky, luminance: f32, flags: FrameFlags) -> Vec<f64> {
     over_ground_from(sky, (DVec3::ZERO, 1.0), luminance, flags)
 }
 
-/// The same from over a place, with a vertical field of view, rad.
+/// Draws as [`over_ground`] does, from above the place `over_m` and with this vertical field of view, rad.
 fn over_ground_from(sky: &mut Sky, (over_m, fov): (DVec3, f64), luminance: f32, flags: FrameFlags) -> Vec<f64> {
     let camera = Camera::look_to(over_m + DVec3::Z * HEIGHT_M, DVec3::NEG_Z, DVec3::Y, fov, 16.0 / 9.0, 0.1);
     over_host(sky, camera, (HEIGHT_M, luminance), flags)
 }
 
-/// The same over what a host drew: of this luminance, so far before the camera's plane (infinitely far: nothing).
+/// Draws a frame over a host's picture, which is a plane of this luminance `plane_m` in front of the camera; infinity
+/// means that the host drew nothing. Returns the green channel.
 pub fn over_host(sky: &mut Sky, camera: Camera, (plane_m, luminance): (f64, f32), flags: FrameFlags) -> Vec<f64> {
     let count = (SIZE.0 * SIZE.1) as usize;
     let depth = depth_texture(&sky.device, SIZE, &vec![(0.1 / plane_m) as f32; count]);
@@ -122,7 +123,8 @@ fn shadows_and_mirrored_clouds_are_made_as_they_grow_old_and_in_turns() {
     passes(0);
     let settled = passes(32);
     println!("passes of a wet frame under broken clouds: {settled:?}");
-    // March, follow, resolve, the composition; and one of both maps where enough of it is old.
+    // Four passes: march, follow, resolve and the composition. A fifth is in frames that refresh old rows of the map of
+    // shadows or of the mirrored clouds.
     assert!(settled.iter().all(|passes| matches!(passes, 4..=5)), "{settled:?}");
     let of_maps = settled.iter().filter(|passes| **passes == 5).count();
     assert!((4..=10).contains(&of_maps), "{settled:?}");
