@@ -33,8 +33,8 @@ fn a_black_board_keeps_koschmieders_contrast() {
     let lights = [light(50.0, 0.8, 0.15), light(6.0, 0.4, 0.06), light(40.0, 0.0, 0.3)];
     for v in [50.0, 150.0, 400.0] {
         let sigma = koschmieder_extinction_per_m(v);
-        // Deep fog, the eye in its middle; and the ground where the eye stands, boards in the hollow below.
-        // Below the level at which the ground is known the field is a guess, but no longer bare ground in the fog.
+        // First case: the eye is in the middle of deep fog. Second case: the eye is just above the ground, and some
+        // boards stand in a hollow below it. Below the known ground the light field is only an estimate.
         for (ground, eye, allowed) in [(-1.0, 0.5, [0.1, 0.006]), (0.0, 0.02, [0.2, 0.05])] {
             for light in lights {
                 let top = 2.0 * v;

@@ -57,7 +57,8 @@ fn the_gpu_agrees_with_f64_for_the_same_f32_depth() {
             let ndc = DVec2::new(f64::from(i[0]), f64::from(i[1]));
             let want = rays.view_range(f64::from(i[2]), ndc);
             let plane = rays.view_plane(f64::from(i[2]), ndc);
-            // Parallel rays subtract e from the pole: an ulp of 1 over the depth's 120 km; others keep their digits.
+            // For parallel rays a depth near 1 has the error of an ulp of 1 times the depth's 120 km. Other rays keep
+            // their digits.
             let floor = if case.mapping.kind == DepthKind::Orthographic { 0.02 } else { 0.0 };
             let name = format!("{} at {ndc} depth {}", case.name, i[2]);
             assert!((f64::from(g[0]) - want).abs() < 4e-6 * want + floor, "{name}: drawn {} of {want}", g[0]);

@@ -65,7 +65,8 @@ fn compare(name: &str, m: &FogModel, tolerance: f64) {
     for (i, g) in inputs.iter().chain(&inputs).zip(both) {
         let want = twin(m, *i);
         assert!(g.iter().all(|v| v.is_finite() && *v >= 0.0), "{name} {i:?}: drawn {g:?}");
-        // Kilometres below the ground a pipeline without a lower edge goes on.
+        // More than 5 km below the eye a pipeline without a lower edge continues the fog, so the share of the air's
+        // light differs there.
         let checked = if i[1] * i[2] < -5000.0 { &[0, 1, 3][..] } else { &[0, 1, 2, 3] };
         for &j in checked {
             let error = (f64::from(g[j]) - want[j]).abs();
@@ -109,7 +110,7 @@ fn patches_are_drawn_as_the_reference_has_them() {
     }
 }
 
-/// Precipitation below a cloud 600 m up.
+/// Precipitation that fades out between 550 m and 650 m, around a cloud base at 600 m.
 fn rain(liquid_per_m: f64) -> FallingLayer {
     FallingLayer { liquid_per_m, solid_per_m: 1e-4, top_m: 650.0, soft_m: 100.0 }
 }
@@ -218,7 +219,7 @@ fn five_percent_at_every_depth_mapping_and_pixel() {
         let rays = ViewRays::new(&case.camera, &case.mapping).unwrap();
         for v in [50.0, 150.0, 1e3, 5e3, 2e4, 5e4] {
             let m = model(slab(v, -1e5, 1e5, 0.0), &view(2.0, f64::INFINITY));
-            // A depth in f32 separates what the host's convention separates; the rest must not add to that.
+            // A depth in f32 is as precise as the host's convention allows; nothing else may add to its error.
             let inputs: Vec<_> = pixels
                 .iter()
                 .map(|(x, y)| [*x as f32, *y as f32, rays.depth_at(v, DVec2::new(*x, *y)) as f32, 0.0])
@@ -246,7 +247,8 @@ fn five_percent_at_every_depth_mapping_and_pixel() {
 /// must show no line there, however much of them is seen.
 #[test]
 fn no_seam_at_the_horizon() {
-    // At 5 km a sixteenth of the ground at the horizon is seen: its darkness is seen with it.
+    // At a visibility of 5 km a sixteenth of the light of the ground at the horizon arrives, so its darkness shows a
+    // little.
     let cases =
         [(150.0, 60.0, [1.7, 30.0], 0.004), (1000.0, 100.0, [1.7, 70.0], 0.004), (5000.0, 300.0, [1.7, 500.0], 0.015)];
     for (v, top, heights, step) in cases {

@@ -12,7 +12,8 @@ const AZIMUTHS: [f64; 4] = [0.0, 0.6, 1.6, 3.1];
 pub const GROUND: f64 = 0.15;
 const SIGMA: f64 = 0.01;
 
-/// A layer `depth` deep seen from the share `below` of it, under (sun, sky) at zenith cosine `mu0`.
+/// A layer of optical depth `depth`, lit by (sun, sky) with the sun at the zenith cosine `mu0`, seen from the height
+/// `share` of it.
 pub fn model(depth: f64, share: f64, mu0: f64, [sun, sky]: [f64; 2], phase: Phase) -> FogModel {
     let top = depth / SIGMA;
     let layer = FogLayer {

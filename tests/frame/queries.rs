@@ -83,13 +83,13 @@ fn a_black_object_is_seen_as_far_as_a_plain_sum_of_the_way_leaves_5_percent() {
             let from = DVec3::new(10.0, -20.0, if up < 0.0 { 300.0 } else { 1.5 });
             let unit = DVec3::new(0.0, f64::sqrt(1.0 - up * up), up);
             let seen = host.context.visibility_toward(from, unit, t).unwrap();
-            // Pieces of 1/200 of the way, or of the 8 km in which nothing hides the object.
+            // The way is cut into 200 pieces; where nothing hides the object, 8 km stand for it.
             let whole = seen.min(8000.0);
             let piece = |k: i32| {
                 let at = |k: i32| from + unit * (whole * f64::from(k) / 200.0);
                 -host.context.between(at(k), at(k + 1), t).unwrap().transmittance[1].ln()
             };
-            // Downwards the ground may come first.
+            // Downwards, the pieces end at the ground, if that is nearer.
             let pieces = if up < 0.0 { (200.0 * (300.0 / 0.3 / whole).min(1.0)) as i32 } else { 200 };
             let depth: f64 = (0..pieces).map(piece).sum();
             let left = (-depth).exp();

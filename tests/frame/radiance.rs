@@ -65,7 +65,8 @@ impl Sky {
     }
 }
 
-/// Returns such pairs for the cube map that the last picture updated.
+/// Directions of texels of the cube map that the last picture updated, with the radiances that it and the query give
+/// them.
 fn cube_pairs(sky: &mut Sky, at: DVec3) -> Vec<(DVec3, [f64; 3], [f64; 3])> {
     let map = sky.view.environment().unwrap();
     let level = Level::read(&sky.device, &map, 0);
@@ -128,7 +129,7 @@ impl Errors {
     }
 }
 
-/// With WELKIN_ACCEPT in every weather: each has an air of its own, which takes seconds to solve.
+/// With `WELKIN_ACCEPT` in every weather. Each weather has an air of its own, which takes seconds to solve.
 #[test]
 fn radiance_asked_for_is_the_radiance_drawn() {
     let mut sky = Sky::new();
@@ -165,8 +166,8 @@ fn radiance_asked_for_is_the_radiance_drawn() {
     assert!(faults.iter().all(Vec::is_empty), "{faults:#?}");
 }
 
-/// Returns the largest error of the queried light against the drawn skies of these visibilities over ground with this
-/// much snow.
+/// Returns the largest relative error of the queried light of the sky against the sum over its queried radiance, at
+/// these visibilities and over ground with this much snow.
 fn queried_over_sum(visibilities_m: &[f64], snow_depth_m: f64) -> f64 {
     let mut sky = Sky::new();
     let mut worst = 0.0f64;

@@ -93,7 +93,8 @@ fn the_same_frames_refine_alike_on_two_channels() {
     let run = || {
         let mut host = Host::new(1);
         let mut pictures: Vec<_> = (0..4).map(|_| host.frame(FrameFlags(0)).remove(0)).collect();
-        // Another air before the first is whole: it is given up for a draft of the new one, which fades in.
+        // The air changes before its first tables are whole. They are given up for a draft of the new air, which fades
+        // in.
         let haze = Weather { visibility_m: 6000.0, aerosol: Aerosol::of(AerosolKind::Haze), ..Weather::default() };
         host.context.set_weather(&haze, 0.0, 0.0).unwrap();
         pictures.extend((0..28).map(|_| host.frame(FrameFlags(0)).remove(0)));

@@ -77,7 +77,7 @@ fn tone_maps_scene_linear_hosts_only() {
         let want = curve.apply(EXPOSURE * (3000.0 * through[1] + light[1]));
         assert!((f64::from(p[1]) - want).abs() < 2e-3, "{p:?} want {want}");
     }
-    // Elsewhere it means nothing, alone or among others.
+    // In display colour spaces the stage TONE does nothing, alone or together with others.
     for space in [ColorSpace::DisplayLinear, ColorSpace::DisplaySrgb] {
         let with = draw(&mut host, space, both, 0.25);
         assert_eq!(with, draw(&mut host, space, Stages::MEDIUM, 0.25), "{space:?}");
@@ -226,8 +226,8 @@ fn a_pixel_at_an_edge_is_the_mean_of_its_samples_composed_one_by_one() {
     }
 }
 
-/// Rain of the default model from a camera on its side, below a block over all that is to the right of it in the world,
-/// which is one half of the picture from top to bottom.
+/// Draws rain of the default model from a camera that lies on its side. A block stands above everything to the right of
+/// it in the world, which is the upper half of the picture.
 #[test]
 fn a_block_keeps_rain_off_the_same_half_whatever_samples_and_orientation() {
     const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;

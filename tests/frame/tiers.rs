@@ -66,9 +66,10 @@ fn tier_0_composes_the_same_frame() {
     }
 }
 
-/// Two drivers' last bits differ in f32, and where one falls on a half float's border the table or the target rounds
-/// the other way: one step of a target is 1e-3 of a channel, one of a table's square root 2e-3. Luminances hold to 1e-3
-/// everywhere, and all channels but one in a thousand hold to a step of the target.
+/// Checks that two pictures differ only by rounding. The last bits of f32 differ between drivers, so that a table or
+/// the target may round to the next half float. One step of the target is 1e-3 of a channel, one step of a table's
+/// square root is 2e-3. Luminances must agree within 1e-3 everywhere, and all channels but one in a thousand within a
+/// step of the target.
 fn differ_by_roundings(tier_0: &[[f64; 4]], tier_1: &[[f64; 4]], place: &str) {
     let y = |p: &[f64; 4]| luminance(&[p[0], p[1], p[2]]);
     let mut large = 0;

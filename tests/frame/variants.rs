@@ -77,8 +77,8 @@ fn record(host: &mut Host, colors: &[wgpu::Texture], id: u64, variant: usize) {
     host.device.wait().unwrap();
 }
 
-/// With WELKIN_ACCEPT more variants than are held, so that each of the second round is compiled anew in the place of
-/// another.
+/// With `WELKIN_ACCEPT` there are more variants than the cache holds, so that in the second round each is compiled anew
+/// and replaces another.
 #[test]
 fn memory_levels_off_however_formats_models_and_lamps_change() {
     if std::env::var_os(ALONE).is_none() {
