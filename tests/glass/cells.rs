@@ -115,7 +115,7 @@ fn drops_arrive_as_the_flux_says() {
     assert!((hits as f64 - expected).abs() < 4.0 * expected.sqrt() + 0.002 * expected, "{hits} of {expected}");
     let water = cells.water() as f64 * VOLUME_UNIT_M3;
     let due = flux.rate_mm_h / 3.6e6 * area_s;
-    // A drop's volume varies about 15 times as much as its mean.
+    // The standard deviation of a drop's volume is about 15 times its mean.
     assert!((water / due - 1.0).abs() < 4.0 * 15.0 / expected.sqrt(), "{water} of {due} m^3, {hits} drops");
 }
 
@@ -279,7 +279,7 @@ fn a_bead_beyond_the_critical_size_runs_and_leaves_a_lane_with_gaps() {
     let lane: Vec<usize> = (0..cells.cells.len()).filter(|i| cells.cells[*i][3] & 4095 == 0).collect();
     let lowest = lane.iter().map(|i| i / 40).min().unwrap();
     assert!(lowest < 35, "it ran from row 55 to row {lowest}");
-    // Above where it is now.
+    // Cells above the bead: its lane.
     let behind: Vec<u32> = lane.iter().filter(|i| *i / 40 > lowest + 2).map(|i| cells.cells[*i][0]).collect();
     let mean = behind.iter().map(|v| f64::from(*v)).sum::<f64>() / behind.len() as f64;
     assert!(behind.len() > 15 && mean < 2.0 * f64::from(volume(8e-4)), "{} cells, {mean} units", behind.len());

@@ -21,7 +21,7 @@ const SMALL: (u32, u32) = (64, 36);
 /// Cells of the upright pane.
 const SIZE: [u32; 2] = [100, 60];
 
-/// A box over the host's camera, 3 m up, or round it.
+/// Creates a box that stands still, in the axes of the world. The host's camera is 3 m above the origin.
 fn shelter(center_m: DVec3, half_size_m: DVec3) -> Shelter {
     Shelter { center_m, axes: DMat3::IDENTITY, half_size_m, velocity_m_s: DVec3::ZERO, planes: Planes::NONE }
 }

@@ -275,7 +275,7 @@ fn an_image_of_classes_overrides_the_terrain_and_the_terrain_the_default() {
     let mixed = level(&mut host, Some(&image));
     for (i, pixel) in mixed.iter().enumerate() {
         let x = i as u32 % SIZE.0;
-        // A cell on either side of the border goes from one to the other.
+        // Over one cell on either side of the border one class blends into the other.
         let between = (x as f64 + 0.5 - 80.0).abs() < 10.0;
         let wanted = if i < rows {
             &plants

@@ -39,7 +39,7 @@ fn dry_ground_is_drawn_bit_for_bit_as_without_the_stage() {
     assert_eq!((host.view.report().passes, alone[0][0]), (0, 0.0), "nothing is drawn, nothing is paid");
 }
 
-/// Water that nothing moves has no slope that shows from its level or from below: a wall reaches above the eye.
+/// Still water has no slopes that show at its own height or from below. The wall reaches above the eye.
 #[test]
 fn walls_beside_calm_water_stay_as_they_are_in_a_breath_of_wind() {
     let mut host = Host::new();

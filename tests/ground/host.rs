@@ -136,7 +136,7 @@ impl Host {
         self.device.queue.write_texture(self.color.as_image_copy(), bytes, rows, self.color.size());
     }
 
-    /// An image beside the picture, of its size, from its bytes row by row from the top.
+    /// Creates an image of the picture's size from its bytes, row by row from the top.
     pub fn image(&self, format: wgpu::TextureFormat, bytes: &[u8]) -> wgpu::Texture {
         let image = texture(&self.device, SIZE, format, 1);
         let bytes_per_row = Some(bytes.len() as u32 / SIZE.1);

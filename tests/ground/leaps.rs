@@ -74,7 +74,7 @@ fn any_division_into_calls_gives_the_same_state_whatever_is_set_meanwhile() {
             if calls == 0 {
                 set_other(&mut parts, with_grid);
             }
-            // At least one step a call, and with no time no more than one.
+            // Each call takes at least one step, and exactly one if it has no time.
             assert!(calls <= 2000 && (most_us > 0 || calls == 1999), "{calls}");
             while parts.update_within(20_700.0, most).unwrap() == Status::Pending {}
             assert!(cells(&parts) == cells(&whole), "{most_us} us, {calls} calls");
@@ -148,7 +148,7 @@ fn a_leap_of_more_than_a_day_begins_a_day_before_its_end() {
     assert!(cells(&wet) == cells(&never) && wet.ground_water() == never.ground_water());
     let [wet, never] = [&rainy, &dry].map(|from| leapt(from, 3600.0 + a_day));
     assert!(cells(&wet) != cells(&never), "a day is simulated as a whole");
-    // Ends that lie a little apart begin alike.
+    // Leaps that end a few seconds apart begin at the same time.
     let ends = [0.0, 1.0, 7.0].map(|s| {
         let mut context = leapt(&rainy, 200_000.0 + s);
         context.update(200_007.0).unwrap();

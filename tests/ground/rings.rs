@@ -106,7 +106,8 @@ fn rings_are_as_many_as_the_flux_brings_and_drawn_where_the_twin_has_them() {
         let counted: usize = (0..moments).map(stand).sum();
         let want = flux * LIFE_S * 1024.0 * f64::from(moments);
         assert!((counted as f64 - want).abs() < 4.0 * want.sqrt(), "{rate} mm/h: {counted} stand, flux x area {want}");
-        // Still water from above, .9 x .5 m of it; its reflection without rings is the median over all times.
+        // The camera looks straight down on 0.9 x 0.5 m of still water. The reflection without rings is the median over
+        // all times.
         let eye = DVec3::new(1.0, -2.0, 1.0);
         let camera = look(eye, 0.0, -90.0, 0.5);
         let half = DVec2::new(0.255 * 16.0 / 9.0, 0.255);

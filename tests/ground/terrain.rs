@@ -217,7 +217,7 @@ fn freezing_rain_leaves_no_ice_under_a_roof_whether_simulated_or_loaded() {
             assert!(cells(&context) == cells(&second), "{model:?} at {t}");
             assert_eq!(context.state_hash().unwrap(), second.state_hash().unwrap(), "{model:?} at {t}");
         }
-        // Without the roof it is icy there too; ice that a report names lies everywhere.
+        // Without the roof there is ice there too: ice that a report names lies everywhere.
         context.set_shelters(&[]).unwrap();
         assert!(cells(&context).iter().all(|c| c.ice == open));
         context.set_shelters(second.shelters()).unwrap();

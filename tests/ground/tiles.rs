@@ -124,7 +124,7 @@ fn any_division_into_calls_gives_the_same_water_whatever_is_dug_meanwhile() {
         if calls == 0 {
             change(&mut parts);
         }
-        // A tile a call at least, and with no time no more than one.
+        // Each call steps at least one tile, and exactly one if it has no time.
         assert!(most_us > 0 || calls == 4 * 300 - 1, "{calls}");
         while parts.update_within(5000.0, most).unwrap() == Status::Pending {}
         assert!(water(&parts) == water(&whole), "{most_us} us, {calls} calls");

@@ -228,7 +228,7 @@ fn views_agree_and_time_may_run_back() {
     assert_eq!(first, other.pure(3.01));
     one.take(10.0);
     one.context.load(&with_flash).unwrap();
-    // The frame's number has a part in its dither and drops alone.
+    // The frame's number decides only dither and drops.
     one.frame_id = 20;
     assert_eq!(first, one.pure(3.01), "the same flash again");
     one.context.load(&state).unwrap();

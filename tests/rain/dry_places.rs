@@ -112,9 +112,9 @@ fn lit(host: &mut Host, from_s: f64) -> Vec<f64> {
     sum
 }
 
-/// Share of the rain in front of the surface in pixel `i` that reaches its place past the deck, by rays; `falls` holds
-/// how much the drops of each size hide, and how they fall. Also whether no splashes are seen there, for these depend
-/// on their own place and not on the way to it.
+/// Returns the share of the rain along the ray of pixel `i` that the deck does not keep off, by rays along the fall.
+/// `falls` has for each drop size how much its drops hide, and their velocity. Also returns whether the pixel shows no
+/// splashes: these depend on the surface alone, not on the rain along the ray.
 fn share(host: &Host, deck: &Shelter, falls: &[(f64, DVec3)], i: usize) -> (f64, bool) {
     let at = DVec2::new((i % 160) as f64 + 0.5, (i / 160) as f64 + 0.5);
     let (p, _) = host.cast(DVec2::new(at.x / 80.0 - 1.0, 1.0 - at.y / 45.0)).unwrap();
@@ -187,8 +187,8 @@ fn the_default_model_shows_the_share_of_the_rain_that_rays_leave_round_a_deck() 
                 );
                 let what = format!("wind {wind}, {what}, by {by}");
                 assert!(((got - truth) / all).abs() < 0.06, "{what}: {got} of {all}, {truth} by rays");
-                // From outside no ray lies under the deck over its whole length, and wind blows small drops in as far
-                // as the camera.
+                // Seen from outside, no ray lies under the deck over its whole length; and wind blows small drops under
+                // the deck as far as the camera.
                 assert!((kept > 0.0) == (what.contains("out") && wind < 10.0), "{what}: {kept}");
                 assert!(inside <= 0.01 * kept, "{what}: {inside} of {kept}");
             }

@@ -109,8 +109,8 @@ fn contrasts_are_on_the_mean_what_the_query_says() {
     }
 }
 
-/// Finds the shift in pixels at which two rows of the same rain, two seconds apart, agree best: it is the way of the
-/// wind at any time.
+/// Finds the shift in pixels at which two rows of the same rain, two seconds apart, agree best. It is the displacement
+/// by the wind, at an early and at a late time.
 #[test]
 fn curtains_go_with_the_wind() {
     let mut host = Host::new((256, 144));

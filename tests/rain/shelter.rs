@@ -230,8 +230,7 @@ fn no_drop_is_drawn_where_maps_along_the_fall_keep_it_off_whatever_the_wind() {
         let half = 20.0;
         let slack = 2.0 * (2.0 * half / f64::from(side.0));
         let boxes = standing();
-        // Maps along the fall of median drops and along that of slower ones; things below a deck are missing in one of
-        // them.
+        // Maps along the fall of median drops and of slower ones. Things below a deck are missing in some of them.
         let falls = [fall.z, -3.4, -2.1].map(|z| DVec3::new(fall.x, fall.y, z).normalize());
         let taken = falls.map(|f| Taken::parallel(DVec3::new(0.0, 4.0, 0.0) - f * 60.0, f, [half; 2], 120.0));
         let textures = taken.map(|t| map(&host, &boxes, &t, side));

@@ -101,7 +101,8 @@ fn pictures_of_storms_far_places_and_fast_cameras_are_finite_and_as_dense_as_any
     assert!(host.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
 }
 
-/// See above; from `t` on. Answers when it ends.
+/// Draws every rain rate in every wind from the time `t` on, at far places and from a fast camera, and checks the
+/// optical depth of the drops. Returns the time at the end, s.
 fn storms(host: &mut Host, mut t: f64, model: RainModel) -> f64 {
     let wall = host.boxes[0];
     for (i, (rate, wind)) in RATES.iter().flat_map(|r| WINDS.map(|w| (*r, w))).enumerate() {

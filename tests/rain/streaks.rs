@@ -23,10 +23,11 @@ pub const LEAST_PIXELS: f64 = 1.2;
 /// A drop in a picture.
 pub struct Streak {
     pub id: (u32, u32, u32),
-    /// Middle of the streak, half of the way of the drop's middle, and the length that the drop's own size adds at each
-    /// end; in pixels.
+    /// Middle of the streak, pixels.
     pub middle: DVec2,
+    /// Half of the path of the drop's centre, pixels.
     pub half: DVec2,
+    /// Length that the drop's own size adds at each end, pixels.
     pub end: f64,
 }
 

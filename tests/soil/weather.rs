@@ -79,20 +79,20 @@ fn frost_stops_a_bucket_and_says_so() {
     tiles(&mut context);
     context.set_soil(Some(weak())).unwrap();
     let tool = context.add_soil_tool(bucket(5.0), &drag(0.0, -2.0, -0.5)).unwrap();
-    // After an hour the crust is thinner than a bucket breaks.
+    // After an hour the frozen crust is so thin that a bucket breaks it.
     context.update(3600.0).unwrap();
     let early = cut(&mut context, tool, 0.05);
     assert!(early.mass_kg > 50.0 && !early.is_stopped_by_frost, "{early:?}");
-    // After a day it is 0.2 m thick.
+    // After a day the crust is 0.2 m thick.
     context.update(86_400.0).unwrap();
     let books = context.soil_books().unwrap();
     let stopped = cut(&mut context, tool, 0.15);
     assert!(stopped.is_stopped_by_frost && stopped.cut_depth_m < 0.05, "{stopped:?}");
     assert_eq!(context.soil_books().unwrap().dug, books.dug, "nothing is dug");
-    // The edge passes in the ground, and what it met has a resistance all the same.
+    // The edge is in the ground, and the resistance of what it met can still be queried.
     let blade = SoilBlade { rake: 1.0, soil_metal: 0.4, adhesion_kpa: 0.0, surcharge_kpa: 0.0 };
     assert!(context.soil_resistance(tool, &blade).unwrap().force_n >= 0.0);
-    // Thawed after more than as many warm degrees.
+    // The ground thaws, because there were more degree days above 0 C than below.
     context.set_weather(&dry(15.0), 86_410.0, 0.0).unwrap();
     context.update(86_400.0 * 2.0).unwrap();
     let thawed = cut(&mut context, tool, 0.15);
