@@ -113,8 +113,8 @@ fn watched(program: &Path, arguments: &[&str]) -> String {
     run(Command::new("valgrind").args(options).arg(not_ours).arg(program).args(arguments))
 }
 
-/// Memory checks that take minutes: the C++ wrapper, and each kind of wrong and right call of the C interface. The test
-/// program of those is what cargo built beside this one.
+/// Memory checks that take minutes: the C++ wrapper, and the tests of `abi_calls`, which make every kind of right and
+/// wrong call of the C interface. Their program is the one that cargo built beside this one.
 #[test]
 fn valgrind_finds_nothing_in_the_long_suite() {
     if std::env::var_os("WELKIN_ACCEPT").is_none() {

@@ -107,8 +107,8 @@ fn green(picture: &image::RgbImage, [x0, y0, x1, y1]: [u32; 4]) -> (f64, f64) {
     (sum / n, (squares / n - (sum / n).powi(2)).max(0.0).sqrt())
 }
 
-/// Off, on, off in every kind of target: each run compares its pictures and more than a thousand values of OpenGL's
-/// state.
+/// Weather off, on, and off again in every kind of target: each run compares its pictures and more than a thousand
+/// values of OpenGL's state.
 #[test]
 fn weather_comes_and_goes_without_a_trace() {
     let host = Host::new("check");
@@ -127,7 +127,7 @@ fn weather_comes_and_goes_without_a_trace() {
     }
 }
 
-/// No display has a visual of 64 samples, and one without GLX has none at all.
+/// No display has a visual with 64 samples, and a display without GLX has no visual for OpenGL.
 #[test]
 fn a_display_without_the_visual_is_named() {
     let host = Host::new("visual");
@@ -206,7 +206,8 @@ fn a_picture_waits_for_the_simulated_ground() {
     assert!(lagged.is_some_and(|frames| frames > 0), "{said}");
 }
 
-/// Two windows of one viewer draw the same in all of OSG's threading models, by both ways to live beside OpenGL.
+/// Two windows of one viewer draw the same in all of OSG's threading models, with Welkin in the viewer's own context
+/// and in a context of its own.
 #[test]
 fn every_threading_model_draws_the_same_two_windows() {
     let host = Host::new("threads");

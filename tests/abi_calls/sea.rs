@@ -58,7 +58,7 @@ fn a_sea_answers_points_and_statistics_at_any_time() {
         assert!([x, y] == at[..2] && (z - p.height_m).abs() < 1e-9, "a flat world at sea level: {z} {}", p.height_m);
         assert!((p.normal.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-12);
     }
-    // The past, then the same future: the same bits, by places that lie farther apart in memory too.
+    // A query of the past does not change later results. A list of places with a larger stride gives the same bits.
     let _ = points(&world, &places, -40.0);
     let apart = places.map(|p| [p[0], p[1], p[2], f64::NAN]);
     // SAFETY: plain numbers; live pointers with the counts given.
@@ -85,7 +85,7 @@ fn a_single_wave_is_as_high_and_as_timed_as_asked() {
     let calm = wk_sea { has: WK_SEA_HAS_SEA_STATE, waves: &wave, wave_count: 1, ..init("wk_sea") };
     assert_eq!(set(&world, &calm), WK_OK, "{}", message());
     let period_s = (2.0 * std::f64::consts::PI * 100.0 / 9.81_f64).sqrt();
-    // Crests stand still over themselves; the level is raised by k a^2 / 2, so that its mean is 0.
+    // A crest does not move sideways from its place at rest. Heights are raised by k a^2 / 2, so that their mean is 0.
     let raised = 0.5 * 2.0 * std::f64::consts::PI / 100.0 * 0.25;
     for (x, time_s, height) in [
         (0.0, 0.0, 0.5),
@@ -100,7 +100,8 @@ fn a_single_wave_is_as_high_and_as_timed_as_asked() {
     let s = state(&world, 0.0);
     assert!((s.significant_height_m - 2.0_f64.sqrt()).abs() < 1e-9 && (s.highest_in_hour_m - 1.0).abs() < 1e-9);
     assert!((s.peak_period_s / period_s - 1.0).abs() < 1e-6 && (s.mean_from_deg - 270.0).abs() < 1e-9);
-    // By its period, a quarter later, from north, under ice of 60 m floes that quell it by 2 J1(x) / x, x = 1.885.
+    // The wave is now given by its period and runs from the north; the query is a quarter of a period later. Floes of
+    // 60 m reduce its height by the factor 2 J1(x) / x with x = 1.885.
     let timed = wk_sea_wave { height_m: 1.0, period_s, phase_deg: 90.0, ..init("wk_sea_wave") };
     let ice = WK_SEA_HAS_SEA_STATE | WK_SEA_HAS_ICE;
     let icy = wk_sea { has: ice, ice_cover: 1.0, ice_floe_m: 60.0, ice_width_m: 0.0, waves: &timed, ..calm };
@@ -133,13 +134,13 @@ fn regions_are_dry_or_calm_or_have_their_level() {
     let open = points(&world, &places, 0.0);
     assert_eq!(set_regions(&[hull, harbour, lake], 3), WK_OK, "{}", message());
     let [deck, calm, pond, out] = points(&world, &places, 0.0);
-    // A hull floats by the water around it.
+    // A hull is dry, but its region still reports the height of the water around it.
     assert_eq!((deck.has_water, deck.height_m, deck.surface_m), (0, open[0].height_m, open[0].surface_m));
     assert!(deck.height_m != 0.0 && open[0].has_water == 1);
     assert_eq!((pond.height_m, pond.depth_m, pond.velocity_m_s), (41.0, 6.0, [0.0; 3]));
     assert_eq!((out.height_m, calm.has_water), (open[3].height_m, 1));
     assert!(calm.height_m.abs() < 0.3 && calm.height_error_m < 0.005, "{} {}", calm.height_m, open[1].height_m);
-    // Ten seconds later the hull has left, and stands 100 m to the east.
+    // Ten seconds later the hull is 100 m farther east.
     let later = points(&world, &places, 10.0);
     assert_eq!((later[0].has_water, later[3].has_water), (1, 0));
     let bow = [[-20.0, -20.0], [20.0, 20.0], [20.0, -20.0], [-20.0, 20.0]];

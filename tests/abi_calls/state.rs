@@ -428,8 +428,9 @@ fn answers(context: *mut wk_context, time_s: f64) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// The state of each format that was ever written. That of the present one is written anew by WELKIN_BLESS=1, which is
-/// right only as long as no release wrote it: afterwards a state that no longer loads needs another format.
+/// Loads a committed state of each format that was ever written. `WELKIN_BLESS=1` writes the state of the present
+/// format anew. That is right only until a release has written this format: afterwards, a state that no longer loads
+/// needs a new format number.
 #[test]
 fn states_of_older_formats_load_or_are_refused_by_their_number() {
     let world = World::new();

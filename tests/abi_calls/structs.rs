@@ -287,13 +287,13 @@ const ELSEWHERE: &[&str] = &[
     "wk_effect_cost",
 ];
 
-/// Records a frame of another number, after which every number but that begins a new frame.
+/// Records a frame with a new number, so that any other number then begins a new frame.
 unsafe fn record_again(view: *mut wk_view) {
     let frame = wk_frame { frame_id: next_frame() + 1, ..init("wk_frame") };
     assert_eq!(unsafe { wk_view_record(view, &frame, WK_STAGE_PREPARE) }, WK_OK, "{}", message());
 }
 
-/// A failed create leaves its out-parameter alone.
+/// Checks that a create call writes its out-parameter if and only if it succeeds.
 fn kept<T>(status: wk_status, out: *mut T) {
     assert_eq!(status == WK_OK, !out.is_null(), "{}", message());
 }

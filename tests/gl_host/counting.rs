@@ -108,7 +108,7 @@ fn a_frame_inside_a_conditional_render_is_refused_and_the_next_one_is_right() {
     }
 }
 
-/// The table's first texel shows it.
+/// The first texel of the table shows that it was not drawn.
 #[test]
 fn tables_that_were_never_drawn_are_noticed_where_a_trial_tells_nothing() {
     let wanted = own_picture(SIZE, 0.001, 1);

@@ -83,7 +83,8 @@ pub fn run(adopted: &GlDevice, target: &GlTarget) {
     }
 }
 
-/// Numbers outside of [0, 1], a number of one corner for the whole triangle, and a target that is never read.
+/// Draws with numbers outside of [0, 1], with a flat number that one corner gives to the whole triangle, and into a
+/// target that is never read.
 fn bright(adopted: &GlDevice) {
     let device = &adopted.device.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

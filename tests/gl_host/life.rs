@@ -246,7 +246,8 @@ fn two_hosts_on_one_thread() {
             assert!(hosts[i].contexts.host.make_current());
             draws(&hosts[i], &adopted[i]);
         }
-        // In its own context a host must not be entered while another's is current, whatever the names in it are.
+        // A device in its host's own context must not be entered while another host's context is current, even if the
+        // names of objects in both are the same.
         if modes[1] == GlMode::HostContext {
             assert!(hosts[0].contexts.host.make_current());
             let error = adopted[1].host.enter().err().unwrap();

@@ -46,7 +46,8 @@ fn every_texture_of_an_own_device_serves_or_is_refused_by_name() {
         }
         textures.push((format, texture.cast_const()));
     }
-    // Every texture in every role, twice in one frame too: drawn with or refused in the header's names.
+    // Every texture in every role, also one texture in two roles: the frame is drawn, or refused with the header's
+    // names.
     let with_none = || textures.iter().copied().chain([(0, null())]);
     let (mut id, mut drawn) = (0, 0);
     for &(color_format, color) in &textures {

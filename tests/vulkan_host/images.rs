@@ -114,7 +114,7 @@ fn any_layer_is_drawn_and_the_others_stay() {
     let wanted = [0, 1].map(|id| plain(&host, device, id));
     for samples in [1, 4] {
         let eyes = pair(&host, [samples; 2], 3);
-        // One view for each eye, each on its own layer; no view uses the third layer.
+        // One view for each eye, on layers 2 and 0; no view uses layer 1.
         let scenes = [rainy(device), rainy(device)];
         for (id, wanted) in wanted.iter().enumerate() {
             for (scene, layer) in scenes.iter().zip([2, 0]) {
