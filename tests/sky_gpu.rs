@@ -320,7 +320,7 @@ fn colour_views() -> Vec<(f64, f64)> {
 #[test]
 fn a_spectral_set_draws_the_colours_that_many_wavelengths_have() {
     let planet = Planet::earth();
-    // The whole comparison runs only with WELKIN_ACCEPT: it needs a planet for every three wavelengths.
+    // The whole comparison runs only with `WELKIN_ACCEPT`: it needs a planet for every three wavelengths.
     let long = accept();
     let (many, some, allowed) = if long { (40, 15, 0.01) } else { (15, 9, 0.024) };
     let set = SpectralSet::new(many).unwrap();

@@ -478,7 +478,6 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
     }
 }
 
-// One test, since the counters belong to the whole process.
 /// A wind field round a house, stepped with gusts and steady.
 fn wind_fields_allocate_nothing() {
     for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
@@ -564,6 +563,7 @@ fn snow_on_tiles_allocates_nothing() {
     assert!(context.snow_balance().unwrap().ran_off_kg > 0.0);
 }
 
+/// All checks are one test, because the counters belong to the whole process.
 #[test]
 fn recording_allocates_nothing_of_its_own() {
     // wgpu's own backtraces are off: they would be counted, and would hold the lock that the test's backtraces need.

@@ -32,7 +32,7 @@ fn both(radius_um: f64, degrees: &[f64]) -> [Vec<f64>; 2] {
 
 /// Returns the external reflection of a drop in the same unit: a quarter of Fresnel's reflectance.
 fn outside(n: f64, angle: f64) -> f64 {
-    // Turned by pi - 2 i.
+    // The ray is turned by pi - 2 i, where i is the angle of incidence.
     let ci = (0.5 * angle).cos();
     let cr = (1.0 - (1.0 - ci * ci) / (n * n)).sqrt();
     let [s, p] = [(ci - n * cr) / (ci + n * cr), (cr - n * ci) / (cr + n * ci)];

@@ -76,7 +76,8 @@ fn first_and_second_derivatives_are_continuous_across_faces() {
             }
         }
     }
-    // Third derivatives of some tens leave 2e-4 of them in these differences. A cubic fade leaves 12 in the second.
+    // Third derivatives of some tens cause up to 2e-4 in these differences. A cubic fade would cause 12 in the second
+    // derivative.
     assert!(first < 1e-5 && second < 0.05, "{first} {second}, of {steepest}");
 }
 

@@ -13,8 +13,9 @@ struct Profile {
     pixel_ns: f64,
     /// For each pixel in which the host drew.
     air: f64,
-    /// For each pixel; and as much more for each of the host's where air is drawn too.
+    /// For each pixel.
     fog: f64,
+    /// In addition to `fog`, for each pixel in which the host drew and air is drawn too.
     fog_in_air: f64,
     /// For each pixel in which the host drew nothing.
     sky: f64,

@@ -58,9 +58,9 @@ fn differences(a: &Reference, b: &Reference) -> Vec<f64> {
     out
 }
 
-/// A resolution and finer ones to compare with: usually a coarse one, and one half as fine again. With WELKIN_ACCEPT
-/// the finest one, with each of its sizes doubled in turn: the sum of the differences is not less than the difference
-/// with all doubled at once, which would take an hour.
+/// A resolution and finer ones to compare with: usually a coarse one, and one half as fine again. With `WELKIN_ACCEPT`
+/// it is the finest resolution, with each of its sizes doubled in turn. The sum of these differences is not less than
+/// the difference with all sizes doubled at once, which would take an hour.
 fn resolutions() -> (Resolution, Vec<Resolution>) {
     if !accept() {
         let base = Resolution { altitudes: 10, sun_angles: 30, zeniths: 10, azimuths: 9, ..Resolution::QUICK };

@@ -121,7 +121,7 @@ fn input(name: &str) -> &'static Input {
     INPUTS.iter().find(|i| i.0 == name).unwrap()
 }
 
-/// On what the snow lies before.
+/// Inputs before the tested one: the ground on which the snow lies.
 const GROUNDS: [&[&str]; 5] = [
     &["grid", "a wind field"],
     &["terrain with tiles", "a wind field"],
@@ -180,10 +180,10 @@ fn settings_while_steps_remain_wait_for_them_and_are_in_the_state_after_them() {
         three.log.push(format!("{} while steps remain", input.0));
         let end_s = three.kept.time_s() + 300.0;
         let before = three.tiles.clone();
-        // All at once, and then the change.
+        // This context takes all steps in one update, then the change.
         three.kept.update(end_s).unwrap();
         (input.1)(&mut three.kept, &mut three.tiles, 4);
-        // The change in the middle of the steps.
+        // These contexts get the change in the middle of the steps.
         for context in [&mut three.loaded, &mut three.anew] {
             let first = context.update_within(end_s, Duration::ZERO).unwrap();
             three.tiles = before.clone();

@@ -143,7 +143,7 @@ impl Given {
         self
     }
 
-    /// A random weather, every third one with overrides.
+    /// A random weather; one in three has overrides.
     pub fn random(dice: &mut Dice) -> Self {
         let mut given = Self::of_kinds(dice);
         for _ in 1..=dice.below(MAX_CLOUD_LAYERS) / (1 + dice.below(8)) {

@@ -75,7 +75,8 @@ fn air_and_wind_are_those_that_the_service_decoded() {
     for row in &rows() {
         let r = read(row);
         let w = &r.weather;
-        // Tenths in the remarks round to the degrees of the report's body, at some stations to those of another minute.
+        // The service reads tenths of degrees from the remarks. They round to the degrees in the body of the report,
+        // except at some stations, whose remarks are of another minute.
         let tenths = if r.remarks.contains(" T") { 1.0 } else { 0.0 };
         assumed("temperature_c", row, &r, row.temperature_c.is_some());
         assumed("relative_humidity", row, &r, row.dew_point_c.is_some());

@@ -11,7 +11,7 @@ use welkin_support::accept;
 
 use crate::host::{Dice, Host};
 
-/// Start and length of the changes, s. At times so near 0 a microsecond is 5e9 times the resolution of f64 even at
+/// Start and length of the changes, s. At times so near 0 a microsecond is 2e6 times the resolution of f64 even at
 /// their end.
 const START_S: f64 = 100.0;
 const LENGTH_S: f64 = 3600.0;

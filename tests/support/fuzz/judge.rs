@@ -25,8 +25,8 @@ const INTERNAL: &[&str] = &[
     "bind group",
 ];
 
-/// A message without what it quotes of an input, which may have any words and marks: all from a quotation mark to the
-/// last one of its kind is left out, or to the end where a quotation is cut, and so is what was got.
+/// Removes from a message what it quotes of an input, because a quotation may have any words. A quotation ends at the
+/// last mark of its kind, or at the end of the message if it is cut. All after ", got " is removed too.
 fn unquoted(text: &str) -> String {
     let (mut own, mut rest) = (String::new(), text.split(", got ").next().unwrap_or_default());
     while let Some(begin) = rest.find(['"', '`']) {

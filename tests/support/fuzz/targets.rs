@@ -233,7 +233,7 @@ pub fn height_files() -> Vec<Vec<u8>> {
     };
     let ter = |map: &HeightMap| map.to_ter().expect("every height has a number");
     let chunks = ter(&wide);
-    // The heights before the numbers of points, and no end.
+    // A file whose chunk of heights comes before that of the numbers of points, without a chunk for the end.
     let (head, points, heights) = (&chunks[..16], &chunks[24..56], &chunks[56..chunks.len() - 4]);
     let turned = [head, &chunks[16..24], heights, points].concat();
     let values = |map: &HeightMap| map.heights_m().iter().map(|h| format!("{h:.2} ")).collect::<String>();
