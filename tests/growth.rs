@@ -1,5 +1,5 @@
-//! How the cost of frames grows with the size of the picture and the number of views, in processor time on a software
-//! driver: alone in its binary.
+//! Growth of the cost of frames with the size of the picture and the number of views, in processor time on a software
+//! driver. The test is alone in its binary.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Cost of the night sky relative to an even one, in processor time of the whole process on a software driver: alone in
-//! its binary.
+//! Cost of the night sky relative to an even one, in processor time of the whole process on a software driver. The test
+//! is alone in its binary.
 
 use std::sync::Arc;
 

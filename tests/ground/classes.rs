@@ -155,7 +155,7 @@ fn smooth_shaded_hills_do_not_show_their_triangles() {
     }
 }
 
-/// What a display shows of level ground of this albedo under the eye, in the picture's middle.
+/// Mean value that a display shows in the middle of the picture, over level ground of this albedo, 0 to 255 a channel.
 fn shown(host: &mut Host, albedo: [f64; 3], elevation_deg: f64, given: SurfaceImages<'_>) -> [f64; 3] {
     let eye = DVec3::new(0.0, 300.0, 1.7);
     let camera = camera(eye, elevation_deg, 0.1);

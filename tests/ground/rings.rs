@@ -14,8 +14,8 @@ use welkin::{
 
 use crate::host::{Host, SIZE, ground, look, ray};
 
-/// As in `shaders/ground/hollows.wgsl`: a cell's side, m, a slot of time and the part of it that a ring lives, s,
-/// layers, m/s.
+/// Constants of `shaders/ground/hollows.wgsl`: side of a cell, m; length of a time slot and life of a ring, s; number
+/// of layers; speed of a ring, m/s.
 const CELL_M: f64 = 0.2;
 const SLOT_S: f64 = 0.6;
 const LIFE_S: f64 = 0.36;

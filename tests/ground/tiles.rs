@@ -198,7 +198,7 @@ fn it_is_dry_under_a_roof_and_wet_in_hollows_over_borders() {
     assert!(got.film_mm > 0.1 && !got.in_puddle, "{got:?}");
 }
 
-/// The same ground once as four tiles and once as a grid, seen across the borders of the tiles.
+/// Compares pictures of one ground, once as four tiles and once as a grid, seen across the borders of the tiles.
 #[test]
 fn a_wet_terrain_of_tiles_looks_like_the_grid_of_its_heights() {
     let mut host = Host::new();

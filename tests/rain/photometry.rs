@@ -1,8 +1,6 @@
-//! How visible rain is: streaks against the photometric model of Garg and Nayar (2007), the rain's change from frame to
+//! Visibility of rain: streaks against the photometric model of Garg and Nayar (2007), the rain's change from frame to
 //! frame against drops that are drawn one by one ([`welkin_support::brute_rain`]), and the rain that trainees see by
-//! day.
-//!
-//! `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
+//! day.  `cargo test --test rain photometry -- --nocapture` prints the tables of docs/lab/rain.md.
 
 use std::f64::consts::PI;
 
@@ -66,7 +64,7 @@ fn drawn(host: &Host, classes: &Classes, t: f64, shutter_s: f64) -> Vec<(lattice
         .collect()
 }
 
-/// How much of a streak is measured: pixels to either side of its middle, across and along.
+/// Returns how far a streak is measured from its middle, across and along, pixels.
 fn looked_at(streak: &Streak) -> DVec2 {
     DVec2::new(1.2 * streak.end + 1.5, (0.5 * streak.half.length()).min(20.0))
 }
@@ -337,9 +335,9 @@ fn save(host: &Host, frame: &[[u8; 3]], name: &str) {
     picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)).unwrap();
 }
 
-/// With the setting for trainers rain by day is visible in front of dark hills, as thin long streaks; at gain 1 hardly,
-/// and in front of the sky never. With WELKIN_ACCEPT the test draws the whole channel, otherwise a part of it at the
-/// same pixel size.
+/// Rain by day is visible in front of dark hills with the setting for trainers, as thin long streaks. With a gain of 1
+/// it is hardly visible, and in front of the sky it never is. With `WELKIN_ACCEPT` the test draws the whole channel,
+/// otherwise a part of it with pixels of the same size.
 #[test]
 fn trainees_see_rain_by_day_and_no_snow() {
     let size = if accept() { (1280, 720) } else { (384, 216) };

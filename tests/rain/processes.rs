@@ -220,7 +220,7 @@ fn run(test: &str, name: &str) -> String {
     std::fs::read_to_string(answer).unwrap()
 }
 
-/// In a process that [`run`] started, writes the result of `channel` and returns true.
+/// Writes the result of `channel` and returns true, if this is a process that [`run`] started.
 fn is_channel(channel: impl Fn(&str) -> String) -> bool {
     let (Ok(name), Ok(answer)) = (std::env::var(CHANNEL), std::env::var(ANSWER)) else { return false };
     std::fs::write(answer, channel(&name)).unwrap();

@@ -30,7 +30,7 @@ fn dry(temperature_c: f64) -> Weather {
     Weather { temperature_c, relative_humidity: 0.6, wind: Wind::of(3.0, 200.0), ..Weather::default() }
 }
 
-/// How far the crest beside the middle of the trench has come down, m.
+/// Returns how far the crest beside the middle of the trench has come down, m.
 fn fallen_m(context: &Context) -> f64 {
     -context.soil_at(ORIGIN + DVec3::Y).unwrap().unwrap().change_m
 }

@@ -73,7 +73,7 @@ impl RandomStream {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Random whole number with mean `mean`.
+    /// Random whole number with this mean: one of the two next to it.
     fn count(&mut self, mean: f64) -> u64 {
         (mean + self.even()) as u64
     }
@@ -123,9 +123,9 @@ pub struct Film {
     pub fov_rad: f64,
     pub exposure_s: f64,
     pub rate_mm_h: f64,
-    /// Velocity of the air.
+    /// Velocity of the air, (east, north, up), m/s.
     pub wind_m_s: DVec3,
-    /// Velocity of the camera.
+    /// Velocity of the camera, (east, north, up), m/s.
     pub camera_m_s: DVec3,
     /// The smallest drops that are drawn, mm.
     pub from_mm: f64,
@@ -134,8 +134,8 @@ pub struct Film {
     pub far_m: f64,
 }
 
-/// A drop: its position relative to the camera in the middle of the first picture's exposure, m, and its velocity
-/// relative to the camera.
+/// A drop: its position relative to the camera at time 0, the middle of the first picture's exposure, m, and its
+/// velocity relative to the camera, m/s.
 #[derive(Clone, Copy)]
 pub struct Drop {
     pub position_m: DVec3,

@@ -1,4 +1,4 @@
-//! A small host: targets, a camera on a plain, and reading of pictures.
+//! A small host: targets, a camera 2500 m above the origin, and reading of pictures.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use welkin::{
 
 use crate::{coarse_sky::coarse_sky, textures};
 
-/// A device, a context and one view, with targets of `size`.
+/// A device, a context and one view, with targets of [`SIZE`].
 pub struct Host {
     pub device: Arc<Device>,
     pub context: Context,
@@ -21,12 +21,14 @@ pub struct Host {
     pub depth: wgpu::Texture,
 }
 
+/// Width and height of the targets, pixels.
 pub const SIZE: (u32, u32) = (160, 90);
 
 pub fn texture(device: &Device, format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
     textures::texture(device, SIZE, format, samples)
 }
 
+/// Returns a camera 2500 m above the origin that looks level to the north, with a vertical field of view of 1 rad.
 pub fn camera() -> Camera {
     Camera::look_to(DVec3::new(0.0, 0.0, 2500.0), DVec3::Y, DVec3::Z, 1.0, 160.0 / 90.0, 0.1)
 }
@@ -45,6 +47,7 @@ impl Host {
         Self::of(device, format, coarse())
     }
 
+    /// Creates a host of a context with this description; the sun stands in the south-east, 40 degrees high.
     pub fn of(device: Arc<Device>, format: wgpu::TextureFormat, desc: ContextDesc) -> Self {
         let shared = Arc::new(Shared::new(&device).unwrap());
         let mut context = Context::new(device.clone(), shared, desc).unwrap();
@@ -86,6 +89,7 @@ impl Host {
         self.view.record(&self.context, &frame, stages)
     }
 
+    /// Returns the picture, row by row from the top.
     pub fn pixels(&self) -> Vec<[f32; 4]> {
         readback::rgba(&self.device, &self.color).unwrap()
     }

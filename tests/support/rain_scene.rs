@@ -14,9 +14,10 @@ use welkin::{
 
 use crate::{coarse_sky::coarse_sky, textures::texture};
 
+/// Distance of the near plane from the camera, m.
 pub const NEAR_M: f64 = 0.1;
 
-/// A device, a context under rain, and one view.
+/// A device, a context in the default weather, and one view.
 pub struct Host {
     pub device: Arc<Device>,
     pub context: Context,
@@ -28,12 +29,12 @@ pub struct Host {
     pub boxes: Vec<Shelter>,
     /// Normal of the ground, which passes through the origin.
     pub normal: DVec3,
-    /// Velocity of the camera.
+    /// Velocity of the camera, (east, north, up), m/s.
     pub velocity_m_s: DVec3,
     frames: u64,
 }
 
-/// A box that stands upright.
+/// Creates a box at rest in the axes of the world, from its centre and half its size, m.
 pub fn upright(center: [f64; 3], half: [f64; 3]) -> Shelter {
     Shelter {
         center_m: DVec3::from(center),
@@ -44,6 +45,7 @@ pub fn upright(center: [f64; 3], half: [f64; 3]) -> Shelter {
     }
 }
 
+/// Returns rain of this rate at a visibility of 20 km, in a wind from the west.
 pub fn rain(rate_mm_h: f64, wind_m_s: f64) -> Weather {
     let mut weather = Weather {
         precipitation: Precipitation::of(PrecipitationKind::Rain, rate_mm_h),
@@ -86,6 +88,7 @@ impl Host {
         }
     }
 
+    /// Turns the camera to `forward` at a place, with a vertical field of view of 0.9 rad.
     pub fn look(&mut self, position: DVec3, forward: DVec3) {
         let aspect = f64::from(self.size.0) / f64::from(self.size.1);
         self.camera = Camera::look_to(position, forward.normalize(), DVec3::Z, 0.9, aspect, NEAR_M);
@@ -99,7 +102,7 @@ impl Host {
         ViewRays::new(&self.camera, &Self::mapping()).unwrap()
     }
 
-    /// End of the ray through `ndc`, relative to the camera, and the normal there.
+    /// End of the ray through `ndc`, relative to the camera, m, and the normal there; `None` for the sky.
     pub fn cast(&self, ndc: DVec2) -> Option<(DVec3, DVec3)> {
         let ray = self.rays().view_ray(ndc);
         let (eye, d) = (self.camera.position + ray.origin, ray.direction);
@@ -164,7 +167,7 @@ impl Host {
         self.record_again(stages)
     }
 
-    /// Records with the last frame's number: a picture of the same moment for another view.
+    /// Records with the number of the last frame, for a picture of the same moment in another view.
     pub fn record_again(&mut self, stages: Stages) -> welkin::Result<()> {
         let frame = Frame {
             camera_velocity_m_s: self.velocity_m_s,
@@ -173,6 +176,7 @@ impl Host {
         self.view.record(&self.context, &frame, stages)
     }
 
+    /// Returns the picture, row by row from the top.
     pub fn pixels(&self) -> Vec<[f32; 4]> {
         readback::rgba(&self.device, &self.color).unwrap()
     }

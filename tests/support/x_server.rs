@@ -5,7 +5,7 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-/// The server ends when this value is dropped.
+/// An X server without a screen, which ends when the value is dropped.
 pub struct Server {
     child: Child,
     /// Value for `DISPLAY`.

@@ -10,7 +10,7 @@ use welkin::gpu::vulkan::{EnabledFeatures, HostImage, VulkanHostDesc};
 /// Set where the validation layer cannot be installed: the tests then run without it, which they otherwise refuse.
 pub const UNVALIDATED: &str = "WELKIN_WITHOUT_VALIDATION";
 
-/// How the host sets itself up.
+/// Settings of a host: Vulkan version, device extensions, core features, and whether timeline semaphores are enabled.
 #[derive(Clone)]
 pub struct Setup {
     pub api_version: u32,

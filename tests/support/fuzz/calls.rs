@@ -180,7 +180,7 @@ impl World {
         let mut size = Struct::plain("wk_texture_desc");
         size.set("width", 16_u32);
         size.set("height", 8_u32);
-        // A context in which every effect has state: random calls would rarely create one.
+        // A context with simulated snow on a terrain, because random calls would rarely create one.
         let (mut simulated, mut simulation) = (Struct::plain("wk_context_desc"), Struct::plain("wk_simulation_desc"));
         simulation.set("lying_snow_model", WK_LYING_SNOW_SIMULATED);
         simulated.set_struct("next", simulation);
@@ -208,7 +208,7 @@ impl World {
         }
     }
 
-    /// The first context, in which every effect has state.
+    /// The first context, which has simulated snow on a terrain.
     pub fn context(&self) -> *mut wk_context {
         self.contexts[0]
     }
