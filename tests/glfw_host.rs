@@ -21,7 +21,7 @@ fn run(command: &mut Command) -> String {
     out.into_owned()
 }
 
-/// The shared library, built in the tests' own profile if none is named.
+/// The shared library that `WELKIN_LIB` names; if it names none, one built in Cargo's `dev` profile.
 fn library() -> PathBuf {
     if let Some(named) = std::env::var_os("WELKIN_LIB") {
         return named.into();

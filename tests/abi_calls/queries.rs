@@ -189,7 +189,7 @@ fn every_query_answers_for_other_times_too() {
             "position_m must be at an altitude in",
         );
         assert_eq!(here.visibility_m, 0.0, "nothing is written");
-        // The weather is the same everywhere: another place has the same conditions.
+        // Without weather regions the weather is the same everywhere.
         assert_eq!(wk_context_get_conditions(context, &EYE, 200.0, &mut here), WK_OK);
         assert_eq!(wk_context_get_conditions(context, &[1e4, 5e3, 800.0], 200.0, &mut there), WK_OK);
     }

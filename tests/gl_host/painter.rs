@@ -81,7 +81,7 @@ pub fn program(gl: &glow::Context, es: bool, vertex: &str, fragment: &str) -> gl
 }
 
 impl Painter {
-    /// The host's context is current again afterwards.
+    /// Creates the painter's context, programs and vertex array. The host's context is current again afterwards.
     pub fn new(host: &Host, api: Api) -> Self {
         let context = host.contexts.host.sharing();
         let gl = context.functions();

@@ -86,7 +86,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    /// The window's context is current.
+    /// Creates the textures and the framebuffer that frames are drawn into. The window's context must be current.
     fn new(context: &Context) -> Self {
         let gl = context.functions();
         let (color, depth) = (image_of(texture(&gl, glow::RGBA8)), image_of(texture(&gl, glow::DEPTH_COMPONENT32F)));

@@ -60,7 +60,7 @@ impl Host {
         Self { device, context, view, color, frame_id: 0 }
     }
 
-    /// Fills the picture with stripes of bright and dark.
+    /// Fills the picture with bright and dark squares of 8 pixels, as on a chequerboard.
     pub fn paint(&self) {
         let (w, h) = (self.color.width(), self.color.height());
         let texel =

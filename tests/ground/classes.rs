@@ -61,7 +61,7 @@ fn on_road(at: DVec2) -> bool {
     (at.y - 300.0).abs() < 40.0
 }
 
-/// Soil with stones and tufts, a road across.
+/// The albedo of soil with smooth bright and dark spots, and of an asphalt road across it.
 fn site(at: DVec2) -> [f64; 3] {
     let spots = 1.0 + 0.2 * (at.x * 0.31).sin() * (at.y * 0.23).cos();
     if on_road(at) { ASPHALT } else { SOIL.map(|a| a * spots) }
