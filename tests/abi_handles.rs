@@ -34,7 +34,7 @@ fn texture(device: *mut wk_device) -> *mut wk_texture {
 }
 
 #[test]
-fn a_device_outlives_its_children_and_dies_once() {
+fn a_device_is_destroyed_once_and_only_without_live_children() {
     let device = noop_device();
     let child = texture(device);
     unsafe {

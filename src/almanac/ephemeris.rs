@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_asked_before_does_not_matter() {
+    fn positions_do_not_depend_on_earlier_queries() {
         let (used, start) = (Ephemeris::default(), 1.7e9);
         for i in 0..50 {
             let utc = Utc(start + 977.0 * f64::from(i * i % 41));

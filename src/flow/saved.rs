@@ -310,7 +310,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_back_to_the_bit_and_broken_ones_do_not() {
+    fn numbers_are_read_bit_for_bit_and_damaged_ones_are_refused() {
         let lists = [vec![0.1_f32, -0.0, 1e-40, 3e38, 7.25], vec![-1.5; 3]];
         let text = written(lists.iter());
         assert_eq!(text.len(), 48);

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn no_air_comes_from_nowhere_and_a_seed_is_a_seed() {
+    fn whirls_have_no_divergence_and_differ_by_seed() {
         let three = whirls(3, 1.0, 200.0);
         let (p, h) = (DVec3::new(12.0, -7.0, 3.0), 1e-4);
         let slope = |axis: DVec3| ((three.at(p + axis * h) - three.at(p - axis * h)) / (2.0 * h)).dot(axis);

@@ -164,7 +164,7 @@ mod tests {
 
     /// The steps of the table, tested at the geometric means of neighbouring values.
     #[test]
-    fn the_threshold_runs_through_the_steps() {
+    fn the_threshold_of_lights_passes_through_the_steps_of_the_table() {
         for (b, e) in [(50.0, 8e-7 * 1e-5), (1000.0, 1e-5 * 1e-4), (12_000.0, 1e-4 * 1e-3)] {
             let middle = f64::sqrt(e);
             assert!((light_threshold_lx(b) / middle - 1.0).abs() < 0.02, "{b}: {}", light_threshold_lx(b));

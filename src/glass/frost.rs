@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn standing_glass_gathers_what_falls_and_fast_glass_less_than_meets_it() {
+    fn level_glass_gathers_all_falling_snow_and_fast_glass_a_part_of_what_hits_it() {
         let snow = Snowing { water_m_s: 1.0 / 3.6e6, fall_m_s: 1.0, flake_m3: 1e-9 };
         let mm_h = |up, approach| snow.stays_m_s(up, approach) * 3.6e6;
         // In calm air level glass gathers as much as level ground does, and upright glass nothing.

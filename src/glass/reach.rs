@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mean_is_that_of_a_surface_through_the_nodes() {
+    fn the_mean_is_that_of_a_surface_through_the_nodes() {
         assert_eq!((Reach::ALL.mean(), Reach::of(|_| 1.0), Reach::of(|_| 0.0).any()), (1.0, Reach::ALL, false));
         let half = Reach::of(|[x, _]| x);
         assert!((half.mean() - 0.5).abs() < 1e-2 && half.any(), "{}", half.mean());

@@ -75,7 +75,7 @@ mod tests {
     use crate::gpu::{Device, DeviceOptions, bind, flat_texture, pass, readback};
 
     #[test]
-    fn totals_name_what_they_count() {
+    fn each_total_is_counted_under_its_name() {
         let counts = WorkTotals::default();
         counts.add(DeviceWork::UploadBytes, 7);
         counts.add_timed([DeviceWork::CloudTables, DeviceWork::CloudTableTime], Instant::now());

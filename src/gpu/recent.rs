@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_are_held_than_there_is_room_for_and_what_is_in_use_stays() {
+    fn the_cache_holds_at_most_its_capacity_and_keeps_values_in_use() {
         let mut held = LruCache::<u32, Arc<u32>, 8>::new();
         let mut made = Vec::new();
         let mut ask = |key: u32| {

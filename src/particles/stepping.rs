@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn shells_keep_their_room_and_get_more_where_they_need_it() {
+    fn the_capacity_of_a_shell_stays_and_grows_with_its_count() {
         let first = ShellCapacities::default().for_counts([10, 0, 30, 7], 0, 1000);
         assert_eq!(first, ShellCapacities([10, 0, 30, 7]));
         assert_eq!(first.begins(), [0, 10, 10, 40]);

@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_is_not_there_learns_nothing_from_another_that_comes_with_it() {
+    fn the_ratio_of_an_absent_part_does_not_change() {
         let clear = WorkAmount { pixels: 1.0, steps: steps([0.4, 0.0, 0.05]), ..WorkAmount::default() };
         let mut governor = Governor::default();
         (0..20).for_each(|_| governor.report(clear.without(0b011).total(), &clear, 0b011));

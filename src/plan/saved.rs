@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_or_mangled_is_refused_or_says_the_same() {
+    fn damaged_plans_are_refused_or_read_as_the_same_rungs() {
         let rungs = [0, 1, 1];
         let text = write(&PARTS, &rungs, &settings());
         let mut refused = 0;

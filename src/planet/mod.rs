@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn other_wavelengths_keep_the_planet_at_its_own() {
+    fn values_at_the_planets_own_wavelengths_are_kept_and_others_follow_the_laws() {
         let earth = Planet::earth();
         let same = earth.at_wavelengths(earth.wavelengths_nm);
         let apart = earth.at_wavelengths([600.0, 500.0, 400.0]);

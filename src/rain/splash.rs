@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_are_parts_of_the_drops_that_splash() {
+    fn splash_sizes_have_the_mean_of_the_drops_that_splash() {
         for rate in [1.0, 20.0, 150.0] {
             let weather =
                 Weather { precipitation: Precipitation::of(PrecipitationKind::Rain, rate), ..Weather::default() };

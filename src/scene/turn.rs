@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn they_turn_as_glam_does() {
+    fn rotations_are_those_of_glam() {
         for angle in [-7.0, -0.3, 0.0, 1e-9, 2.5, 100.0] {
             let pairs = [
                 (turn_x(angle), DMat3::from_rotation_x(angle)),

@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn duration_raises_what_its_fetch_would() {
+    fn a_wind_of_some_hours_raises_the_sea_of_the_equivalent_fetch() {
         let lasting = GrowthState::lasting(&wind(0.0, None));
         let hours = 5.0;
         let grown = lasting.after(&wind(10.0, None), 3600.0 * hours);

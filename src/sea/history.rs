@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_timeline_forgets_stays_in_the_sea() {
+    fn changes_that_the_timeline_forgets_still_shape_the_sea() {
         let mut timeline = Timeline::new(blowing(0.0, 0.0));
         timeline.change(blowing(4.0, 270.0), 0.0, 0.0).unwrap();
         timeline.change(blowing(16.0, 300.0), 1000.0, 600.0).unwrap();

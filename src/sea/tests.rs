@@ -354,7 +354,7 @@ fn single_waves_come_on_top_and_keep_their_form() {
 }
 
 #[test]
-fn ice_takes_the_short_waves_and_shelter_all_alike() {
+fn ice_damps_short_waves_and_shelter_damps_all_waves_equally() {
     let ice = SeaIce { cover: 1.0, floe_m: 0.1, width_m: 1e4 };
     let wind_sea = WindSea::Height { significant_m: 2.0, peak_period_s: Some(7.0), gamma: None };
     let settings = SeaSettings { wind_sea, ice: Some(ice), ..SeaSettings::default() };

@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn four_turns_are_those_of_the_library() {
+    fn sine_and_cosine_of_four_turns_are_those_of_libm() {
         for i in -25_000..25_000 {
             let turns = Vec4::new(0.0, 1.0, 2.0, 3.0) * 5e-6 + Vec4::splat(2e-5 * i as f32);
             let turns = turns.clamp(Vec4::splat(-0.5), Vec4::splat(0.5));
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn all_turns_are_those_of_the_library() {
+    fn sine_and_cosine_of_any_turn_are_those_of_libm() {
         for i in -100_000..100_000 {
             let turns = f64::from(i) * 1.234_567e-4;
             let (sin, cos) = sin_cos(turns);

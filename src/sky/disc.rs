@@ -85,7 +85,7 @@ mod tests {
 
     /// The distances of sun and moon change continuously, and with them the sizes of their discs.
     #[test]
-    fn a_disc_serves_while_it_hardly_changes() {
+    fn the_depth_of_a_disc_is_reused_while_the_disc_hardly_changes() {
         let air = AirUniform::of(&Planet::earth());
         let depth = DiscDepth::new(&air, 50.0, 0.5, 0.00465);
         assert!(depth.serves(&air, 50.0, 0.5, 0.00465 * (1.0 + 1e-11)), "a moment later");

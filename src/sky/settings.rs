@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_both_ways_and_faults_say_the_range() {
+    fn names_are_read_and_written_and_errors_state_the_range() {
         for (name, model) in SkyModel::NAMES {
             assert_eq!(SkyModel::from_name(name).unwrap(), model);
             assert_eq!(model.name(), name);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn an_observers_sky_and_air_do_not_overlap_and_no_atlas_is_too_wide() {
+    fn the_sky_and_air_of_an_observer_do_not_overlap_and_fit_into_the_widest_atlas() {
         let most =
             SkySettings { air_azimuths: 64, air_slices: 32, sky_above: 256, sky_below: 256, ..Default::default() };
         assert!(most.check().is_ok());

@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn shells_hand_on_without_a_gap() {
+    fn the_shares_of_all_shells_add_up_to_one() {
         for i in 0..1000 {
             let d = NEAREST_M + f64::from(i) * 0.0135;
             let sum: f64 = (0..SHELLS).map(|s| shell_share(s, d)).sum();

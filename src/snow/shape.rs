@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_are_as_much_ice_as_flakes_are_and_no_two_are_alike() {
+    fn flake_shapes_have_the_mean_area_of_flakes_and_differ_by_seed() {
         let all: Vec<f64> = (0..600).map(|i| mean(i * 7919)).collect();
         let mid = all.iter().sum::<f64>() / all.len() as f64;
         assert!((mid / AREA_RATIO - 1.0).abs() < 0.02, "{mid}");

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_met_at_its_nodes_and_mirrored() {
+    fn zodiacal_light_has_the_values_of_the_table_and_is_symmetric() {
         for (i, l) in LONGITUDES.iter().enumerate() {
             for (j, b) in LATITUDES.iter().enumerate() {
                 for (l, b) in [(*l, *b), (-l, *b), (*l, -b), (l + 360.0, *b)] {

@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn eyes_see_what_they_are_known_to_see() {
+    fn limiting_magnitudes_are_those_observed_by_eye() {
         // Dark site, 21.6 to 22 mag/arcsec^2: 6 to 7. Suburb, 18: 4 to 5. City centre, 16: below 4.5 (Bortle 2001).
         for (sky, low, high) in [(22.0, 6.3, 7.0), (21.6, 6.2, 6.8), (18.0, 4.0, 5.2), (16.0, 3.0, 4.5)] {
             let m = limiting_magnitude(of_magnitude(sky));
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn the_display_drops_what_is_below_a_share_of_its_step() {
+    fn the_threshold_of_a_display_is_the_stated_share_of_its_step() {
         let sr = 7e-7;
         let lux = display_threshold_lux(0.1, 1.0 / 255.0 / 12.92, 50.0, sr);
         // The brightest pixel of a centred star has a tenth of a step.

@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_air_lifts_what_is_low_and_turns_nothing() {
+    fn refraction_raises_elevations_and_keeps_azimuths() {
         for elevation in [-3.0, 0.0, 10.0, 45.0, 90.0] {
             let d = direction(123.0, elevation);
             let up = lifted(d, 1.0);

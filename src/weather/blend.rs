@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_exact_and_beyond_them_nothing_moves() {
+    fn blending_is_exact_at_its_ends_and_constant_beyond_them() {
         let (a, b) = (clear(), fog());
         assert_eq!((a.lerp(&b, 0.0), a.lerp(&b, 1.0)), (a, b));
         assert_eq!((a.lerp(&b, -3.0), a.lerp(&b, f64::NAN), a.lerp(&b, 7.0)), (a, a, b));

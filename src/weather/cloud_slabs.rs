@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn slots_keep_levels_apart_and_take_sixteen() {
+    fn sixteen_slabs_fit_and_each_level_has_its_own_slots() {
         let slabs: Vec<CloudSlab> = (0..16).map(|i| sheet(1.0, 100.0 * f64::from(i))).collect();
         assert_eq!(into_slots(slabs).iter().filter(|s| s.cover > 0.0).count(), 16);
         let slots = into_slots(vec![sheet(1.0, 9000.0), sheet(1.0, 500.0), sheet(1.0, 3000.0)]);

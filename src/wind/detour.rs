@@ -312,7 +312,7 @@ mod tests {
     /// A wall of 6 m in a field of 16 m delays only the air near the ground, and over a hill only the air near its
     /// slopes.
     #[test]
-    fn detours_end_over_what_makes_them_and_follow_the_ground() {
+    fn the_delay_by_an_obstacle_ends_above_it_and_follows_the_ground() {
         let wall = volume(WindGridKind::Whole, |p| {
             let low = if p.z < 6.0 && p.truncate().length() < 30.0 { 0.2 } else { 1.0 };
             DVec2::X * (5.0 * low)

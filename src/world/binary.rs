@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_back_and_broken_texts_do_not() {
+    fn bytes_are_read_as_written_and_damaged_texts_are_refused() {
         // The examples of RFC 4648, section 10.
         for (bytes, text) in [("", ""), ("f", "Zg"), ("fo", "Zm8"), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
             assert_eq!(binary_text(bytes.as_bytes()), text);

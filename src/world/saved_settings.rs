@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_come_back_and_broken_ones_do_not() {
+    fn words_are_read_as_written_and_damaged_ones_are_refused() {
         let list = [7, 7, 7, 0, u64::MAX, 12, 12];
         let text = words(list.into_iter());
         assert_eq!(text, "7*3 0 ffffffffffffffff c*2");

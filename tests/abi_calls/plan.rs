@@ -190,7 +190,7 @@ fn a_bad_plan_is_refused_and_the_last_plan_stays() {
 }
 
 #[test]
-fn a_plan_that_is_not_made_yet_is_not_saved_and_the_report_says_what_it_does_not_know() {
+fn saving_before_the_plan_is_made_is_refused_and_the_report_has_no_predictions_yet() {
     let world = World::new();
     drawn(&world);
     assert_eq!(report(&world).has, 0, "no budget");
@@ -211,7 +211,7 @@ fn a_plan_that_is_not_made_yet_is_not_saved_and_the_report_says_what_it_does_not
 }
 
 #[test]
-fn a_contrast_gain_left_at_zero_is_natures_and_the_report_says_what_was_drawn_with() {
+fn a_contrast_gain_of_zero_means_one_and_the_report_has_the_gain_that_was_applied() {
     let world = World::new();
     let set = |contrast_gain: f64| {
         let rain = wk_rain { contrast_gain, ..init("wk_rain") };

@@ -145,7 +145,7 @@ fn a_planets_own_haze_is_drawn_beside_the_weathers() {
 }
 
 #[test]
-fn a_changed_context_draws_what_one_created_so_draws() {
+fn a_changed_context_draws_like_one_created_with_the_new_values() {
     let device = device();
     let dusty = CString::new(DUSTY).unwrap();
     let (first, second) = (sky(WK_SKY_ISOTROPIC), sky(WK_SKY_DIRECTIONAL));

@@ -297,7 +297,7 @@ fn visibility_between_points_is_that_of_the_weather() {
 }
 
 #[test]
-fn ambient_light_is_asked_for_with_a_place() {
+fn ambient_light_is_that_of_a_place_and_a_time() {
     let world = World::new();
     let mut ambient = init::<wk_ambient>("wk_ambient");
     // SAFETY: live pointers.
@@ -348,7 +348,7 @@ fn visibility_and_faintest_star_are_asked_for_with_a_place_and_a_time() {
 }
 
 #[test]
-fn a_host_asks_how_to_light_a_frame_in_its_own_numbers() {
+fn the_light_for_a_frame_is_in_the_units_and_colour_space_of_the_frame() {
     let world = World::new();
     let noon = wk_given_direction { azimuth_deg: 90.0, elevation_deg: 30.0, ..init("wk_given_direction") };
     let night = wk_given_direction { elevation_deg: -40.0, ..noon };
@@ -432,7 +432,7 @@ fn fog_laws_of_older_systems_are_checked_and_say_how_far_they_reach() {
 }
 
 #[test]
-fn costs_are_there_where_they_were_asked_for() {
+fn only_frames_with_the_measure_flag_have_costs() {
     let world = World::new();
     let zero = wk_effect_cost { effect: 99, reserved0: 9, name: null(), ms: -1.0 };
     let (mut costs, size, mut count) = ([zero; 16], size_of::<wk_effect_cost>() as u32, 77);

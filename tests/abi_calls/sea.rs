@@ -79,7 +79,7 @@ fn a_sea_answers_points_and_statistics_at_any_time() {
 }
 
 #[test]
-fn a_single_wave_is_as_high_and_as_timed_as_asked() {
+fn a_single_wave_has_the_height_and_period_that_were_set() {
     let world = World::new();
     let wave = wk_sea_wave { height_m: 1.0, length_m: 100.0, from_deg: 270.0, ..init("wk_sea_wave") };
     let calm = wk_sea { has: WK_SEA_HAS_SEA_STATE, waves: &wave, wave_count: 1, ..init("wk_sea") };
@@ -272,7 +272,7 @@ fn faults_are_named_as_in_the_header_and_change_nothing() {
 }
 
 #[test]
-fn the_weather_raises_the_sea_and_what_is_set_goes_before_it() {
+fn sea_settings_override_the_sea_of_the_weather() {
     let world = World::new();
     let weather = wk_weather {
         has: WK_WEATHER_HAS_SWELL | WK_WEATHER_HAS_SEA_WAVE_HEIGHT,

@@ -235,7 +235,7 @@ fn cloud_amounts_follow_the_station_or_the_rule_that_is_set() {
 }
 
 #[test]
-fn what_a_report_does_not_say_has_a_bit_and_its_parts_have_places() {
+fn assumed_values_of_a_report_are_flagged_and_its_parts_are_located() {
     let of = |report| by_rule(report, WK_CLOUD_AMOUNT_BY_STATION);
     let (status, _, calm, _) = of(c"EDDF 121320Z AUTO 00000KT 9999 NCD 10/05 Q1013");
     assert_eq!((status, calm.assumed), (WK_OK, 0));
@@ -271,7 +271,7 @@ fn what_a_report_does_not_say_has_a_bit_and_its_parts_have_places() {
 }
 
 #[test]
-fn a_metar_report_comes_with_its_clouds_or_says_the_column() {
+fn reading_a_report_returns_its_cloud_layers_or_names_the_column_at_fault() {
     let world = World::new();
     let report = c"METAR LBBG 041600Z AUTO 12012MPS 1400 R04/P1500N R22/P1500U +SN BKN022 OVC050 M04/M07 Q1020";
     let mut weather = init::<wk_weather>("wk_weather");

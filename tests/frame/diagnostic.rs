@@ -119,7 +119,7 @@ fn optical_depth_is_that_of_the_query() {
 
 /// Patches of fog pass a place where the air hardly moves. They are delayed there, in pictures as in queries.
 #[test]
-fn patches_go_round_what_the_wind_goes_round() {
+fn fog_patches_are_delayed_where_the_wind_is_slow() {
     let mut host = Host::new(HALF);
     let mut weather = Weather {
         visibility_m: 600.0,

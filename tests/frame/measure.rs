@@ -49,7 +49,7 @@ fn effects_add_up_to_the_whole_and_what_did_not_run_costs_nothing() {
 
 /// The sum agrees with an outside clock around stages that are recorded and waited for one by one, without MEASURE.
 #[test]
-fn the_sum_is_what_waiting_for_each_stage_takes() {
+fn the_sum_of_the_costs_agrees_with_an_outside_clock() {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float);
     let (mut ratios, stages) = (Vec::new(), [Stages::BACKGROUND, Stages::MEDIUM, Stages::TONE]);
     record(&mut host, 0, FrameFlags::MEASURE, Stages::ALL);

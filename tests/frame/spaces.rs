@@ -37,7 +37,7 @@ pub fn veil() -> Vec<([f64; 3], [f64; 3])> {
 }
 
 #[test]
-fn the_veil_is_there_to_be_composed() {
+fn the_veil_has_light_and_lets_some_light_through() {
     for (light, through) in veil() {
         assert!(light[2] > 10.0 && through[2] > 0.3 && through[2] < 0.999, "{light:?} {through:?}");
     }

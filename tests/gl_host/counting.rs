@@ -110,7 +110,7 @@ fn a_frame_inside_a_conditional_render_is_refused_and_the_next_one_is_right() {
 
 /// The first texel of the table shows that it was not drawn.
 #[test]
-fn tables_that_were_never_drawn_are_noticed_where_a_trial_tells_nothing() {
+fn tables_that_were_never_drawn_are_detected_without_a_trial() {
     let wanted = own_picture(SIZE, 0.001, 1);
     let host = Host::new(Api::Core(4, 5), Window::None, GlMode::HostContext);
     let color = image_of(texture(&host.gl, glow::RGBA8));

@@ -143,7 +143,7 @@ fn multisampled_images_per_sample() {
 }
 
 #[test]
-fn what_wgpu_cannot_copy_is_there_to_read() {
+fn effects_read_images_that_wgpu_cannot_copy() {
     for mode in [GlMode::Shared, GlMode::HostContext] {
         let host = Host::new(Api::Core(4, 5), Window::None, mode);
         let gl = &host.gl;
@@ -341,7 +341,7 @@ pub fn assert_refused(host: &Host, desc: &GlTargetDesc, status: Status, parts: &
 }
 
 #[test]
-fn what_cannot_be_served_is_refused_by_name() {
+fn unsupported_images_are_refused_by_name() {
     for mode in [GlMode::Shared, GlMode::HostContext] {
         let host = Host::new(Api::Core(4, 5), Window::None, mode);
         let gl = &host.gl;

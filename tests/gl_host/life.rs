@@ -82,7 +82,7 @@ unsafe extern "C" fn has_the_least(user: *mut c_void, name: *const c_char) -> *c
 }
 
 #[test]
-fn a_number_in_place_of_a_function_is_none() {
+fn a_number_that_is_no_address_counts_as_a_missing_function() {
     let context = Context::new(Api::Core(3, 3), Window::None);
     assert!(context.make_current());
     for number in NO_FUNCTIONS {
@@ -307,7 +307,7 @@ fn census(gl: &glow::Context) -> [Vec<u32>; 5] {
 }
 
 #[test]
-fn nothing_is_left_behind_and_nothing_of_the_host_goes() {
+fn closing_destroys_all_objects_of_welkin_and_none_of_the_host() {
     for mode in [GlMode::HostContext, GlMode::Shared] {
         let window = Window::Pbuffer(WIDTH as i32, HEIGHT as i32, 0);
         let host = Host::new(Api::Core(4, 5), window, mode);
@@ -450,7 +450,7 @@ fn an_error_the_host_has_not_read_stays() {
 }
 
 #[test]
-fn a_program_that_could_not_come_back_is_refused() {
+fn a_current_program_marked_for_deletion_is_refused() {
     let host = Host::new(Api::Core(3, 3), Window::None, GlMode::HostContext);
     let gl = &host.gl;
     let adopted = host.adopt();

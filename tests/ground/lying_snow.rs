@@ -137,7 +137,7 @@ fn a_night_laid_fast_is_the_night_within_five_percent_and_says_so() {
 }
 
 #[test]
-fn a_plough_takes_what_it_says_and_wheels_press_tracks() {
+fn a_plough_removes_the_mass_that_it_returns_and_wheels_press_tracks() {
     let host = Host::new();
     let mut context = context(&host, LyingSnowModel::Simulated);
     let strip =

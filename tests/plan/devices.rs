@@ -135,7 +135,7 @@ fn is_best(name: &str, profile: &Profile, share: f64, budget_ms: f64, of: &Settl
 }
 
 #[test]
-fn each_device_leaves_out_what_is_missed_least_by_its_own_costs() {
+fn the_plan_for_each_device_loses_least_within_its_time() {
     let mut bench = Bench::new();
     let mut differ = Vec::new();
     // Important parts take 128 frames to fade.

@@ -126,7 +126,7 @@ fn cones_in_place_of_drops_keep_the_tolerance_as_textures() {
 
 /// A contrast gain makes streaks matter more, and the plan accounts for it.
 #[test]
-fn the_plan_knows_what_a_contrast_gain_makes_of_streaks() {
+fn the_plan_counts_the_contrast_gain_of_streaks() {
     let mut bench = Bench::new();
     for seed in [1, 2, 7] {
         let shot =

@@ -237,7 +237,7 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
 
 /// The report tells the rain that had no room: for drops the number that each stands for, for splashes their rate.
 #[test]
-fn the_report_says_how_much_rain_had_no_room() {
+fn the_report_has_the_weight_of_a_drop_and_the_splashes_left_out() {
     let mut host = white((64, 36));
     let report = |host: &mut Host, rate: f64, t: f64| {
         host.context.set_weather(&rain(rate, 0.0), t, 0.0).unwrap();

@@ -68,7 +68,7 @@ const PLATFORMS: [&str; 30] = [
 ];
 
 #[test]
-fn what_decides_a_state_takes_its_functions_from_libm() {
+fn code_that_computes_states_calls_mathematical_functions_of_libm_only() {
     let mut found = Vec::new();
     for (room, path) in files("src", "rs") {
         let name = path.strip_prefix(root().join("src")).expect("below it").to_string_lossy().replace('\\', "/");

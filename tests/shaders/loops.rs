@@ -222,7 +222,7 @@ fn every_loop_ends_whatever_its_blocks_hold() {
 }
 
 #[test]
-fn a_loop_that_a_block_lifts_is_seen() {
+fn a_loop_whose_end_a_block_sets_is_found() {
     let shader = |end: &str, step: &str| {
         format!(
             "struct Block {{ count: u32 }} @group(0) @binding(0) var<uniform> block: Block;
@@ -245,7 +245,7 @@ fn a_loop_that_a_block_lifts_is_seen() {
 
 /// The limits of the sky's loops are the upper ends of the settings' ranges: no accepted setting is cut.
 #[test]
-fn the_skys_caps_are_its_settings_own() {
+fn the_limits_of_the_skys_loops_are_the_upper_ends_of_its_settings() {
     use welkin::sky::SkySettings;
     let maps = text("sky/maps.wgsl");
     let cap = |name: &str| {

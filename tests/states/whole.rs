@@ -140,7 +140,7 @@ fn pairs() -> impl Iterator<Item = (&'static [&'static str], &'static Input)> {
 }
 
 #[test]
-fn whatever_is_set_between_steps_is_in_the_state_as_it_is() {
+fn every_input_between_steps_is_in_the_saved_state() {
     for (ground, input) in pairs() {
         let mut three = Three::new(ground);
         three.tell(input, if ground.len() == 2 { 4 } else { 7 });

@@ -229,7 +229,7 @@ fn forgotten_after_they_were_destroyed() {
 }
 
 #[test]
-fn a_device_with_children_says_that_it_must_stay() {
+fn a_device_with_children_is_not_destroyed() {
     let host = Host::new(Setup::modern());
     let device = device(&host);
     let scene = rainy(device);

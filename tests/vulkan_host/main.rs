@@ -199,7 +199,7 @@ fn the_hosts_objects_live_on_when_welkin_goes() {
 }
 
 #[test]
-fn the_layout_wanted_back_holds_whatever_the_last_use_was() {
+fn images_come_back_in_the_final_layout_whatever_the_last_use_was() {
     let host = Host::new(Setup::modern());
     let welkin = adopted(&host);
     let picture = Picture::new(&host, vk::Format::D32_SFLOAT);

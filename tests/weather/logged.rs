@@ -36,7 +36,7 @@ impl log::Log for Listener {
 }
 
 #[test]
-fn opengl_hears_of_no_error() {
+fn opengl_logs_no_error() {
     log::set_logger(&Listener).unwrap();
     log::set_max_level(log::LevelFilter::Error);
     for force_tier0 in [false, true] {

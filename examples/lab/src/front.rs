@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn the_front_holds_the_points_that_no_other_point_beats() {
         let points = [[1.0, 5.0], [2.0, 2.0], [3.0, 3.0], [4.0, 1.0], [1.0, 6.0], [2.0, 2.0], [0.1, f64::NAN]];
         assert_eq!(pareto(&points), [0, 1, 5, 3]);
         assert!(pareto(&[]).is_empty());

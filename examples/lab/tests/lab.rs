@@ -194,7 +194,7 @@ fn the_forward_peak_breaks_where_equal_numbers_are_subtracted() {
 }
 
 #[test]
-fn standard_depth_and_far_origins_lose_what_welkin_keeps() {
+fn standard_depth_and_far_origins_lose_precision_that_welkin_keeps() {
     let map = numbers::depth().unwrap();
     let at = |map: &Map, panel: usize, x: f64, y: f64| {
         let near = |values: &[f64], v: f64| {

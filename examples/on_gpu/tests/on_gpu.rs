@@ -76,7 +76,7 @@ fn a_software_driver_answers_every_step_right() {
 }
 
 #[test]
-fn the_decision_follows_what_the_steps_found() {
+fn the_decision_follows_from_the_results_of_the_steps() {
     const WRONG: &str = "RESULT wrong dims, word 4: 0x00000000, not 0x00000008";
     let loops = "raw-while|norm-constants|norm|norm-plain|norm-written|norm-own";
     for (name, hung, wrong, shared_hangs, wanted) in [

@@ -72,7 +72,7 @@ fn shape_of(masks: &[CloudMask]) -> CloudShape {
 }
 
 #[test]
-fn a_cloud_has_its_pixels_its_holes_and_its_cut() {
+fn clouds_are_found_with_their_pixels_perimeters_and_cuts() {
     let rows = ["........", ".###....", ".#.#..#.", ".###...#", "........", "#.......", ".....#..", "........"];
     let mask = CloudMask::new(8, |x, y| rows[y].as_bytes()[x] == b'#');
     let (clouds, _) = clouds_of(&mask);

@@ -150,7 +150,7 @@ fn flashes_come_in_order() {
 }
 
 #[test]
-fn known_flows_answer() {
+fn known_flows_are_computed() {
     let out = flow::centre_line(100.0, 8).unwrap();
     assert!(out.starts_with("y,u\n0,0\n0.0625,") && out.ends_with("\n1,1\n"), "{out}");
     let kept = column(&flow::taylor_green(16, 1.0, Scheme::default()).unwrap(), "kinetic_energy_kept");

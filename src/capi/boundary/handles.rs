@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parent_outlives_its_children() {
+    fn a_parent_with_live_children_is_not_removed() {
         let ship = insert::<Ship, Ship>(Arc::new(Ship), None).unwrap();
         let boat = insert::<Boat, Ship>(Arc::new(Boat), Some(ship)).unwrap();
         assert_eq!(remove::<Ship>("ship", ship).err().unwrap().status, Status::InUse);
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn many_threads_never_meet_in_a_slot() {
+    fn handles_of_many_threads_never_share_a_slot() {
         std::thread::scope(|scope| {
             for _ in 0..4 {
                 scope.spawn(|| {

@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarse_map_does_not_wait_to_grow_old() {
+    fn the_rows_of_a_coarse_map_are_redrawn_at_once() {
         let mut rows = MapRows::default();
         let coarse = Turn { aged: 0.0, is_coarse: true, ..MOVES };
         assert_eq!([(); 2].map(|()| rows.due((8, 4), &coarse)), [Some((0, 4)), Some((4, 4))]);

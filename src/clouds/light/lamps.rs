@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shader_knows_the_rows() {
+    fn the_shader_has_the_same_number_of_rows() {
         let text = shader::assemble("between/sky_sample.wgsl").unwrap();
         assert!(text.contains(&format!("const GLOW_ROWS: f32 = {ROWS}.0;")));
         assert_eq!((glow_size((640, 360)), glow_size((64, 36)), glow_size((1, 50))), ((171, 96), (64, 36), (1, 50)));

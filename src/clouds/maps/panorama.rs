@@ -140,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_shader_knows_the_side() {
+    fn the_shader_has_the_same_side_length() {
         let text = crate::gpu::shader::assemble("between/sky_sample.wgsl").unwrap();
         assert!(text.contains(&format!("const ROUND_SIDE: f32 = {PANORAMA_SIDE}.0;")));
     }

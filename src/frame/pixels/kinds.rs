@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_split_one_draw_has_all_that_is_not_even() {
+    fn one_draw_has_all_uneven_pixels_where_they_are_not_split() {
         let of =
             |all: &Variant, grid| draws(all, grid, false).into_iter().flatten().map(|v| v.pixels).collect::<Vec<_>>();
         let (all, behind) = (variant(Stages::ALL, true, true), variant(Stages::BACKGROUND, true, false));

@@ -76,7 +76,7 @@ fn a_wait_lasts_as_long_as_the_work() {
 }
 
 #[test]
-fn a_fault_is_a_value_and_a_lost_device_says_so() {
+fn an_error_of_wgpu_is_returned_once_and_a_lost_device_is_reported() {
     let device = Device::headless(&DeviceOptions::default()).unwrap();
     let _ = device.device.create_texture(&wgpu::TextureDescriptor {
         label: None,

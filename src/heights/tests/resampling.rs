@@ -8,7 +8,7 @@ fn of(columns: u32, rows: u32, height: impl Fn(f64, f64) -> f64) -> HeightMap {
 }
 
 #[test]
-fn the_mean_stays() {
+fn resampling_keeps_the_mean_height() {
     let mut chance = RandomStream::new(3, 0);
     let mut side = || 1 + (chance.even() * 40.0) as u32;
     let sizes: Vec<[u32; 4]> = (0..300).map(|_| [side(), side(), side(), side()]).collect();

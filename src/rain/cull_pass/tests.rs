@@ -130,7 +130,7 @@ impl Bench {
 }
 
 #[test]
-fn the_list_has_what_the_picture_shows_in_the_lattices_order() {
+fn the_list_has_the_visible_drops_in_the_order_of_the_lattice() {
     // Rates that need lists of different sizes.
     for rate_mm_h in [0.5, 60.0, 8.0] {
         let mut bench = Bench::new(rate_mm_h);

@@ -215,7 +215,7 @@ fn drops_go_round_a_cylinder_as_true_drag_takes_them() {
 }
 
 #[test]
-fn in_an_even_wind_they_are_the_lattices_drops_until_they_leave_and_as_many_after() {
+fn in_an_even_wind_drops_are_those_of_the_lattice_until_they_leave_and_stay_even() {
     let mut bench = Bench::new(20.0, 20_000);
     let (eye, wind) = (DVec3::new(3.0, -2.0, 1.5), DVec3::new(6.0, 2.0, 0.0));
     let lattice_at =

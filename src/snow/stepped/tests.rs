@@ -133,7 +133,7 @@ impl Bench {
 }
 
 #[test]
-fn in_an_even_wind_they_are_the_lattices_flakes_until_they_leave() {
+fn in_an_even_wind_flakes_are_those_of_the_lattice_until_they_leave() {
     let mut bench = Bench::new(1.5, 12_000);
     let (eye, wind) = (DVec3::new(3.0, -2.0, 1.5), DVec3::new(1.5, 0.5, 0.0));
     // A wind volume that adds 0 m/s.
@@ -158,7 +158,7 @@ fn in_an_even_wind_they_are_the_lattices_flakes_until_they_leave() {
 }
 
 #[test]
-fn they_go_with_the_wind_where_they_are_at_their_own_fall() {
+fn flakes_move_with_the_wind_at_their_place_and_fall_at_their_own_speed() {
     let mut bench = Bench::new(1.5, 12_000);
     let eye = DVec3::new(0.0, 0.0, 2.0);
     let up = even([4.0, 0.0, 0.5], WindGridKind::Whole);

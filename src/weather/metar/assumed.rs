@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_bounds_a_missing_temperature() {
+    fn precipitation_limits_the_assumed_temperature() {
         for (groups, celsius) in [
             ("10SM", 15.0),
             ("3SM RA BR", 15.0),

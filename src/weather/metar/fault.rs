@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_know_their_places() {
+    fn words_are_found_with_their_offsets() {
         let w = words("METAR  KDEN\n171853Z= rest");
         let places: Vec<(&str, usize)> = w.iter().map(|w| (w.text, w.at)).collect();
         assert_eq!(places, [("METAR", 0), ("KDEN", 7), ("171853Z", 12)]);

@@ -211,7 +211,7 @@ fn places_lead_into_the_text() {
 }
 
 #[test]
-fn odd_groups_mean_what_they_say() {
+fn unusual_groups_are_decoded_by_their_definition() {
     let thunder = of("EHAM").weather;
     assert!(!thunder.precipitation.thunderstorm, "thunder in the vicinity is not here");
     assert!(of("KABQ").weather.precipitation.thunderstorm);
@@ -243,7 +243,7 @@ fn odd_groups_mean_what_they_say() {
 
 /// 20,000 damaged reports: none panics, and each that is accepted gives a weather from which conditions derive.
 #[test]
-fn damaged_reports_neither_panic_nor_give_what_cannot_be() {
+fn damaged_reports_do_not_panic_and_give_possible_weather() {
     // A linear congruential generator (Knuth, MMIX); the upper bits choose.
     let mut state = 0x5EED_u64;
     let mut pick = |n: usize| {
