@@ -124,7 +124,7 @@ fn horizon_twilight_mirror_and_height_are_smooth() {
         assert!(a.radiance[1] < last, "sun {} {} {last}", f64::from(tenth) * 0.1, a.radiance[1]);
         last = a.radiance[1];
     }
-    // Mirror plane, and continuous across it.
+    // The sky is symmetric about the vertical plane of the sun, and continuous across it.
     let around: Vec<Ray> = (0..=60).map(|i| Ray::at(1.3, (f64::from(i) - 30.0) * 0.002, 0.0)).collect();
     let seen = probe.under_sun(Question::Sky, 1.0, 1.4, &around).unwrap();
     for i in 0..=60 {
@@ -325,7 +325,7 @@ fn a_frame_pays_a_slice_of_the_work_and_every_eighth_none() {
     assert!((works.iter().sum::<f32>() - 1.0).abs() < 1e-3 && (90..=98).contains(&built), "{built}: {works:?}");
     assert!(works[..built - 1].chunks(8).all(|c| c.iter().take(7).all(|w| *w > 0.9 * share && *w <= share + 1e-6)));
     assert!(works[..built].iter().skip(7).step_by(8).all(|w| *w == 0.0), "{works:?}");
-    // Neither where observers draw what was built, nor while it fades in.
+    // The observer draws nothing during the build; it draws in the frame after, and the result fades in over 16 more.
     assert!(refined[..built].iter().all(|(_, drawn)| !drawn) && refined[built].1);
     assert_eq!(refined.len(), built + 1 + 16);
     assert!(refined.windows(2).all(|w| w[0].0.done <= w[1].0.done));
@@ -336,7 +336,7 @@ fn a_frame_pays_a_slice_of_the_work_and_every_eighth_none() {
     assert!(far.len() > refined.len() + 16, "{} after {}", far.len(), refined.len());
     let near = run(&mut tables, &planet.with_air_scaled(1.31), &mut follow);
     assert_eq!((near.len(), near.iter().all(|(p, _)| p.work <= share + 1e-6)), (refined.len(), true));
-    // And an air far from what is being built ends that build.
+    // An air far from the one that is being built ends that build.
     follow(&mut tables, &planet.with_air_scaled(1.32));
     let back = run(&mut tables, &planet, &mut follow);
     assert_eq!(back.len(), far.len());

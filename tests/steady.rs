@@ -478,7 +478,7 @@ fn steady(name: &str, host: &mut dyn Host, frames: u64, bare: f64) {
     }
 }
 
-/// A wind field round a house, stepped with gusts and steady.
+/// Steps a wind field round a house, once with gusts and once to its steady state.
 fn wind_fields_allocate_nothing() {
     for mode in [WindFieldMode::Running, WindFieldMode::Steady] {
         let options = DeviceOptions { backends: wgpu::Backends::NOOP, ..DeviceOptions::default() };

@@ -235,7 +235,8 @@ fn it_is_dry_in_a_cab_and_under_a_deck_whatever_the_wind() {
     }
 }
 
-/// The report tells the rain that had no room: for drops the number that each stands for, for splashes their rate.
+/// Where rain has more drops or splashes than are drawn, the report has the number of drops that each drawn one stands
+/// for, and the rate of the splashes left out.
 #[test]
 fn the_report_has_the_weight_of_a_drop_and_the_splashes_left_out() {
     let mut host = white((64, 36));

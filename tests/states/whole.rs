@@ -121,7 +121,7 @@ fn input(name: &str) -> &'static Input {
     INPUTS.iter().find(|i| i.0 == name).unwrap()
 }
 
-/// Inputs before the tested one: the ground on which the snow lies.
+/// Sets of inputs before the tested one: the grounds on which it is tested.
 const GROUNDS: [&[&str]; 5] = [
     &["grid", "a wind field"],
     &["terrain with tiles", "a wind field"],

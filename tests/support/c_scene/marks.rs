@@ -4,7 +4,7 @@ use welkin::capi::{device::*, frame::*, ground::*, texture::*, view::*};
 
 use super::own::{Own, Size, different, wet_scene};
 
-/// Stages of the wet scene without falling rain, which uses neither.
+/// All stages but that of falling rain, which uses neither classes nor normals.
 pub const STAGES: wk_stage_flags = WK_STAGE_ALL & !WK_STAGE_PARTICLES;
 
 /// Classes from the left: soil, paving, a building, none.
