@@ -17,7 +17,7 @@ struct Varying {
     let at = rest_of(block, index);
     let here = sea_vertex(at, sea_place(at).share);
     let place = at + here.shift;
-    let point = sea_point(place, here.height);
+    let point = sea_point(place, here.height + wake_height(at, place));
     return Varying(sea.clip * vec4f(point, 1.0), vec4f(at, place), point, here.slope, here.squeeze, here.left);
 }
 
@@ -28,7 +28,10 @@ fn shown(in: Varying) -> vec4f {
     }
     drawn = vec4f(1.0);
     let at = in.places.xy;
-    let light = sea_light(in.point, at, sea_slopes_at(at, in.slope, in.squeeze, place.share), in.left);
+    let wake = wake_shown(at, in.places.zw);
+    var slopes = sea_slopes_at(at, in.slope, in.squeeze, place.share);
+    slopes.slope += wake.slope;
+    let light = sea_light(in.point, at, slopes, in.left, wake.foam);
     return vec4f(host_number(min(light, vec3f(sea.most))), 1.0);
 }
 

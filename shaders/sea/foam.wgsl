@@ -87,13 +87,14 @@ struct FoamCover {
     white: f32,
 }
 
-// Foam at a place at rest, where earlier waves left some.
-fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32) -> FoamCover {
-    let breaking = breaking_share(shown);
-    if breaking + left < FOAM_LEAST {
-        return FoamCover(breaking + left, 0.0);
+// Foam at a place at rest, where earlier waves and hulls left some.
+fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32, wake: f32) -> FoamCover {
+    let has_whitecaps = sea.foam_from < SEA_NO_FOAM;
+    let breaking = select(0.0, breaking_share(shown), has_whitecaps);
+    if breaking + left + wake < FOAM_LEAST {
+        return FoamCover(breaking + left + wake, 0.0);
     }
-    let share = min(breaking + left * streak_factor(at, shown.octaves), 1.0);
+    let share = min(breaking + left * streak_factor(at, shown.octaves) + wake, 1.0);
     if share < FOAM_LEAST {
         return FoamCover(share, 0.0);
     }

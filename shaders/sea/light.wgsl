@@ -112,17 +112,17 @@ fn sea_facing(point: vec3f, shown: SeaSlopes) -> SeaFacing {
     return SeaFacing(to_eye, slope, reflected, reflect(-to_eye, facet), area);
 }
 
-// Light of the surface at a camera-relative point, whose place at rest is `at`, towards the eye, cd/m^2; `left` is the
-// share under foam that earlier waves left.
-fn sea_light(point: vec3f, at: vec2f, shown: SeaSlopes, left: f32) -> vec3f {
+// Light of the surface at a camera-relative point, whose place at rest is `at`, towards the eye, cd/m^2; `left` and
+// `wake` are the shares under foam that earlier waves and hulls left.
+fn sea_light(point: vec3f, at: vec2f, shown: SeaSlopes, left: f32, wake: f32) -> vec3f {
     let facing = sea_facing(point, shown);
     // A mirrored ray that points down meets other waves, which mirror part of the sky beside it.
     let around = mirrored_sky(vec3f(facing.mirrored.xy, abs(facing.mirrored.z)));
     let sky = around * mix(OTHER_WAVES, 1.0, smoothstep(-0.1, 0.05, facing.mirrored.z));
     let glitter = sea_glitter(facing.slope, shown.left, facing.to_eye, facing.area);
     let light = mix(sea.body, sky, facing.reflected) + glitter;
-    if sea.foam_from >= SEA_NO_FOAM {
+    if sea.foam_from >= SEA_NO_FOAM && wake <= 0.0 {
         return light;
     }
-    return mix(light, sea.white * FOAM_WHITE, foam_cover(at, shown, left).white);
+    return mix(light, sea.white * FOAM_WHITE, foam_cover(at, shown, left, wake).white);
 }

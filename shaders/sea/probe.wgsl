@@ -23,12 +23,18 @@ fn probed_place(position: vec4f) -> vec2f {
     return vec4f(shown.slope, shown.left.x + shown.left.z, shown.compression);
 }
 
+// Height of the wakes at a place, their slope, and their share under foam.
+@fragment fn wakes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
+    let found = wakes_at(probed_place(position), WakeFilter(1e9, vec2f(0.0), vec2f(0.0), 0.0));
+    return vec4f(found.height, found.slope, found.foam);
+}
+
 // Reflectance towards the eye, the share under foam, and how much of the light of dense foam there is.
 @fragment fn reflectances(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let here = sea_vertex(at, 1.0);
     let shown = sea_slopes_at(at, here.slope, here.squeeze, 1.0);
     let point = sea_point(at, 0.0);
-    let foam = foam_cover(at, shown, here.left);
+    let foam = foam_cover(at, shown, here.left, 0.0);
     return vec4f(sea_facing(point, shown).reflected, foam.share, foam.white, 0.0);
 }

@@ -6,6 +6,7 @@
 // the level of the mesh, so that levels meet without cracks.
 //!include "sea/mesh.wgsl"
 //!include "sea/regions.wgsl"
+//!include "sea/wakes.wgsl"
 
 const SEA_TAU: f32 = 6.28318531;
 const SEA_HALF_TAU: f32 = 3.14159265;
@@ -215,6 +216,26 @@ fn sea_vertex(at: vec2f, share: f32) -> SeaVertex {
     out.slope *= share;
     out.squeeze *= share;
     return out;
+}
+
+// Height of wakes at a place that the water has moved to from `rest`, as far as the mesh resolves it.
+fn wake_height(rest: vec2f, place: vec2f) -> f32 {
+    if sea_band.wakes == 0u {
+        return 0.0;
+    }
+    let per_cell = SEA_CELLS_TO_DISTANCE / mesh_distance(rest);
+    return wakes_at(place, WakeFilter(per_cell, vec2f(0.0), vec2f(0.0), 0.0)).height;
+}
+
+// Slope and foam of wakes that a pixel shows.
+fn wake_shown(rest: vec2f, place: vec2f) -> WakeSurface {
+    if sea_band.wakes == 0u {
+        return WakeSurface(0.0, vec2f(0.0), 0.0);
+    }
+    let footprint = footprint_at(rest);
+    let along = footprint.toward * footprint.along;
+    let across = vec2f(footprint.toward.y, -footprint.toward.x) * footprint.across;
+    return wakes_at(place, WakeFilter(0.0, along, across, 1.0 / last_turns(footprint)));
 }
 
 // Camera-relative position of a surface point whose place on the map is `at`.

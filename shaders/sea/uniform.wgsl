@@ -7,6 +7,8 @@ const SEA_SIDE: f32 = 128.0;
 const MOST_SEA_WAVES: u32 = 512u;
 const MOST_SEA_REGIONS: u32 = 64u;
 const MOST_OUTLINE_CORNERS: u32 = 64u;
+const MOST_SEA_HULLS: u32 = 64u;
+const MOST_WAKE_STATES: u32 = 64u;
 
 struct SeaTile {
     // Texture coordinates of the anchor.
@@ -148,6 +150,31 @@ struct SeaRegion {
 // Corners of a region in each row, m to the right and ahead of its centre.
 @group(2) @binding(10) var sea_outlines: texture_2d<f32>;
 
+// A wake of a hull.
+struct SeaWake {
+    // Middle of a circle around all of it, and the square of its radius, m^2.
+    middle: vec2f,
+    reach2: f32,
+    // Number of states of its hull.
+    states: u32,
+    // Hull: length and beam of the waterline and draught, m.
+    length: f32,
+    beam: f32,
+    draught: f32,
+    // Ages of its newest and oldest waves, s.
+    newest: f32,
+    oldest: f32,
+    pad_a: f32,
+    pad_b: f32,
+    pad_c: f32,
+}
+
+// Wakes that the camera may see.
+@group(2) @binding(11) var<uniform> sea_wakes: array<SeaWake, 64>;
+// States of a hull in each row, from new to old, two texels each: place and velocity; age, heading and
+// rate of turn.
+@group(2) @binding(12) var sea_tracks: texture_2d<f32>;
+
 // Blocks of the mesh that are drawn together.
 struct SeaBand {
     // Single waves that their pixels sum: index of the first, and of the one after the last.
@@ -157,6 +184,11 @@ struct SeaBand {
     regions: u32,
     // 1 if there is sea outside regions, 0 if not.
     is_open: u32,
+    // Number of wakes that may lie in them.
+    wakes: u32,
+    pad_a: u32,
+    pad_b: u32,
+    pad_c: u32,
 }
 
 @group(3) @binding(0) var<uniform> sea_band: SeaBand;

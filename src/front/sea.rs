@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::{
     context::Context,
     error::{Error, Result, check_range},
-    sea::{SeaPoint, SeaRegion, SeaSettings, SeaStatistics, SeaSurface},
+    sea::{SeaHull, SeaPoint, SeaRegion, SeaSettings, SeaStatistics, SeaSurface, Wake},
     terrain::SurfaceClass,
 };
 
@@ -18,6 +18,7 @@ const MOST_SHORTEST_M: f64 = 1e4;
 pub(crate) struct SeaQuery<'a> {
     context: &'a Context,
     surface: Arc<SeaSurface>,
+    wakes: Arc<Vec<Wake>>,
     time_s: f64,
     shortest_wave_m: f64,
 }
@@ -35,6 +36,7 @@ impl SeaQuery<'_> {
         };
         let map_m = DVec2::from_array(world.map_place(position, &local));
         let mut point = self.surface.within(&water, map_m, self.shortest_wave_m);
+        point.add_wakes(&self.wakes, map_m, self.shortest_wave_m);
         if let Some(bed) = self.context.sea_bed(position, local.place.altitude_m) {
             let depth_m = point.height_m - bed.altitude_m;
             if depth_m > 0.0 {
@@ -86,6 +88,23 @@ impl Context {
         self.held.sea.regions()
     }
 
+    /// Replaces the hulls that raise wakes; an empty list removes all. A hull goes on at its speed and rate of turn; set
+    /// the hulls again when these change, in every frame if you like. One whose number was in the list before goes on
+    /// with its track, unless it stands more than two of its lengths beside it. The waves of one that is no longer in
+    /// the list fade with time. Part of the saved state.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_HULLS`](crate::sea::MAX_SEA_HULLS), for two of the same
+    /// number, or naming the hull and its field; nothing changes then.
+    pub fn set_sea_hulls(&mut self, hulls: &[SeaHull]) -> Result<()> {
+        self.held.sea.set_hulls(&self.world, hulls)
+    }
+
+    /// Returns the hulls that raise wakes, as they were set.
+    pub fn sea_hulls(&self) -> impl Iterator<Item = &SeaHull> {
+        self.held.sea.hulls()
+    }
+
     /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
     /// horizontal place of a position counts, not its height. There is no water where the terrain's tiles lie above the
     /// surface, except in cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers are
@@ -129,7 +148,8 @@ impl Context {
     pub(crate) fn sea_query(&self, time_s: f64, shortest_wave_m: f64) -> Result<SeaQuery<'_>> {
         check_range("shortest_wave_m", shortest_wave_m, 0.0, MOST_SHORTEST_M, "m")?;
         let surface = self.held.sea.surface(&self.world, time_s)?;
-        Ok(SeaQuery { context: self, surface, time_s, shortest_wave_m })
+        let wakes = self.held.sea.wakes(time_s);
+        Ok(SeaQuery { context: self, surface, wakes, time_s, shortest_wave_m })
     }
 
     /// Checks a position of a query.

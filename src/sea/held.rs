@@ -9,12 +9,15 @@ use super::{
     clarity::WaterClarity,
     growth::GrowthState,
     history::DatedGrowth,
+    hull::{MAX_SEA_HULLS, SeaHull},
     ice::SeaIce,
     model::{PreparedSea, SeaStatistics, SeaWorkshop, WeatherPast},
     regions::{MAX_SEA_REGIONS, PlacedRegion, SeaRegion, WaterBody, water_at},
     settings::{SeaSettings, SeaSwell, Tide, WindSea},
     single::SingleWave,
     surface::SeaSurface,
+    track::HullTrack,
+    wake_field::Wake,
 };
 use crate::{
     error::{Error, Result, Status},
@@ -27,6 +30,10 @@ use crate::{
 pub(crate) struct HeldSea {
     sea: Option<PreparedSea>,
     regions: Vec<PlacedRegion>,
+    /// Tracks of the hulls that the host lists, and of those whose waves are still there.
+    tracks: Vec<HullTrack>,
+    /// Wakes of the last time that was asked for.
+    wakes: Mutex<KeptWakes>,
     /// Number that no other settings have had.
     revision: u64,
     /// States at the ends of changes that the timeline has forgotten or may forget next.
@@ -42,6 +49,14 @@ struct SavedSwell {
     period_s: f64,
     from_deg: f64,
     spread_deg: Option<f64>,
+}
+
+/// Wakes of a time; the key is the time's bits and the number of the hulls' last change.
+#[derive(Default)]
+struct KeptWakes {
+    key: Option<(u64, u64)>,
+    hulls_revision: u64,
+    wakes: Arc<Vec<Wake>>,
 }
 
 /// Saved form of the settings and of the state that the timeline has forgotten.
@@ -75,9 +90,12 @@ struct SavedSea {
     grown: Option<[f64; 12]>,
 }
 
-/// Keys of the sea and of its regions in a saved state.
+/// Most tracks: those of the hulls that the host lists, and as many that have ended.
+const MOST_TRACKS: usize = 2 * MAX_SEA_HULLS;
+/// Keys of the sea, of its regions and of its hulls in a saved state.
 const KEY: &str = "sea";
 const REGIONS_KEY: &str = "sea_regions";
+const HULLS_KEY: &str = "sea_hulls";
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
@@ -211,6 +229,19 @@ fn read_regions(world: &World, state: &mut toml::Table) -> Result<Vec<PlacedRegi
     placed(world, regions).map_err(|e| e.found_in("saved state"))
 }
 
+/// Takes the tracks of hulls out of a saved state.
+fn read_tracks(state: &mut toml::Table) -> Result<Vec<HullTrack>> {
+    let Some(value) = state.remove(HULLS_KEY) else { return Ok(Vec::new()) };
+    let tracks: Vec<HullTrack> = value.try_into().map_err(|e| parse_error(format_args!("{HULLS_KEY}: {e}")))?;
+    if tracks.len() > MOST_TRACKS {
+        return Err(parse_error(format_args!("{HULLS_KEY}: more than {MOST_TRACKS} tracks")));
+    }
+    for (i, track) in tracks.iter().enumerate() {
+        track.check().map_err(|e| e.within(&format!("{HULLS_KEY}[{i}]")).found_in("saved state"))?;
+    }
+    Ok(tracks)
+}
+
 impl HeldSea {
     /// Returns the settings; `None` without a sea.
     pub fn settings(&self) -> Option<&SeaSettings> {
@@ -242,15 +273,16 @@ impl HeldSea {
     /// # Errors
     /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
     pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
-        let regions = read_regions(world, state)?;
-        let Some(value) = state.remove(KEY) else { return Ok(Self { regions, ..Self::default() }) };
+        let (regions, tracks) = (read_regions(world, state)?, read_tracks(state)?);
+        let Some(value) = state.remove(KEY) else { return Ok(Self { regions, tracks, ..Self::default() }) };
         let saved: SavedSea = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
         if saved.grown.is_some_and(|numbers| numbers.iter().any(|n| !n.is_finite())) {
             return Err(parse_error(format_args!("{KEY}: numbers must be finite")));
         }
         let sea = Some(PreparedSea::new(saved.settings()?, world.seed));
         let kept = saved.grown.iter().map(dated_of).collect();
-        Ok(Self { sea, regions, revision: next_revision(), kept, workshop: Mutex::default() })
+        let wakes = Mutex::default();
+        Ok(Self { sea, regions, tracks, wakes, revision: next_revision(), kept, workshop: Mutex::default() })
     }
 
     /// Replaces the regions.
@@ -265,6 +297,62 @@ impl HeldSea {
     /// Returns the regions.
     pub fn regions(&self) -> impl ExactSizeIterator<Item = &SeaRegion> {
         self.regions.iter().map(|placed| &placed.region)
+    }
+
+    /// Replaces the hulls. One that was listed before goes on with its track; the waves of one that is no longer listed
+    /// stay until they have faded.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] for too many, for two of the same number, or naming the hull and its field; nothing
+    /// changes then.
+    pub fn set_hulls(&mut self, world: &World, hulls: &[SeaHull]) -> Result<()> {
+        if hulls.len() > MAX_SEA_HULLS {
+            return Err(Error::range("hulls", &format!("at most {MAX_SEA_HULLS} hulls"), hulls.len()));
+        }
+        for (i, hull) in hulls.iter().enumerate() {
+            if hulls[..i].iter().any(|other| other.id == hull.id) {
+                return Err(Error::range(&format!("hulls[{i}].id"), "unlike those of the hulls before it", hull.id));
+            }
+            HullTrack::new(*hull, world).map_err(|e| e.within(&format!("hulls[{i}]")))?;
+        }
+        for track in &mut self.tracks {
+            if hulls.iter().all(|hull| hull.id != track.hull.id) {
+                track.end(world.time_s);
+            }
+        }
+        for hull in hulls {
+            match self.tracks.iter_mut().find(|track| track.hull.id == hull.id) {
+                Some(track) => track.set(*hull, world)?,
+                None => self.tracks.push(HullTrack::new(*hull, world)?),
+            }
+        }
+        self.tracks.retain(|track| track.has_waves(world.time_s));
+        // The oldest of those that have ended go first.
+        while self.tracks.len() > MOST_TRACKS {
+            let gone = self.tracks.iter().position(|track| track.ended_s.is_some()).unwrap_or(0);
+            self.tracks.remove(gone);
+        }
+        let kept = self.wakes.get_mut().unwrap_or_else(PoisonError::into_inner);
+        (kept.key, kept.hulls_revision) = (None, next_revision());
+        Ok(())
+    }
+
+    /// Returns the hulls that are listed, as they were set.
+    pub fn hulls(&self) -> impl Iterator<Item = &SeaHull> {
+        self.tracks.iter().filter(|track| track.ended_s.is_none()).map(|track| &track.hull)
+    }
+
+    /// Returns the wakes at a time, kept from an earlier query or worked out now.
+    pub fn wakes(&self, time_s: f64) -> Arc<Vec<Wake>> {
+        let mut kept = self.wakes.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = Some((time_s.to_bits(), kept.hulls_revision));
+        if kept.key != key {
+            kept.key = key;
+            let wakes = Arc::make_mut(&mut kept.wakes);
+            wakes.resize_with(self.tracks.len(), Wake::default);
+            wakes.iter_mut().zip(&self.tracks).for_each(|(wake, track)| wake.fill(track, time_s));
+        }
+        Arc::clone(&kept.wakes)
     }
 
     /// Returns the regions as they lie in the world.
@@ -333,6 +421,9 @@ impl HeldEffect for HeldSea {
         if !self.regions.is_empty() {
             let regions: Vec<&SeaRegion> = self.regions().collect();
             state.insert(REGIONS_KEY.into(), toml::Value::try_from(regions).map_err(written)?);
+        }
+        if !self.tracks.is_empty() {
+            state.insert(HULLS_KEY.into(), toml::Value::try_from(&self.tracks).map_err(written)?);
         }
         let Some(sea) = &self.sea else { return Ok(()) };
         let known_s = world.timeline.known_from_s();

@@ -30,6 +30,12 @@ const ANCHOR_M: f64 = 16.0;
 /// Least ratio of the distance of a cell to its length; the shaders' twin is `SEA_CELLS_TO_DISTANCE`.
 pub(super) const CELLS_TO_DISTANCE: f64 = 11.9;
 
+/// Marks of blocks.
+pub(super) const REGION_MARK: i32 = 1;
+pub(super) const WAKE_MARK: i32 = 2;
+/// Number of different marks.
+pub(super) const MARKS: usize = 4;
+
 /// A block of the mesh as the vertex stage reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -38,8 +44,9 @@ pub(super) struct MeshBlock {
     pub corner: [i32; 2],
     /// Level: the block's cells are 2^level finest cells long.
     pub level: i32,
-    /// 1 for a block that regions may reach, which are drawn apart from the others; else 0.
-    pub has_regions: i32,
+    /// [`REGION_MARK`] if regions may reach the block, plus [`WAKE_MARK`] if wakes may. Blocks of other marks are drawn
+    /// apart.
+    pub marks: i32,
 }
 
 impl MeshBlock {
@@ -96,11 +103,7 @@ impl MeshEye {
                         continue;
                     }
                     let cells = (corner - anchor) / FINEST_M;
-                    blocks.push(MeshBlock {
-                        corner: [cells.x as i32, cells.y as i32],
-                        level: level as i32,
-                        has_regions: 0,
-                    });
+                    blocks.push(MeshBlock { corner: [cells.x as i32, cells.y as i32], level: level as i32, marks: 0 });
                 }
             }
             if (HALF - 1) as f64 * side >= self.reach_m {

@@ -19,6 +19,8 @@
 //!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
 //! * [`SingleWave`]s of the host are added to the surface, after the spectrum.
 //! * [`SeaIce`] dampens each wave by its frequency and length.
+//! * [`SeaHull`]s raise wakes along their tracks: bow and stern waves by length, beam, draught and speed (Michell 1898),
+//!   carried on as rays, so that they bend where the hull turned; and the foam of the hull's wash.
 //! * [`SeaRegion`]s are water with a level or a share of the waves of its own, or places without water.
 //! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is
 //!   corrected for it. A query solves for the particle that is at the place.
@@ -54,7 +56,7 @@
 //! some percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
-//! No shore, no wakes: their laws are here, but the surface does not use them yet. A lake has the
+//! No shore: its laws are here, but the surface does not use them yet. Wakes are those of deep water. A lake has the
 //! waves of the sea around it, as high as its region says; pictures show no lakes. There is no `candidates.rs`,
 //! because there is one way to draw it; no `reference.rs`, because all that queries use is the f64 reference.
 
@@ -71,6 +73,7 @@ mod foam_uniform;
 mod growth;
 mod held;
 mod history;
+mod hull;
 mod ice;
 mod lace;
 mod lanes;
@@ -84,6 +87,7 @@ pub mod probe;
 mod regions;
 mod seen;
 mod seen_regions;
+mod seen_wakes;
 mod settings;
 pub mod shore;
 mod single;
@@ -94,14 +98,17 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod track;
 mod turn;
 mod uniform;
 mod view;
 pub mod wake;
+mod wake_field;
 pub mod water;
 
 pub use clarity::WaterClarity;
 pub(crate) use held::HeldSea;
+pub use hull::{MAX_SEA_HULLS, SeaHull};
 pub use ice::SeaIce;
 pub use mode::SeaMode;
 pub use model::SeaStatistics;
@@ -112,3 +119,4 @@ pub use single::{MAX_SINGLE_WAVES, MOST_SINGLE_STEEPNESS, SingleWave, WaveScale}
 pub use surface::SeaPoint;
 pub(crate) use surface::SeaSurface;
 pub(crate) use view::SeaView;
+pub(crate) use wake_field::Wake;

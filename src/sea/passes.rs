@@ -7,12 +7,14 @@ use half::f16;
 use super::{
     drawn::{DrawnTiles, MIPS, MOST_WAVES, TileSlopes, WaveUniform},
     fft::SIDE,
+    hull::MAX_SEA_HULLS,
     lace::{LACE_MIPS, LACE_SIDE, lace_levels},
-    mesh::{self, LEVELS, MOST_BLOCKS, MeshBlock},
+    mesh::{self, LEVELS, MARKS, MOST_BLOCKS, MeshBlock, REGION_MARK, WAKE_MARK},
     outline::MAX_OUTLINE_CORNERS,
     regions::MAX_SEA_REGIONS,
     seen::{SEEN_SIDES, SeaBand, band_of, fill_seen},
     seen_regions::{RegionUniform, SeenRegions},
+    seen_wakes::{SeenWakes, WAKE_TEXELS, WakeUniform},
     tiles::TILES,
     uniform::SeaUniform,
     water::{TABLE_SIDES, reflectance_table},
@@ -49,6 +51,9 @@ pub(super) struct SeaPasses {
     regions: wgpu::Buffer,
     /// Corners of the regions' outlines.
     outlines: wgpu::Texture,
+    wakes: wgpu::Buffer,
+    /// States of the hulls that raised the wakes.
+    tracks: wgpu::Texture,
     indices: wgpu::Buffer,
     index_count: u32,
     shapes: wgpu::Texture,
@@ -71,6 +76,7 @@ pub(super) struct SeaDraw<'a> {
     pub tiles: &'a [TileSlopes; TILES],
     pub blocks: &'a [MeshBlock],
     pub regions: &'a SeenRegions,
+    pub wakes: &'a SeenWakes,
     /// Whether there is sea outside all regions.
     pub is_open: bool,
     /// Refractive index of the water.
@@ -79,19 +85,17 @@ pub(super) struct SeaDraw<'a> {
 
 impl SeaDraw<'_> {
     /// Returns the blocks that are drawn together, with the number of their band: those of each level in turn, apart by
-    /// whether regions may reach them.
+    /// their marks.
     fn bands(&self) -> impl Iterator<Item = (usize, &[MeshBlock])> {
-        let alike = |a: &MeshBlock, b: &MeshBlock| (a.level, a.has_regions) == (b.level, b.has_regions);
-        self.blocks
-            .chunk_by(alike)
-            .map(|blocks| (2 * blocks[0].level as usize + blocks[0].has_regions as usize, blocks))
+        let alike = |a: &MeshBlock, b: &MeshBlock| (a.level, a.marks) == (b.level, b.marks);
+        self.blocks.chunk_by(alike).map(|blocks| (MARKS * blocks[0].level as usize + blocks[0].marks as usize, blocks))
     }
 }
 
 /// Distance between two bands in the buffer, bytes: the largest that a device may ask for.
 const BAND_STRIDE: usize = 256;
 /// Bands of all levels.
-const BANDS: usize = 2 * LEVELS as usize;
+const BANDS: usize = MARKS * LEVELS as usize;
 
 /// Waves that the pixels of each band sum, and of all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
 pub(super) struct SeaBands {
@@ -122,9 +126,11 @@ impl SeaBands {
 
     fn upload(&self, device: &Device, draw: &SeaDraw<'_>) {
         for (number, blocks) in draw.bands() {
-            let regions = draw.regions.list.len() as u32 * blocks[0].has_regions as u32;
+            let marked = |mark: i32, count: usize| if blocks[0].marks & mark != 0 { count as u32 } else { 0 };
+            let regions = marked(REGION_MARK, draw.regions.list.len());
+            let wakes = marked(WAKE_MARK, draw.wakes.list.len());
             let waves = band_of(draw.block, draw.waves, blocks);
-            let band = SeaBand { regions, is_open: u32::from(draw.is_open), ..waves };
+            let band = SeaBand { regions, wakes, is_open: u32::from(draw.is_open), ..waves };
             device.write_buffer(&self.buffer, (BAND_STRIDE * number) as u64, bytemuck::bytes_of(&band));
         }
     }
@@ -144,6 +150,8 @@ pub(super) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         (8, Slot::Filtered),
         (9, Slot::Uniform(MAX_SEA_REGIONS * size_of::<RegionUniform>())),
         (10, Slot::Texels),
+        (11, Slot::Uniform(MAX_SEA_HULLS * size_of::<WakeUniform>())),
+        (12, Slot::Texels),
     ];
     bind::layout(device, "sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -222,6 +230,9 @@ impl SeaPasses {
         let regions = bind::block(made, "regions of the sea", MAX_SEA_REGIONS * size_of::<RegionUniform>());
         let size = (MAX_OUTLINE_CORNERS as u32, MAX_SEA_REGIONS as u32);
         let outlines = flat_texture(made, "outlines of regions", size, wgpu::TextureFormat::Rg32Float, usage);
+        let wakes = bind::block(made, "wakes of the sea", MAX_SEA_HULLS * size_of::<WakeUniform>());
+        let size = (WAKE_TEXELS as u32, MAX_SEA_HULLS as u32);
+        let tracks = flat_texture(made, "tracks of hulls", size, wgpu::TextureFormat::Rgba32Float, usage);
         let indices = mesh::indices();
         let buffer = |label, bytes: usize, usage| {
             made.create_buffer(&wgpu::BufferDescriptor {
@@ -249,6 +260,8 @@ impl SeaPasses {
                 bind::view(8, &lace_texture(device).create_view(&Default::default())),
                 bind::buffer(9, &regions),
                 bind::view(10, &outlines.create_view(&Default::default())),
+                bind::buffer(11, &wakes),
+                bind::view(12, &tracks.create_view(&Default::default())),
             ],
         });
         let index_count = indices.len() as u32;
@@ -260,6 +273,8 @@ impl SeaPasses {
             blocks,
             regions,
             outlines,
+            wakes,
+            tracks,
             indices: index_buffer,
             index_count,
             shapes,
@@ -276,11 +291,13 @@ impl SeaPasses {
     /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let texels: usize = (0..MIPS).map(|mip| TILES * (SIDE >> mip) * (SIDE >> mip)).sum();
-        let buffers = [&self.block, &self.waves, &self.blocks, &self.regions, &self.indices].map(wgpu::Buffer::size);
+        let buffers = [&self.block, &self.waves, &self.blocks, &self.regions, &self.wakes, &self.indices];
+        let buffers: u64 = buffers.iter().map(|buffer| buffer.size()).sum();
         let tables = 2 * TABLE_SIDES[0] * TABLE_SIDES[1] + 2 * 8 * SEEN_SIDES[0] * SEEN_SIDES[1];
         let lace: usize = (0..LACE_MIPS).map(|mip| (LACE_SIDE >> mip) * (LACE_SIDE >> mip)).sum();
         let outlines = 8 * MAX_OUTLINE_CORNERS * MAX_SEA_REGIONS;
-        (2 * 8 * texels + tables + lace + outlines) as u64 + buffers.iter().sum::<u64>() + self.bands.buffer.size()
+        let tracks = 16 * WAKE_TEXELS * MAX_SEA_HULLS;
+        (2 * 8 * texels + tables + lace + outlines + tracks) as u64 + buffers + self.bands.buffer.size()
     }
 
     /// Uploads the tiles of another time.
@@ -337,6 +354,17 @@ impl SeaPasses {
         device.write_texture(self.outlines.as_image_copy(), bytemuck::cast_slice(&regions.corners), rows, size);
     }
 
+    fn upload_wakes(&self, device: &Device, wakes: &SeenWakes) {
+        if wakes.list.is_empty() {
+            return;
+        }
+        device.write_buffer(&self.wakes, 0, bytemuck::cast_slice(&wakes.list));
+        let row = WAKE_TEXELS as u32;
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * row), rows_per_image: None };
+        let size = wgpu::Extent3d { width: row, height: wakes.list.len() as u32, depth_or_array_layers: 1 };
+        device.write_texture(self.tracks.as_image_copy(), bytemuck::cast_slice(&wakes.states), rows, size);
+    }
+
     /// Draws the sea.
     ///
     /// # Errors
@@ -355,6 +383,7 @@ impl SeaPasses {
         self.upload_seen(device, draw);
         self.bands.upload(device, draw);
         self.upload_regions(device, draw.regions);
+        self.upload_wakes(device, draw.wakes);
         let constants = opaque.tables.constants;
         if self.pipeline.as_ref().is_none_or(|made| made.target != opaque.target || made.constants != constants) {
             let pipeline = pipeline(device, [&self.layout, &self.bands.layout], opaque)?;

@@ -33,11 +33,13 @@ pub(super) struct SeaBand {
     pub last: u32,
     pub regions: u32,
     pub is_open: u32,
+    pub wakes: u32,
+    pub pad: [u32; 3],
 }
 
 impl SeaBand {
-    /// All waves, and no regions.
-    pub const WHOLE: Self = Self { first: 0, last: u32::MAX, regions: 0, is_open: 1 };
+    /// All waves and wakes, and no regions.
+    pub const WHOLE: Self = Self { first: 0, last: u32::MAX, regions: 0, is_open: 1, wakes: u32::MAX, pad: [0; 3] };
 }
 
 /// Filter of a pixel on the level surface, as `footprint_at` of `shaders/sea/surface.wgsl` has it.
@@ -151,7 +153,7 @@ pub(super) fn fill_seen(
     }
 }
 
-/// Returns the waves that the pixels of some blocks have to sum, without regions.
+/// Returns the waves that the pixels of some blocks have to sum, without regions and wakes.
 pub(super) fn band_of(sea: &SeaUniform, waves: &[WaveUniform], blocks: &[MeshBlock]) -> SeaBand {
     let (mut nearest, mut farthest) = (f32::INFINITY, sea.height);
     for block in blocks {
@@ -166,7 +168,7 @@ pub(super) fn band_of(sea: &SeaUniform, waves: &[WaveUniform], blocks: &[MeshBlo
     let last = PixelFilter::at(sea, nearest).last * MARGIN;
     let first = waves.partition_point(|wave| wave.turns_per_m < smooth);
     let last = waves.partition_point(|wave| wave.turns_per_m < last);
-    SeaBand { first: first as u32, last: last as u32, ..SeaBand::WHOLE }
+    SeaBand { first: first as u32, last: last as u32, wakes: 0, ..SeaBand::WHOLE }
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use super::{
     lattice::SeaWave,
     regions::WaterBody,
     tiles::{TILES, TileWork, VALUES, WaveTiles, sample},
+    wake_field::{Wake, WakePoint},
 };
 
 /// Largest distance, m, between the place asked for and the one solved for, and most steps towards it.
@@ -44,7 +45,8 @@ pub struct SeaPoint {
     pub acceleration_m_s2: DVec3,
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left.
+    /// Share of the place under foam, 0 to 1: of waves that break now, what those of the last 3.6 s left, and the wash
+    /// of hulls.
     pub foam: f64,
 }
 
@@ -110,6 +112,25 @@ impl SeaPoint {
     /// Returns the answer for a place without water.
     pub(crate) fn dry(position: DVec3) -> Self {
         Self { surface: position, normal: DVec3::Z, ..Self::default() }
+    }
+
+    /// Adds wakes at a place on the map, without waves shorter than `shortest_m`. Inside a dry region the wake of a
+    /// hull that lies over the place is left out: a hull does not float by its own waves.
+    pub(crate) fn add_wakes(&mut self, wakes: &[Wake], place_m: DVec2, shortest_m: f64) {
+        let counts = |wake: &&Wake| wake.reaches(place_m) && (self.has_water || !wake.holds(place_m));
+        if !wakes.iter().any(|wake| counts(&wake)) {
+            return;
+        }
+        let mut sum = WakePoint::default();
+        wakes.iter().filter(counts).for_each(|wake| wake.add_at(place_m, shortest_m, &mut sum));
+        let slope = DVec2::new(-self.normal.x, -self.normal.y) / self.normal.z + sum.slope;
+        self.height_m += sum.height_m;
+        self.height_error_m += sum.left_out_m;
+        self.normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
+        self.velocity_m_s += sum.velocity_m_s;
+        self.acceleration_m_s2 += sum.acceleration_m_s2;
+        self.depth_m = (self.depth_m + sum.height_m).max(0.0);
+        self.foam = (self.foam + sum.foam).min(1.0);
     }
 }
 

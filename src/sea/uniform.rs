@@ -210,11 +210,14 @@ mod tests {
         super::{
             drawn::{MOST_WAVES, WaveUniform},
             fft::SIDE,
+            hull::MAX_SEA_HULLS,
             mesh::{CELLS, CELLS_TO_DISTANCE, FINEST_M, MORPH},
             outline::MAX_OUTLINE_CORNERS,
             regions::MAX_SEA_REGIONS,
             seen::{FLAT_MIP, LEAST_CELLS, MOST_LENGTHENED, PIXEL_DEVIATION, SEEN_SIDES, SMOOTH_CELLS, SeaBand},
             seen_regions::{RegionUniform, SHELTERED_REGION},
+            seen_wakes::WakeUniform,
+            track::MOST_NODES,
         },
         *,
     };
@@ -269,7 +272,13 @@ mod tests {
             [turns, phase, height, turns_per_m, length, shift, age_step]
         );
         shader::assert_layout!("sea/uniform.wgsl", "SeaFoam", FoamUniform, [kept, lace, streaks, second, gathered]);
-        shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last, regions, is_open]);
+        shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last, regions, is_open, wakes]);
+        shader::assert_layout!(
+            "sea/uniform.wgsl",
+            "SeaWake",
+            WakeUniform,
+            [middle, reach2, states, length, beam, draught, newest, oldest]
+        );
         shader::assert_layout!(
             "sea/uniform.wgsl",
             "SeaRegion",
@@ -287,6 +296,8 @@ mod tests {
             ("MOST_SEA_WAVES: u32", format!("{MOST_WAVES}u")),
             ("MOST_SEA_REGIONS: u32", format!("{MAX_SEA_REGIONS}u")),
             ("MOST_OUTLINE_CORNERS: u32", format!("{MAX_OUTLINE_CORNERS}u")),
+            ("MOST_SEA_HULLS: u32", format!("{MAX_SEA_HULLS}u")),
+            ("MOST_WAKE_STATES: u32", format!("{MOST_NODES}u")),
             ("SHELTERED_REGION: u32", format!("{SHELTERED_REGION}u")),
             ("SEA_FINEST: f32", FINEST_M.to_string()),
             ("SEA_CELLS: u32", format!("{CELLS}u")),

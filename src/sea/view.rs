@@ -6,11 +6,12 @@ use super::{
     drawn::{DrawnTiles, MOST_WAVES, TileSlopes, WaveUniform, fill_waves},
     far::horizon_distance_m,
     held::HeldSea,
-    mesh::{MOST_BLOCKS, MeshBlock, MeshEye},
+    mesh::{MOST_BLOCKS, MeshBlock, MeshEye, REGION_MARK, WAKE_MARK},
     model::SeaStatistics,
     passes::{SeaDraw, SeaPasses},
     regions::WaterBody,
     seen_regions::{RegionsEye, SeenRegions},
+    seen_wakes::SeenWakes,
     tiles::TILES,
     uniform::{DrawnSea, SeaChart, SeaUniform},
 };
@@ -43,6 +44,7 @@ pub(crate) struct SeaView {
     /// Blocks of the mesh that this frame shows; none where no sea is seen.
     pub(super) blocks: Vec<MeshBlock>,
     regions: SeenRegions,
+    wakes: SeenWakes,
     /// Whether there is sea outside all regions.
     is_open: bool,
     waves: Vec<WaveUniform>,
@@ -101,18 +103,21 @@ impl SeaView {
         eye.blocks(shows, &mut self.blocks);
     }
 
-    /// Marks the blocks that regions may reach, and leaves out those without water.
-    fn mark_regions(&mut self) {
-        if self.regions.list.is_empty() && self.is_open {
+    /// Marks the blocks that regions or wakes may reach, and leaves out those without water.
+    fn mark_blocks(&mut self) {
+        if self.regions.list.is_empty() && self.wakes.list.is_empty() && self.is_open {
             return;
         }
         let displaced_m = DISPLACED_TO_CREST * self.crest_m;
-        let regions = &self.regions;
-        self.blocks.iter_mut().for_each(|block| block.has_regions = regions.touch(block, displaced_m).into());
-        if !self.is_open {
-            self.blocks.retain(|block| block.has_regions != 0);
+        for block in &mut self.blocks {
+            let mark = |is_touched: bool, mark: i32| if is_touched { mark } else { 0 };
+            block.marks = mark(self.regions.touch(block, displaced_m), REGION_MARK)
+                + mark(self.wakes.touch(block, displaced_m), WAKE_MARK);
         }
-        self.blocks.sort_unstable_by_key(|block| (block.level, block.has_regions));
+        if !self.is_open {
+            self.blocks.retain(|block| block.marks & REGION_MARK != 0);
+        }
+        self.blocks.sort_unstable_by_key(|block| (block.level, block.marks));
     }
 
     /// Works out the surface of the frame's time.
@@ -185,8 +190,9 @@ impl DrawnEffect for SeaView {
         self.find_blocks(context, &eye, &chart);
         let above = RegionsEye { scene: &now.scene, position: now.eye, chart: &chart, eye: &eye, time_s: now.time_s };
         self.regions.fill(held.placed_regions(), &above);
+        self.wakes.fill(&held.wakes(now.time_s), &eye);
         self.is_open = !settings.only_in_regions;
-        self.mark_regions();
+        self.mark_blocks();
         if self.blocks.is_empty() || context.frame.depth_access != DepthAccess::ReadWrite {
             return Ok(());
         }
@@ -225,6 +231,7 @@ impl DrawnEffect for SeaView {
             tiles: &self.tile_slopes,
             blocks: &self.blocks,
             regions: &self.regions,
+            wakes: &self.wakes,
             is_open: self.is_open,
             index: self.index,
         };

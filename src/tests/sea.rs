@@ -12,8 +12,8 @@ use crate::{
     gpu::{Device, DeviceOptions, Shared, readback},
     scene::{Camera, DepthMapping, ViewRays},
     sea::{
-        SeaPoint, SeaRegion, SeaRegionKind, SeaSettings, WindSea, foam::whitecap_share, slopes::mean_square_slope,
-        water::mean_reflectance,
+        SeaHull, SeaPoint, SeaRegion, SeaRegionKind, SeaSettings, WindSea, foam::whitecap_share,
+        slopes::mean_square_slope, water::mean_reflectance,
     },
     sky::SkySettings,
     weather::{Weather, Wind},
@@ -236,6 +236,50 @@ fn hulls_and_lakes_are_dry_in_the_picture_and_harbours_are_calm() {
         println!("{} pixels of water, {faults} wrong; {} without, {wet} wrong", drawn.len(), empty.len());
         assert!(drawn.len() > 3000 && faults * 100 < drawn.len(), "{faults} of {}", drawn.len());
         assert!(empty.len() > 800 && wet * 20 < empty.len(), "{wet} of {}", empty.len());
+    }
+}
+
+#[test]
+fn wakes_of_the_picture_are_those_of_the_queries() {
+    for origin in [DVec3::ZERO, DVec3::new(1e6, -7e5, 0.0)] {
+        let mut host = SeaHost::new(0.0, WindSea::SeaState(0));
+        // A circle to the right, seen at its end, and a slower straight way that crosses it.
+        let turning =
+            SeaHull { id: 1, position_m: origin.to_array(), speed_m_s: 6.0, turn_deg_s: 2.5, ..SeaHull::default() };
+        let straight = SeaHull {
+            id: 2,
+            length_m: 12.0,
+            beam_m: 3.5,
+            draught_m: 1.0,
+            position_m: (origin + DVec3::new(-150.0, 40.0, 0.0)).to_array(),
+            heading_deg: 80.0,
+            speed_m_s: 4.0,
+            ..SeaHull::default()
+        };
+        host.context.set_sea_hulls(&[turning, straight]).unwrap();
+        let time_s = 100.0;
+        host.context.update(time_s).unwrap();
+        host.draw(&camera(origin + DVec3::new(100.0, 0.0, 60.0), -40.0), DepthAccess::ReadWrite);
+        let places = places_within(&host, 350.0, 4000);
+        let eye = host.view.effects.sea.eye_place();
+        let found = host.probe("wakes", &places);
+        let at: Vec<DVec3> =
+            places.iter().map(|p| (*p - eye).extend(0.0) + origin + DVec3::new(100.0, 0.0, 0.0)).collect();
+        let mut points = vec![SeaPoint::default(); at.len()];
+        host.context.sea_at(&at, time_s, 0.0, &mut points).unwrap();
+        let mut off: Vec<f64> = points.iter().zip(&found).map(|(p, f)| (p.height_m - f64::from(f[0])).abs()).collect();
+        let highest = points.iter().map(|p| p.height_m.abs()).fold(0.0, f64::max);
+        let wet = points.iter().filter(|p| p.height_m.abs() > 0.01).count();
+        off.sort_by(f64::total_cmp);
+        let [most, worst] = [off[off.len() * 997 / 1000], off[off.len() - 1]];
+        let foam = |(p, f): (&SeaPoint, &[f32; 4])| (p.foam - f64::from(f[3])).abs();
+        let foam = points.iter().zip(&found).map(foam).fold(0.0, f64::max);
+        println!(
+            "{wet} of 4000 places over 1 cm, highest {highest:.2} m; 99.7 % within {most:.5} m, worst {worst:.4} m"
+        );
+        println!("foam within {foam:.5}");
+        assert!(wet > 800 && highest > 0.3, "{wet} {highest}");
+        assert!(most < 2e-3 && worst < 0.02 && foam < 0.02, "{most} {worst} {foam}");
     }
 }
 

@@ -1,0 +1,307 @@
+// Wakes of hulls: the waves of bow and stern along a hull's track, and the foam of its wash. src/sea/wake_field.rs is
+// the f64 reference and has the formulas; names are the same.
+//!include "sea/uniform.wgsl"
+
+const WAKE_GRAVITY: f32 = 9.81;
+const WAKE_TAU: f32 = 6.28318531;
+const PLANING: vec2f = vec2f(0.5, 0.9);
+const AIRY_MODULUS: f32 = 0.3987;
+const AIRY_0: f32 = 0.35502805;
+const AIRY_PHASE: vec2f = vec2f(-0.26179939, 2.2);
+const LAST_AIRY: f32 = 6.0;
+const BEYOND_CUSP: vec2f = vec2f(1.2, 1.6);
+const LEAST_BEND: f32 = 0.1;
+const CUSP_BENDS: vec2f = vec2f(0.05, 0.3);
+const MOST_WAKE_STEEPNESS: f32 = 0.3;
+const WAKE_BEGINNING: f32 = 0.1;
+const WAKE_SPEEDS: vec2f = vec2f(0.7, 1.5);
+const WAKE_BREAKS: vec2f = vec2f(0.35, 1.0);
+const BROKEN_SHARE: f32 = 0.6;
+const WASH_SHARE: f32 = 0.75;
+const WASH_DECAY: f32 = 10.0;
+const WASH_WIDTH: f32 = 0.45;
+const WASH_SPEEDS: vec2f = vec2f(0.5, 5.0);
+const WAKE_FADES: vec2f = vec2f(0.2, 3.0);
+
+// Kinds of waves.
+const DIVERGING: u32 = 0u;
+const TRANSVERSE: u32 = 1u;
+const BEYOND: u32 = 2u;
+
+// Waves that are let through: those of the mesh by their length, or those of a pixel by its filter.
+struct WakeFilter {
+    // Cells of the mesh in a metre; 0 for a pixel.
+    per_cell: f32,
+    // Deviations of the pixel's filter with their directions, m.
+    along: vec2f,
+    across: vec2f,
+    // Shortest wave that is told apart, m.
+    shortest: f32,
+}
+
+// Surface of wakes at a place.
+struct WakeSurface {
+    height: f32,
+    slope: vec2f,
+    // Share under foam.
+    foam: f32,
+}
+
+// State of a hull.
+struct HullState {
+    place: vec2f,
+    velocity: vec2f,
+    age: f32,
+    ahead: vec2f,
+    // Rate of turn, rad/s against the clock.
+    turn: f32,
+}
+
+fn hull_state(row: u32, index: u32) -> HullState {
+    let a = textureLoad(sea_tracks, vec2i(vec2u(2u * index, row)), 0);
+    let b = textureLoad(sea_tracks, vec2i(vec2u(2u * index + 1u, row)), 0);
+    return HullState(a.xy, a.zw, b.x, b.yz, b.w);
+}
+
+// Motion of bow or stern between two states, by age.
+struct Passage {
+    start: f32,
+    span: f32,
+    a: vec2f,
+    b: vec2f,
+    c: vec2f,
+    d: vec2f,
+    // Accelerations at its ends by the rates of turn there: passages that meet have the same.
+    newer_turning: vec2f,
+    older_turning: vec2f,
+}
+
+// Velocity of a place so far ahead of the hull's middle.
+fn end_velocity(state: HullState, off_middle: f32) -> vec2f {
+    return state.velocity + vec2f(-state.ahead.y, state.ahead.x) * (state.turn * off_middle);
+}
+
+fn passage_of(newer: HullState, older: HullState, off_middle: f32) -> Passage {
+    let span = max(older.age - newer.age, 1e-6);
+    let p = newer.place + newer.ahead * off_middle;
+    let q = older.place + older.ahead * off_middle;
+    let newer_velocity = end_velocity(newer, off_middle);
+    let older_velocity = end_velocity(older, off_middle);
+    let v = -newer_velocity * span;
+    let w = -older_velocity * span;
+    let newer_turning = vec2f(-newer_velocity.y, newer_velocity.x) * newer.turn;
+    let older_turning = vec2f(-older_velocity.y, older_velocity.x) * older.turn;
+    return Passage(newer.age, span, p, v, (q - p) * 3.0 - v * 2.0 - w, (p - q) * 2.0 + v + w, newer_turning, older_turning);
+}
+
+// Bow or stern at an age, seen from a place.
+struct WakeSource {
+    age: f32,
+    to_place: vec2f,
+    velocity: vec2f,
+    // S and its derivatives by age.
+    s: vec3f,
+    // The first derivative for a velocity that stays.
+    steady_slope: f32,
+}
+
+fn source_at(passage: Passage, at: vec2f, past: f32) -> WakeSource {
+    let h = passage.span;
+    let t = past / h;
+    let to_place = at - (passage.a + (passage.b + (passage.c + passage.d * t) * t) * t);
+    let velocity = -(passage.b + (passage.c * 2.0 + passage.d * (3.0 * t)) * t) / h;
+    let change = (passage.c * 2.0 + passage.d * (6.0 * t)) / (h * h);
+    let jerk = passage.d * (-6.0 / (h * h * h));
+    let u = passage.start + past;
+    let along = dot(velocity, to_place);
+    let turned = dot(change, to_place);
+    let steady_slope = 1.5 * along - 0.5 * u * dot(velocity, velocity);
+    let s = vec3f(
+        dot(to_place, to_place) - 0.5 * u * along,
+        steady_slope + 0.5 * u * turned,
+        dot(velocity, velocity) - turned + 1.5 * u * dot(change, velocity) - 0.5 * u * dot(jerk, to_place),
+    );
+    return WakeSource(u, to_place, velocity, s, steady_slope);
+}
+
+// Share of the waves of an age: those of a track begin and end gently.
+fn wake_age_share(age: f32, newest: f32, oldest: f32) -> f32 {
+    let fading = WAKE_FADES.x * max(oldest - newest, 1e-6);
+    let old = smoothstep(0.0, fading, oldest - age);
+    let fresh = smoothstep(0.0, min(fading, WAKE_FADES.y), age - newest);
+    return old * select(1.0, fresh, newest > 0.0);
+}
+
+// Cube root and fourth root of a number that is not negative.
+fn cube_root(x: f32) -> f32 {
+    return pow(max(x, 1e-30), 0.33333333);
+}
+
+fn fourth_root(x: f32) -> f32 {
+    return sqrt(sqrt(max(x, 0.0)));
+}
+
+fn airy_beyond(x: f32) -> f32 {
+    return AIRY_0 * exp(-0.66666667 * x * sqrt(x)) * fourth_root(AIRY_MODULUS / (x + AIRY_MODULUS));
+}
+
+// Share of a wave that a filter lets through.
+fn wake_share(turns: vec2f, turns_per_m: f32, pass_filter: WakeFilter) -> f32 {
+    if pass_filter.per_cell > 0.0 {
+        return clamp(pass_filter.per_cell / (turns_per_m * 1.5) - 1.0, 0.0, 1.0);
+    }
+    let a = dot(turns, pass_filter.along);
+    let b = dot(turns, pass_filter.across);
+    let end = turns_per_m * pass_filter.shortest;
+    let left = max(1.0 - max(6.57973627 * (a * a + b * b), end * end), 0.0);
+    return left * left;
+}
+
+// Adds a wave of a hull's end; `end` is 1 for the bow and -1 for the stern.
+fn add_wake_wave(wake: SeaWake, source: WakeSource, kind: u32, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+    let u = source.age;
+    let speed2 = dot(source.velocity, source.velocity);
+    let speed = sqrt(speed2);
+    let distance = max(length(source.to_place), 1e-6);
+    if u <= 0.0 || speed <= WAKE_SPEEDS.x {
+        return;
+    }
+    let is_beyond = kind == BEYOND;
+    // What lies beyond a cusp has the waves of the cusp, which is as far away as it would be if S were 0.
+    let far = max(select(distance, sqrt(max(distance * distance - source.s.x, 0.0)), is_beyond), 1e-6);
+    let cosine = clamp(2.0 * far / (speed * u), 1e-3, 1.0);
+    let k_along = WAKE_GRAVITY / (speed2 * cosine);
+    let k = k_along / cosine;
+    let direction = source.to_place / distance;
+    let turns_per_m = k / WAKE_TAU;
+    let passed = wake_share(direction * turns_per_m, turns_per_m, pass_filter);
+    if passed <= 0.0 {
+        return;
+    }
+    let planing = smoothstep(PLANING.x, PLANING.y, speed / sqrt(WAKE_GRAVITY * wake.length));
+    let width = k * wake.beam * pow(wake.length / wake.beam, 0.5 * planing) / WAKE_TAU;
+    let deep = 1.0 - exp(-k * wake.draught);
+    let base = 16.0 * wake.beam * deep * exp(-min(width * width, 80.0)) / (WAKE_TAU * cosine * wake.length * wake.length);
+    let raw = vec2f(end / (k_along * k_along), 0.5 * wake.length / k_along) * base;
+    let factor = WAKE_GRAVITY * u / (2.0 * far * far * far);
+    let half_bend = 0.5 * max(select(abs(source.s.z), source.s.z, is_beyond), LEAST_BEND * speed2);
+    let third = factor * half_bend;
+    let near_u = u + WAKE_BEGINNING * wake.length / speed;
+    var size = 2.50662827 / near_u * wake_age_share(u, wake.newest, wake.oldest) * smoothstep(WAKE_SPEEDS.x, WAKE_SPEEDS.y, speed);
+    var phase = -WAKE_GRAVITY * u * u / (4.0 * distance);
+    let root = cube_root(third);
+    if is_beyond {
+        let least = max(source.s.x - source.s.y * source.s.y / (4.0 * half_bend), 0.0);
+        let ratio = factor / max(root * root, 1e-20);
+        let beyond = ratio * ratio * half_bend * least;
+        let gone = smoothstep(BEYOND_CUSP.x, BEYOND_CUSP.y, distance / far);
+        let comes = smoothstep(CUSP_BENDS.x, CUSP_BENDS.y, source.s.z / speed2);
+        if beyond > LAST_AIRY {
+            return;
+        }
+        size *= 3.54490770 * airy_beyond(beyond) / root * (1.0 - gone) * comes;
+    } else {
+        let second = factor * abs(source.s.y);
+        let four_thirds = root * third;
+        let argument = second * second / max(4.0 * four_thirds, 1e-30);
+        let later = AIRY_PHASE.x / (1.0 + AIRY_PHASE.y * argument * sqrt(argument));
+        let turned = select(later - 0.78539816, 0.78539816 - later, kind == DIVERGING);
+        let flat = source.s.y * source.s.y + 1e-6 * speed2 * speed2 * u * u;
+        let off = 0.5 * factor * source.s.x * source.s.x * source.s.y / max(flat, 1e-20);
+        size /= max(fourth_root(0.25 * second * second + AIRY_MODULUS * four_thirds), 1e-10);
+        phase += clamp(off, -0.5, 0.5) + turned;
+    }
+    let unlimited = size * length(raw);
+    let steepness = unlimited * k;
+    let limited = steepness / MOST_WAKE_STEEPNESS;
+    let amplitude = passed * unlimited / sqrt(1.0 + limited * limited);
+    let unit = raw / max(length(raw), 1e-20);
+    let turn = vec2f(sin(phase) * unit.x + cos(phase) * unit.y, cos(phase) * unit.x - sin(phase) * unit.y);
+    (*sum).height += amplitude * turn.y;
+    (*sum).slope -= direction * (amplitude * k * turn.x);
+    (*sum).foam += passed * BROKEN_SHARE * smoothstep(WAKE_BREAKS.x, WAKE_BREAKS.y, steepness) * max(turn.y, 0.0);
+}
+
+// Adds the waves where S = s + d t + q t^2 is 0, or least, for t from 0 to `span`.
+fn add_half_passage(wake: SeaWake, passage: Passage, start: f32, parabola: vec3f, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+    let span = 0.5 * passage.span;
+    let s = parabola.x;
+    let d = parabola.y;
+    let q = parabola.z;
+    let square = d * d - 4.0 * q * s;
+    var times = vec3f(-1.0);
+    if square <= 0.0 {
+        if q > 0.0 {
+            times.z = -0.5 * d / q;
+        }
+    } else {
+        let root = sqrt(square);
+        // Each zero in the form that does not cancel.
+        let twice = 2.0 * q;
+        let not_flat = select(twice, select(-1e-20, 1e-20, twice >= 0.0), abs(twice) < 1e-20);
+        times.x = select(-(d + root) / not_flat, 2.0 * s / max(root - d, 1e-20), d < 0.0);
+        times.y = select((root - d) / not_flat, -2.0 * s / max(d + root, 1e-20), d > 0.0);
+    }
+    for (var kind = DIVERGING; kind <= BEYOND; kind++) {
+        let t = times[kind];
+        if t >= 0.0 && t < span {
+            add_wake_wave(wake, source_at(passage, at, start + t), kind, end, pass_filter, sum);
+        }
+    }
+}
+
+// Adds the waves of a passage: S is two parabolas with a common tangent in the middle.
+fn add_passage(wake: SeaWake, passage: Passage, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+    let h = passage.span;
+    let newest = source_at(passage, at, 0.0);
+    let oldest = source_at(passage, at, h);
+    let first = vec2f(newest.s.x, newest.steady_slope + 0.5 * newest.age * dot(passage.newer_turning, newest.to_place));
+    let last = vec2f(oldest.s.x, oldest.steady_slope + 0.5 * oldest.age * dot(passage.older_turning, oldest.to_place));
+    // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value between.
+    if first.x > 0.0 && last.x > 0.0 && (first.y >= 0.0 || last.y <= 0.0) {
+        return;
+    }
+    let middle_slope = 2.0 * (last.x - first.x) / h - 0.5 * (first.y + last.y);
+    let middle = first.x + 0.25 * h * (first.y + middle_slope);
+    add_half_passage(wake, passage, 0.0, vec3f(first, (middle_slope - first.y) / h), at, end, pass_filter, sum);
+    add_half_passage(wake, passage, 0.5 * h, vec3f(middle, middle_slope, (last.y - middle_slope) / h), at, end, pass_filter, sum);
+}
+
+// Foam that a hull has churned up between two states.
+fn wash_between(wake: SeaWake, newer: HullState, older: HullState, at: vec2f) -> f32 {
+    let a = newer.place - newer.ahead * (0.5 * wake.length);
+    let b = older.place - older.ahead * (0.5 * wake.length);
+    let way = b - a;
+    let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
+    let age = mix(newer.age, older.age, part);
+    let speed = mix(length(newer.velocity), length(older.velocity), part);
+    let half_width = WASH_WIDTH * wake.beam * fourth_root(1.0 + speed * age / (2.0 * wake.length));
+    let off = at - a - way * part;
+    let inside = max(1.0 - dot(off, off) / max(half_width * half_width, 1e-9), 0.0);
+    return WASH_SHARE * smoothstep(WASH_SPEEDS.x, WASH_SPEEDS.y, speed) * exp(-max(age, 0.0) / WASH_DECAY) * inside;
+}
+
+// Surface of the wakes at a place, m from the anchor.
+fn wakes_at(at: vec2f, pass_filter: WakeFilter) -> WakeSurface {
+    var sum: WakeSurface;
+    for (var row = 0u; row < min(sea_band.wakes, MOST_SEA_HULLS); row++) {
+        let wake = sea_wakes[row];
+        let off = at - wake.middle;
+        if dot(off, off) > wake.reach2 {
+            continue;
+        }
+        var wash = 0.0;
+        var newer = hull_state(row, 0u);
+        for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
+            let older = hull_state(row, i);
+            for (var side = 0u; side < 2u; side++) {
+                let end = 1.0 - 2.0 * f32(side);
+                add_passage(wake, passage_of(newer, older, 0.5 * end * wake.length), at, end, pass_filter, &sum);
+            }
+            wash = max(wash, wash_between(wake, newer, older, at));
+            newer = older;
+        }
+        sum.foam = min(sum.foam + wash, 1.0);
+    }
+    return sum;
+}

@@ -1,0 +1,83 @@
+//! Wakes as shaders look them up: the hulls and their tracks around an anchor near the camera.
+
+use glam::DVec2;
+
+use super::{
+    hull::MAX_SEA_HULLS,
+    mesh::{MeshBlock, MeshEye, side_m},
+    track::{MOST_AGE_S, MOST_NODES},
+    wake_field::{Wake, WakeState},
+};
+
+/// A wake (`SeaWake` of `shaders/sea/uniform.wgsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct WakeUniform {
+    pub middle: [f32; 2],
+    pub reach2: f32,
+    pub states: u32,
+    pub length: f32,
+    pub beam: f32,
+    pub draught: f32,
+    pub newest: f32,
+    pub oldest: f32,
+    pub pad: [f32; 3],
+}
+
+/// Texels of a state.
+const STATE_TEXELS: usize = 2;
+/// Texels of a wake: a row of the texture.
+pub(super) const WAKE_TEXELS: usize = STATE_TEXELS * MOST_NODES;
+
+/// Wakes that a camera may see.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SeenWakes {
+    pub list: Vec<WakeUniform>,
+    /// States of each, from new to old, in rows of [`WAKE_TEXELS`]: place and velocity, then age, heading and rate of turn.
+    pub states: Vec<[f32; 4]>,
+}
+
+impl SeenWakes {
+    /// Takes over the wakes within the camera's reach.
+    pub fn fill(&mut self, wakes: &[Wake], eye: &MeshEye) {
+        self.list.clear();
+        self.states.clear();
+        let anchor = eye.anchor_m();
+        for wake in wakes.iter().take(MAX_SEA_HULLS) {
+            let Some((middle, radius)) = wake.circle() else { continue };
+            if (middle - eye.place_m).length() > radius + eye.reach_m {
+                continue;
+            }
+            let [newest, oldest] = [0, wake.states.len() - 1].map(|i| wake.time_s - wake.states[i].node.time_s);
+            self.list.push(WakeUniform {
+                middle: (middle - anchor).as_vec2().to_array(),
+                reach2: (radius * radius) as f32,
+                states: wake.states.len() as u32,
+                length: wake.hull.length_m as f32,
+                beam: wake.hull.beam_m as f32,
+                draught: wake.hull.draught_m as f32,
+                newest: newest as f32,
+                oldest: oldest.min(MOST_AGE_S) as f32,
+                pad: [0.0; 3],
+            });
+            for WakeState { node: state, turn_rad_s } in &wake.states {
+                let (p, v) = ((state.place_m - anchor).as_vec2(), state.velocity().as_vec2());
+                let age = (wake.time_s - state.time_s) as f32;
+                self.states.push([p.x, p.y, v.x, v.y]);
+                self.states.push([age, state.ahead.x as f32, state.ahead.y as f32, *turn_rad_s as f32]);
+            }
+            self.states.resize(self.list.len() * WAKE_TEXELS, [0.0; 4]);
+        }
+    }
+
+    /// Whether water that moves `displaced_m` at most may be in a wake, from a block of the mesh.
+    pub fn touch(&self, block: &MeshBlock, displaced_m: f64) -> bool {
+        let [low, high] = block.bounds_m();
+        let middle = DVec2::new(f64::from(low[0] + high[0]), f64::from(low[1] + high[1])) * 0.5;
+        let around = std::f64::consts::FRAC_1_SQRT_2 * side_m(block.level as u32) + displaced_m;
+        self.list.iter().any(|wake| {
+            let off = middle - DVec2::from(wake.middle.map(f64::from));
+            off.length() <= f64::from(wake.reach2).sqrt() + around
+        })
+    }
+}

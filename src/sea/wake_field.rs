@@ -1,0 +1,586 @@
+//! Waves of a hull along its track: the surface at a place.
+//!
+//! A hull raises waves at its bow and at its stern (Michell 1898, for parabolic waterlines and upright sides). A wave
+//! that left the track u seconds ago and is D away now has the phase -g u^2 / (4 D) (Cauchy and Poisson), and a place
+//! has the waves of those times for which that phase is stationary: where
+//!
+//! S(u) = D^2 - u V . r / 2 = 0, with the velocity V of the hull then and the way r from there to the place.
+//!
+//! On a straight track S is a parabola and its two zeros are Kelvin's diverging and transverse waves; where they meet
+//! is the cusp. On a turning track S is followed from node to node, so wakes bend as they do at sea: waves crowd on the
+//! inner side and part on the outer one. Near cusps the sum of both waves is Airy's function, here by its modulus and
+//! phase, within some percent (Ursell 1960 has the theory). Waves are those of deep water.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    dispersion::GRAVITY_M_S2,
+    hull::SeaHull,
+    track::{HullTrack, MOST_NODES, TrackNode, age_share},
+};
+use crate::numerics::smoothstep;
+
+/// Froude numbers of the hull between which it begins to plane.
+const PLANING: [f64; 2] = [0.5, 0.9];
+/// Constant of the modulus of Airy's functions: pi^-1/2 (x + c)^-1/4 is that of Ai(0) at x = 0.
+const MODULUS: f64 = 0.3987;
+/// Ai(0).
+const AIRY_0: f64 = 0.355_028_053_887_817;
+/// Phase of Airy's functions at 0 beyond that of their expansion, rad, and how fast it falls.
+const PHASE: [f64; 2] = [-PI / 12.0, 2.2];
+/// Argument beyond a cusp from which on Ai counts as 0.
+const LAST_AIRY: f64 = 6.0;
+/// Ratios of the distance to that of a cusp between which what lies beyond cusps ends.
+const BEYOND: [f64; 2] = [1.2, 1.6];
+/// Least second derivative of S, over that on a straight track, and the range in which cusps come and go.
+const LEAST_BEND: f64 = 0.1;
+const CUSP_BENDS: [f64; 2] = [0.05, 0.3];
+/// Steepness a k that waves of a hull approach and do not pass: steeper ones break.
+const MOST_STEEPNESS: f64 = 0.3;
+/// Lengths of the hull by which waves at their beginning count as farther away: the formulas hold far from the hull.
+const BEGINNING: f64 = 0.1;
+/// Speeds, m/s, between which a hull begins to raise waves.
+const SPEEDS_M_S: [f64; 2] = [0.7, 1.5];
+/// Steepnesses between which waves of a hull break before they are limited, and the foam of the steepest.
+const BREAKS: [f64; 2] = [0.35, 1.0];
+const BROKEN_SHARE: f64 = 0.6;
+/// Foam of the hull's wash: its share astern, the time in which it fades to 1/e, s, its half width over the beam, and
+/// the speeds, m/s, between which it begins.
+const WASH_SHARE: f64 = 0.75;
+const WASH_DECAY_S: f64 = 10.0;
+const WASH_WIDTH: f64 = 0.45;
+const WASH_SPEEDS_M_S: [f64; 2] = [0.5, 5.0];
+
+/// Wake of a hull at a time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Wake {
+    pub(super) hull: SeaHull,
+    /// States from new to old.
+    pub(super) states: Vec<WakeState>,
+    nodes: Vec<TrackNode>,
+    pub(super) time_s: f64,
+    /// Middle and radius of a circle with all of the wake, m on the map.
+    circle: Option<(DVec2, f64)>,
+}
+
+/// State of a hull with its rate of turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct WakeState {
+    pub node: TrackNode,
+    /// Rate of turn, rad/s against the clock.
+    pub turn_rad_s: f64,
+}
+
+impl WakeState {
+    /// Returns the velocity of a place so far ahead of the middle, m/s.
+    fn velocity(&self, off_middle_m: f64) -> DVec2 {
+        self.node.velocity() + self.node.ahead.perp() * (self.turn_rad_s * off_middle_m)
+    }
+}
+
+/// Surface of wakes at a place, to be added to that of the sea.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct WakePoint {
+    pub height_m: f64,
+    pub slope: DVec2,
+    pub velocity_m_s: DVec3,
+    pub acceleration_m_s2: DVec3,
+    /// Share under foam.
+    pub foam: f64,
+    /// Amplitudes of the waves that were left out, m.
+    pub left_out_m: f64,
+}
+
+/// Motion of the bow or stern between two states, by age: a cubic.
+struct Passage {
+    start_s: f64,
+    length_s: f64,
+    cubic: [DVec2; 4],
+    /// Accelerations at its ends by the rates of turn there: passages that meet have the same.
+    turning: [DVec2; 2],
+}
+
+/// Bow or stern at an age, seen from a place.
+struct Source {
+    age_s: f64,
+    to_place: DVec2,
+    velocity: DVec2,
+    /// S and its derivatives by age.
+    s: [f64; 3],
+    /// The first derivative for a velocity that stays.
+    steady_slope: f64,
+}
+
+/// End of a hull.
+#[derive(Clone, Copy, PartialEq)]
+enum HullEnd {
+    Bow,
+    Stern,
+}
+
+impl HullEnd {
+    /// Returns 1 for the bow and -1 for the stern.
+    fn sign(self) -> f64 {
+        if self == Self::Bow { 1.0 } else { -1.0 }
+    }
+}
+
+impl Passage {
+    fn new([new, old]: [&WakeState; 2], time_s: f64, off_middle_m: f64) -> Self {
+        let length_s = new.node.time_s - old.node.time_s;
+        let [p, q] = [new, old].map(|state| state.node.place_m + state.node.ahead * off_middle_m);
+        // By age places run astern.
+        let [v, w] = [new, old].map(|state| -state.velocity(off_middle_m) * length_s);
+        let cubic = [p, v, (q - p) * 3.0 - v * 2.0 - w, (p - q) * 2.0 + v + w];
+        let turning = [new, old].map(|state| state.velocity(off_middle_m).perp() * state.turn_rad_s);
+        Self { start_s: time_s - new.node.time_s, length_s, cubic, turning }
+    }
+
+    /// Returns S and its slope at the ends.
+    fn ends(&self, place_m: DVec2) -> [[f64; 2]; 2] {
+        [(0.0, self.turning[0]), (self.length_s, self.turning[1])].map(|(past_s, turning)| {
+            let source = self.at(place_m, past_s);
+            [source.s[0], source.steady_slope + 0.5 * source.age_s * turning.dot(source.to_place)]
+        })
+    }
+
+    /// Returns the source some seconds of age after the newer state.
+    fn at(&self, place_m: DVec2, past_s: f64) -> Source {
+        let h = self.length_s;
+        let t = past_s / h;
+        let [a, b, c, d] = self.cubic;
+        let to_place = place_m - (a + (b + (c + d * t) * t) * t);
+        let velocity = -(b + (c * 2.0 + d * (3.0 * t)) * t) / h;
+        let change = (c * 2.0 + d * (6.0 * t)) / (h * h);
+        let jerk = d * (-6.0 / (h * h * h));
+        let u = self.start_s + past_s;
+        let along = velocity.dot(to_place);
+        let steady_slope = 1.5 * along - 0.5 * u * velocity.length_squared();
+        let s = [
+            to_place.length_squared() - 0.5 * u * along,
+            steady_slope + 0.5 * u * change.dot(to_place),
+            velocity.length_squared() - change.dot(to_place) + 1.5 * u * change.dot(velocity)
+                - 0.5 * u * jerk.dot(to_place),
+        ];
+        Source { age_s: u, to_place, velocity, s, steady_slope }
+    }
+}
+
+/// Kind of a wave at a place.
+#[derive(Clone, Copy, PartialEq)]
+enum WakeWave {
+    Diverging,
+    Transverse,
+    /// What reaches beyond a cusp.
+    BeyondCusp,
+}
+
+/// Zeros and the least value of S in a half of a passage: ages after its beginning.
+struct HalfPassage {
+    zeros: [Option<f64>; 2],
+    least: Option<f64>,
+}
+
+impl HalfPassage {
+    /// Solves s + d t + q t^2 = 0 for t from 0 to `length`: the falling zero first.
+    fn new([s, d, q]: [f64; 3], length: f64) -> Self {
+        let inside = |t: f64| (0.0..length).contains(&t).then_some(t);
+        let square = d * d - 4.0 * q * s;
+        if square <= 0.0 {
+            let least = if q > 0.0 { inside(-0.5 * d / q) } else { None };
+            return Self { zeros: [None; 2], least };
+        }
+        let root = square.sqrt();
+        // Each zero in the form that does not cancel.
+        let falling = if d < 0.0 { 2.0 * s / (root - d) } else { -(d + root) / (2.0 * q) };
+        let rising = if d > 0.0 { -2.0 * s / (d + root) } else { (root - d) / (2.0 * q) };
+        Self { zeros: [inside(falling), inside(rising)], least: None }
+    }
+}
+
+impl Wake {
+    /// Sets the wake to that of a track at a time.
+    pub(super) fn fill(&mut self, track: &HullTrack, time_s: f64) {
+        self.states.reserve_exact(MOST_NODES);
+        self.nodes.reserve_exact(2 * MOST_NODES);
+        (self.hull, self.time_s) = (track.hull, time_s);
+        track.states(time_s, &mut self.nodes);
+        let nodes = &self.nodes;
+        // The rate at a node is the mean over the ways to its neighbours.
+        let turned = |i: usize, j: usize| {
+            let (new, old) = (&nodes[i], &nodes[j]);
+            let angle = libm::atan2(old.ahead.perp_dot(new.ahead), old.ahead.dot(new.ahead));
+            angle / (new.time_s - old.time_s).max(1e-9)
+        };
+        let last = nodes.len().saturating_sub(1);
+        self.states.clear();
+        self.states.extend(nodes.iter().enumerate().map(|(i, node)| {
+            let turn_rad_s = match i {
+                _ if last == 0 => 0.0,
+                0 => turned(0, 1),
+                _ if i == last => turned(last - 1, last),
+                _ => 0.5 * (turned(i - 1, i) + turned(i, i + 1)),
+            };
+            WakeState { node: *node, turn_rad_s }
+        }));
+        self.circle = self.bounds();
+    }
+
+    /// Returns the middle and the radius of a circle with all of the wake, m on the map; `None` without one.
+    pub(super) fn circle(&self) -> Option<(DVec2, f64)> {
+        self.circle
+    }
+
+    fn bounds(&self) -> Option<(DVec2, f64)> {
+        if self.states.len() < 2 {
+            return None;
+        }
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for WakeState { node: state, .. } in &self.states {
+            // Energy spreads at half the hull's speed at most, to the sides by 0.36 of its way.
+            let reach = 0.36 * state.speed_m_s * (self.time_s - state.time_s) + self.hull.length_m;
+            low = low.min(state.place_m - reach);
+            high = high.max(state.place_m + reach);
+        }
+        Some((0.5 * (low + high), 0.5 * (high - low).length()))
+    }
+
+    /// Whether the wake may reach a place.
+    pub fn reaches(&self, place_m: DVec2) -> bool {
+        self.circle().is_some_and(|(middle, radius)| (place_m - middle).length_squared() <= radius * radius)
+    }
+
+    /// Whether a place is in the rectangle around the hull.
+    pub fn holds(&self, place_m: DVec2) -> bool {
+        self.states.first().is_some_and(|WakeState { node: state, .. }| {
+            let p = place_m - state.place_m;
+            let beside = state.ahead.perp_dot(p).abs();
+            p.dot(state.ahead).abs() <= 0.5 * self.hull.length_m && beside <= 0.5 * self.hull.beam_m
+        })
+    }
+
+    /// Adds the wake at a place to `sum`, without waves shorter than `shortest_m`.
+    pub(super) fn add_at(&self, place_m: DVec2, shortest_m: f64, sum: &mut WakePoint) {
+        for end in [HullEnd::Bow, HullEnd::Stern] {
+            for pair in self.states.windows(2) {
+                let passage = Passage::new([&pair[0], &pair[1]], self.time_s, 0.5 * end.sign() * self.hull.length_m);
+                self.add_passage(&passage, (end, place_m, shortest_m), sum);
+            }
+        }
+        sum.foam = (sum.foam + self.wash(place_m)).min(1.0);
+    }
+
+    /// Adds the waves of a passage. S is two parabolas with a common tangent in the middle.
+    fn add_passage(&self, passage: &Passage, (end, place_m, shortest_m): (HullEnd, DVec2, f64), sum: &mut WakePoint) {
+        let h = passage.length_s;
+        let [first, last] = passage.ends(place_m);
+        let middle_slope = 2.0 * (last[0] - first[0]) / h - 0.5 * (first[1] + last[1]);
+        let middle = first[0] + 0.25 * h * (first[1] + middle_slope);
+        let halves = [
+            (0.0, [first[0], first[1], (middle_slope - first[1]) / h]),
+            (0.5 * h, [middle, middle_slope, (last[1] - middle_slope) / h]),
+        ];
+        for (from_s, parabola) in halves {
+            let found = HalfPassage::new(parabola, 0.5 * h);
+            let [falling, rising] = found.zeros;
+            for (wave, t) in
+                [(WakeWave::Diverging, falling), (WakeWave::Transverse, rising), (WakeWave::BeyondCusp, found.least)]
+            {
+                if let Some(t) = t {
+                    let source = passage.at(place_m, from_s + t);
+                    self.add_wave(&source, wave, (end, shortest_m), sum);
+                }
+            }
+        }
+    }
+
+    /// Adds a wave.
+    fn add_wave(&self, source: &Source, wave: WakeWave, (end, shortest_m): (HullEnd, f64), sum: &mut WakePoint) {
+        let Some(shape) = self.shape(source, wave, end) else { return };
+        let length_m = 2.0 * PI / shape.k;
+        let share = if shortest_m > 0.0 { (length_m / shortest_m - 1.0).clamp(0.0, 1.0) } else { 1.0 };
+        let (sin, cos) = libm::sincos(shape.phase);
+        let amplitude = share * shape.amplitude_m;
+        let direction = source.to_place / source.to_place.length().max(1e-6);
+        let rad_s = (GRAVITY_M_S2 * shape.k).sqrt();
+        sum.height_m += amplitude * cos;
+        sum.slope -= direction * (amplitude * shape.k * sin);
+        let speed = rad_s * amplitude;
+        sum.velocity_m_s += (direction * (speed * cos)).extend(speed * sin);
+        sum.acceleration_m_s2 += (direction * (speed * rad_s * sin)).extend(-speed * rad_s * cos);
+        sum.foam += share * BROKEN_SHARE * smoothstep(BREAKS[0], BREAKS[1], shape.raw_steepness) * cos.max(0.0);
+        sum.left_out_m += (1.0 - share) * shape.amplitude_m;
+    }
+
+    /// Returns a wave at a place; `None` for one that has no height.
+    fn shape(&self, source: &Source, wave: WakeWave, end: HullEnd) -> Option<WaveShape> {
+        let g = GRAVITY_M_S2;
+        let (u, speed2) = (source.age_s, source.velocity.length_squared());
+        let speed = speed2.sqrt();
+        let distance = source.to_place.length().max(1e-6);
+        if u <= 0.0 || speed <= SPEEDS_M_S[0] {
+            return None;
+        }
+        let [newest, oldest] = [self.states.first(), self.states.last()].map(|s| s.map_or(0.0, |s| s.node.time_s));
+        let share = age_share(u, self.time_s - newest, self.time_s - oldest);
+        let share = share * smoothstep(SPEEDS_M_S[0], SPEEDS_M_S[1], speed);
+        let [s, slope, bend] = source.s;
+        let is_beyond = wave == WakeWave::BeyondCusp;
+        // What lies beyond a cusp has the waves of the cusp, which is as far away as it would be if S were 0.
+        let far = if is_beyond { (distance * distance - s).max(1e-12).sqrt() } else { distance };
+        let cosine = (2.0 * far / (speed * u)).clamp(1e-3, 1.0);
+        let factor = g * u / (2.0 * far * far * far);
+        let half_bend = 0.5 * if is_beyond { bend } else { bend.abs() }.max(LEAST_BEND * speed2);
+        let third = factor * half_bend;
+        let (k, raw) = self.raised(speed, cosine, end);
+        let near_u = u + BEGINNING * self.hull.length_m / speed;
+        let size = (2.0 * PI).sqrt() / near_u * share;
+        let exact = -g * u * u / (4.0 * distance);
+        let (size, phase) = if is_beyond {
+            let least = (s - slope * slope / (4.0 * half_bend)).max(0.0);
+            let beyond = factor * factor * half_bend * least * libm::pow(third, -4.0 / 3.0);
+            let gone = smoothstep(BEYOND[0], BEYOND[1], distance / far);
+            let comes = smoothstep(CUSP_BENDS[0], CUSP_BENDS[1], bend / speed2);
+            if beyond > LAST_AIRY {
+                return None;
+            }
+            (2.0 * PI.sqrt() * airy_beyond(beyond) * libm::cbrt(1.0 / third) * (1.0 - gone) * comes * size, exact)
+        } else {
+            let second = factor * slope.abs();
+            let four_thirds = libm::pow(third, 4.0 / 3.0);
+            let argument = second * second / (4.0 * four_thirds);
+            let later = PHASE[0] / (1.0 + PHASE[1] * argument * argument.sqrt());
+            let turned = if wave == WakeWave::Diverging { FRAC_PI_4 - later } else { later - FRAC_PI_4 };
+            // The zero was found on a parabola; the phase is stationary there.
+            let left = 0.5 * factor * s * s * slope / (slope * slope + 1e-6 * speed2 * speed2 * u * u);
+            let size = size / (0.25 * second * second + MODULUS * four_thirds).sqrt().sqrt();
+            (size, exact + left.clamp(-0.5, 0.5) + turned)
+        };
+        let amplitude_m = size * raw.length();
+        let raw_steepness = amplitude_m * k;
+        let limit = 1.0 / (1.0 + (raw_steepness / MOST_STEEPNESS).powi(2)).sqrt();
+        let phase = phase + libm::atan2(raw.y, raw.x);
+        Some(WaveShape { k, amplitude_m: amplitude_m * limit, phase, raw_steepness })
+    }
+
+    /// Returns the wave number, rad/m, of waves whose direction has a cosine with the course, and their amplitude as a
+    /// complex number, m, before they spread (Michell 1898).
+    fn raised(&self, speed: f64, cosine: f64, end: HullEnd) -> (f64, DVec2) {
+        let hull = &self.hull;
+        let along = GRAVITY_M_S2 / (speed * speed * cosine);
+        let k = along / cosine;
+        let deep = 1.0 - libm::exp(-k * hull.draught_m);
+        // Waves much shorter than the beam are not raised by the hull as a whole; a planing hull presses on an area.
+        let planing = smoothstep(PLANING[0], PLANING[1], speed / (GRAVITY_M_S2 * hull.length_m).sqrt());
+        let width = k * hull.beam_m * libm::pow(hull.length_m / hull.beam_m, 0.5 * planing) / (2.0 * PI);
+        let base = 8.0 * hull.beam_m * deep * libm::exp(-width * width) / (PI * cosine * hull.length_m * hull.length_m);
+        (k, DVec2::new(end.sign() / (along * along), 0.5 * hull.length_m / along) * base)
+    }
+
+    /// Returns the share of a place under the foam that the hull has churned up.
+    fn wash(&self, place_m: DVec2) -> f64 {
+        let mut most = 0.0f64;
+        let stern = |state: &TrackNode| state.place_m - state.ahead * (0.5 * self.hull.length_m);
+        for pair in self.states.windows(2) {
+            let pair = [&pair[0].node, &pair[1].node];
+            let (a, b) = (stern(pair[0]), stern(pair[1]));
+            let way = b - a;
+            let part = ((place_m - a).dot(way) / way.length_squared().max(1e-9)).clamp(0.0, 1.0);
+            let state_s = pair[0].time_s + (pair[1].time_s - pair[0].time_s) * part;
+            let speed = pair[0].speed_m_s + (pair[1].speed_m_s - pair[0].speed_m_s) * part;
+            let age_s = (self.time_s - state_s).max(0.0);
+            // The wash of a hull widens with about the fourth root of the way behind it.
+            let lengths = 1.0 + speed * age_s / (2.0 * self.hull.length_m);
+            let half = WASH_WIDTH * self.hull.beam_m * lengths.sqrt().sqrt();
+            let off = (place_m - a - way * part).length() / half;
+            let begins = smoothstep(WASH_SPEEDS_M_S[0], WASH_SPEEDS_M_S[1], speed);
+            most = most.max(WASH_SHARE * begins * libm::exp(-age_s / WASH_DECAY_S) * (1.0 - off * off).max(0.0));
+        }
+        most
+    }
+}
+
+/// Wave at a place.
+struct WaveShape {
+    /// Wave number, rad/m.
+    k: f64,
+    amplitude_m: f64,
+    phase: f64,
+    /// Steepness before it was limited.
+    raw_steepness: f64,
+}
+
+/// Returns Ai(x) for x of at least 0, within 3 % of Ai(0).
+fn airy_beyond(x: f64) -> f64 {
+    AIRY_0 * libm::exp(-2.0 / 3.0 * x * x.sqrt()) * (MODULUS / (x + MODULUS)).sqrt().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sea::track::tests::track;
+
+    /// A slender hull, whose waves are too low to be limited, heading east; its middle is at the origin at 1000 s.
+    fn slender(speed_m_s: f64, turn_deg_s: f64) -> SeaHull {
+        SeaHull {
+            beam_m: 0.4,
+            draught_m: 0.3,
+            length_m: 30.0,
+            heading_deg: 90.0,
+            speed_m_s,
+            turn_deg_s,
+            ..SeaHull::default()
+        }
+    }
+
+    fn wake(hull: SeaHull, time_s: f64) -> Wake {
+        let mut wake = Wake::default();
+        wake.fill(&track(hull), time_s);
+        wake
+    }
+
+    fn height(wake: &Wake, place_m: DVec2) -> f64 {
+        let mut sum = WakePoint::default();
+        wake.add_at(place_m, 0.0, &mut sum);
+        sum.height_m
+    }
+
+    /// Kelvin's integral over all directions of waves of a hull at the origin that heads east (Michell 1898).
+    fn integral(hull: &SeaHull, place_m: DVec2) -> f64 {
+        let of = Wake { hull: *hull, ..Wake::default() };
+        let (steps, most) = (40_000, 4.0);
+        let h = 2.0 * most / f64::from(steps);
+        let mut sum = 0.0;
+        for i in 0..=steps {
+            // Directions by the tangent's area sine, dense where waves are long.
+            let x = h * f64::from(i) - most;
+            let (tangent, weight) = (libm::sinh(x), libm::cosh(x));
+            let cosine = 1.0 / libm::sqrt(1.0 + tangent * tangent);
+            let mut re = 0.0;
+            for end in [HullEnd::Bow, HullEnd::Stern] {
+                let (k, raw) = of.raised(hull.speed_m_s, cosine, end);
+                let ahead = place_m.x - 0.5 * end.sign() * hull.length_m;
+                let (sin, cos) = libm::sincos(k * cosine * (ahead + place_m.y * tangent));
+                re += raw.x * cos - raw.y * sin;
+            }
+            sum += re * weight * cosine * cosine * h;
+        }
+        sum
+    }
+
+    #[test]
+    fn straight_wakes_are_kelvin_s() {
+        for speed in [4.0, 6.0, 9.0] {
+            let hull = slender(speed, 0.0);
+            let straight = wake(hull, 1000.0);
+            let here = straight.states[0].node.place_m;
+            let (mut off, mut all) = (0.0, 0.0);
+            for seconds in [15.0, 28.0, 50.0, 85.0] {
+                for i in 0..24 {
+                    let behind = seconds * speed;
+                    let place = DVec2::new(-behind, 0.017 * f64::from(i) * behind);
+                    let (found, wanted) = (height(&straight, here + place), integral(&hull, place));
+                    off += (found - wanted).powi(2);
+                    all += wanted * wanted;
+                }
+            }
+            let share = (off / all).sqrt();
+            println!("{speed} m/s: {share:.3} of the root mean square height");
+            assert!(share < 0.1, "{speed}: {share}");
+        }
+    }
+
+    #[test]
+    fn waves_fall_with_the_root_of_the_way_and_at_the_cusps_with_its_cube_root() {
+        let hull = slender(6.0, 0.0);
+        let straight = wake(hull, 1e4);
+        let here = straight.states[0].node.place_m;
+        // Largest height over a wave length around a distance, along a ray.
+        let largest = |behind: f64, slope: f64| {
+            (0..400)
+                .map(|i| behind + 0.1 * f64::from(i))
+                .map(|x| height(&straight, here + DVec2::new(-x, slope * x)).abs())
+                .fold(0.0, f64::max)
+        };
+        let near_cusps = |behind: f64| (0..30).map(|i| largest(behind, 0.3 + 0.002 * f64::from(i))).fold(0.0, f64::max);
+        for (heights, exponent) in [
+            ([150.0, 450.0].map(|behind| largest(behind, 0.05)), super::super::wake::INSIDE_DECAY),
+            ([150.0, 450.0].map(near_cusps), super::super::wake::CUSP_DECAY),
+        ] {
+            let found = libm::log(heights[1] / heights[0]) / libm::log(3.0);
+            println!("{found:.3} for {exponent:.3}");
+            assert!((found - exponent).abs() < 0.05, "{found} {exponent}");
+        }
+        // Beyond the wedge there is nothing.
+        assert!(largest(400.0, 0.6) < 1e-3 * largest(400.0, 0.3536));
+    }
+
+    #[test]
+    fn fast_hulls_are_highest_inside_the_wedge() {
+        for froude in [0.6, 0.8, 1.0, 1.5] {
+            let speed = froude * (GRAVITY_M_S2 * 30.0f64).sqrt();
+            let fast = wake(SeaHull { beam_m: 8.0, draught_m: 0.01, ..slender(speed, 0.0) }, 1e4);
+            let here = fast.states[0].node.place_m;
+            let energy = |deg: f64| -> f64 {
+                let slope = deg.to_radians().tan();
+                let at = |i: i32| speed * (60.0 + 0.2 * f64::from(i));
+                (0..100).map(|i| height(&fast, here + DVec2::new(-at(i), slope * at(i))).powi(2)).sum()
+            };
+            let best = (10..60).map(|i| 0.4 * f64::from(i)).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap();
+            let wanted = super::super::wake::highest_angle(froude).to_degrees();
+            println!("Froude {froude}: {best:.1} for {wanted:.1}");
+            assert!((best - wanted).abs() < 2.5, "{froude}: {best} {wanted}");
+        }
+    }
+
+    #[test]
+    fn turning_wakes_are_mirrored_and_have_no_steps() {
+        let [right, left] = [2.5, -2.5].map(|turn| wake(slender(6.0, turn), 90.0));
+        let (mut before, mut steps, mut most) = (0.0, Vec::new(), 0.0f64);
+        for i in 0..60_000 {
+            // Straight ways over the inner side and the outer one.
+            let place = DVec2::new(-60.0, 130.0) + DVec2::new(0.0, -0.01 * f64::from(i));
+            let h = height(&right, place);
+            let mirrored = height(&left, DVec2::new(place.x, -place.y));
+            assert!((h - mirrored).abs() < 1e-9, "{place}: {h} {mirrored}");
+            if i > 0 {
+                steps.push((h - before).abs());
+            }
+            most = most.max(h.abs());
+            before = h;
+        }
+        steps.sort_by(f64::total_cmp);
+        let (usual, largest) = (steps[steps.len() * 99 / 100], steps[steps.len() - 1]);
+        println!("highest {most:.4} m, steps of 1 cm: 99 % within {usual:.6} m, the largest {largest:.6} m");
+        assert!(most > 1e-3 && largest < 0.04 * most, "{largest} {most}");
+    }
+
+    #[test]
+    fn hulls_at_rest_raise_nothing_and_short_waves_can_be_left_out() {
+        assert_eq!(height(&wake(SeaHull { speed_m_s: 0.5, ..slender(0.0, 0.0) }, 100.0), DVec2::new(20.0, 3.0)), 0.0);
+        let hull = SeaHull { heading_deg: 90.0, speed_m_s: 6.0, ..SeaHull::default() };
+        let made = wake(hull, 300.0);
+        let place = made.states[0].node.place_m + DVec2::new(-180.0, 57.0);
+        let mut all = WakePoint::default();
+        made.add_at(place, 0.0, &mut all);
+        for shortest in [5.0, 20.0, 100.0] {
+            let mut long = WakePoint::default();
+            made.add_at(place, shortest, &mut long);
+            assert!((all.height_m - long.height_m).abs() <= long.left_out_m + 1e-12, "{shortest}");
+        }
+        // The slope is that of the height, the velocity that of its change.
+        let h = 1e-3;
+        let slope = [DVec2::X, DVec2::Y]
+            .map(|axis| (height(&made, place + axis * h) - height(&made, place - axis * h)) / (2.0 * h));
+        assert!((DVec2::from(slope) - all.slope).length() < 0.15 * all.slope.length(), "{slope:?} {}", all.slope);
+        let [later, earlier] = [300.0 + h, 300.0 - h].map(|time_s| height(&wake(hull, time_s), place));
+        let rising = (later - earlier) / (2.0 * h);
+        assert!(
+            (rising - all.velocity_m_s.z).abs() < 0.05 * all.velocity_m_s.length() + 1e-3,
+            "{rising} {}",
+            all.velocity_m_s
+        );
+    }
+}
