@@ -27,31 +27,34 @@
  *
  * ERRORS
  *
- * Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
- * output, changes nothing and draws nothing. wk_last_error_message() has the calling thread's message, which names the
- * parameter and what is accepted, as in `wk_view_record: frame.projection[5] must be finite, got NaN`;
- * wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or throws. If a fault in Welkin
- * itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the device returns
- * WK_ERROR_POISONED, except those that destroy.
+ * Every call that can fail returns a wk_status: 0 and positive values mean success, negative ones failure. A failed
+ * call writes no output, changes nothing and draws nothing. Only a list that does not fit into its buffer is an
+ * exception: the call fails, but still writes the number of elements or bytes needed. wk_last_error_message() has the
+ * calling thread's message, which names the parameter and what is accepted, as in `wk_view_record: frame.projection[5]
+ * must be finite, got NaN`; wk_last_error_field() has `frame.projection[5]` alone. Welkin never aborts, prints or
+ * throws. If a fault in Welkin itself is caught, the call returns WK_ERROR_INTERNAL. After that, every call on the
+ * device returns WK_ERROR_POISONED, except those that destroy.
  *
  * STRUCTS
  *
- * Structs begin with struct_size, struct_type and next. Only elements of arrays that calls read or fill in bulk, such
- * as wk_flash, have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init, which writes the
- * same bytes) and change fields. Later versions append fields for which zero means "as before". A library therefore
- * accepts structs of older headers, whose missing fields get their defaults, and structs of newer headers if the
- * fields that it does not know are zero. `next` points to extension structs where a call names them; an unknown one is
- * refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An optional field has
- * a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your header. Reals are
- * doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+ * Structs begin with struct_size, struct_type and next. Some structs are elements of arrays that calls read or fill in
+ * bulk, such as wk_flash. They have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init,
+ * which writes the same bytes) and change fields. Later versions append fields for which zero means "as before". A
+ * library therefore accepts structs of older headers, whose missing fields get their defaults, and structs of newer
+ * headers if the fields that it does not know are zero. `next` points to extension structs where a call names them; an
+ * unknown one is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An
+ * optional field has a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your
+ * header. Reals are doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
  *
  * THREADS
  *
- * You may call functions from any thread. `const T *` is shared: any number of calls may use the handle at the same
- * time. `T *` is exclusive: one call at a time with that handle, and no `const` call with it at the same time. Calls
- * that break this rule wait for each other. Welkin starts no threads. With an OpenGL host make all calls that draw,
- * create or destroy on the thread where its context is (or can be made) current; what you destroy on another thread is
- * released at the device's next call. Call no Welkin function inside a callback: it would return WK_ERROR_WRONG_ORDER.
+ * You may call functions from any thread. The line "Thread:" of a function says which calls may run at the same time.
+ * "any": no rule. "concurrent": the handle is a `const T *`, and any number of such calls may use it at the same time.
+ * "exclusive": the handle is a `T *`; make one call at a time with it, and no concurrent call with it at the same
+ * time. "exclusive on the view" names the handle. Calls that break this rule wait for each other. Welkin starts no
+ * threads. With an OpenGL host, make all calls that draw, create or destroy on the thread where its context is (or can
+ * be made) current; what you destroy on another thread is released at the device's next call. Call no Welkin function
+ * inside a callback: it would return WK_ERROR_WRONG_ORDER.
  *
  * UNITS AND COORDINATES
  *
@@ -70,10 +73,11 @@
  * WHAT COMES LATER, AND HOW
  *
  * Before 1.0 a minor version may change this header; from 1.0 on, numbers, names and layouts never change within a
- * major version, and later versions add new ones. Settled for planned features, so that a host can prepare:
- * - Snow in rain areas is wk_rain_area.snow.
- * - Base colour and motion are images appended to the target structs.
- * - Allocator and file callbacks come as extensions of wk_device_desc through `next`.
+ * major version, and later versions add new ones. These points are settled for planned features, so that a host can
+ * prepare:
+ * - Snow in rain areas will be wk_rain_area.snow.
+ * - Images of base colour and motion will be appended to the target structs.
+ * - Callbacks for memory and files will be extensions of wk_device_desc through `next`.
  *
  * A field, a bit or a value that this version does not draw yet is refused by name where it is set.
  *
@@ -173,24 +177,27 @@ extern "C" {
  * ====================================================================================================
  * [status] Status, versions, messages
  *
- * Every call returns a wk_status: 0 and positive values mean success, negative ones failure. A failed call writes no
- * output. wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field()
- * gives that parameter or field alone.
+ * Every call that can fail returns a wk_status: 0 and positive values mean success, negative ones failure.
+ * wk_last_error_message() then says which parameter was wrong and what is accepted, and wk_last_error_field() gives
+ * that parameter or field alone.
  * ====================================================================================================
  */
 
-/** The result of a call. The numbers never change and are never reused. */
+/** Result of a call. The numbers never change and are never reused. */
 typedef int32_t wk_status;
 
 /** The call succeeded. */
 #define WK_OK 0
-/** More steps are due than one update may take; call again. Not a failure. */
+/**
+ * Not a failure: the call has more to do. Call it again (wk_context_update, wk_view_prepare), or skip this frame
+ * (wk_surface_acquire).
+ */
 #define WK_PENDING 1
 /** A parameter is missing, not finite or outside its range; the message names it. */
 #define WK_ERROR_INVALID_ARGUMENT (-1)
 /** A handle is NULL, destroyed, foreign or of another kind. */
 #define WK_ERROR_BAD_HANDLE (-2)
-/** The parent still has live children, or another call is using the handle at this moment. */
+/** The object still has live children, or the program has a logger of its own (wk_set_log_callback). */
 #define WK_ERROR_IN_USE (-3)
 /** This device, tier or build does not support the request; the message names the feature. */
 #define WK_ERROR_UNSUPPORTED (-4)
@@ -210,7 +217,10 @@ typedef int32_t wk_status;
 #define WK_ERROR_IO (-11)
 /** The surface must be configured again: it was resized, minimised or lost. */
 #define WK_ERROR_SURFACE_OUTDATED (-12)
-/** Calls in a wrong order: stages of a frame, or dates before the last update. */
+/**
+ * A call comes too early or too late: a stage out of order, a time before the last update, a query without the
+ * settings that it needs, or a call inside a callback.
+ */
 #define WK_ERROR_WRONG_ORDER (-13)
 /** The host aborted a long operation through its callback. */
 #define WK_ERROR_ABORTED (-14)
@@ -235,7 +245,7 @@ typedef uint32_t wk_log_level;
  */
 typedef void (*wk_log_fn)(void *user, wk_log_level level, const char *message);
 
-/** The type of a tagged struct, in its second field. WK_X_INIT sets it. */
+/** Type of a tagged struct, in its second field. WK_X_INIT sets it. */
 typedef uint32_t wk_struct_type;
 
 /** wk_device_desc */
@@ -376,6 +386,8 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SEA_REGION 113
 /** wk_sea_state */
 #define WK_STRUCT_TYPE_SEA_STATE 114
+/** wk_sea_hull */
+#define WK_STRUCT_TYPE_SEA_HULL 115
 /** wk_weather_region */
 #define WK_STRUCT_TYPE_WEATHER_REGION 95
 /** wk_air */
@@ -398,8 +410,9 @@ typedef uint32_t wk_struct_type;
 #define WK_STRUCT_TYPE_SOIL_BALANCE 127
 
 /**
- * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL, never
- * freed.
+ * Returns the name of a status, such as "WK_ERROR_BAD_HANDLE"; "unknown status" for other numbers. Never NULL; lives
+ * as long as the library, and you must not free it.
+ * Thread: any.
  */
 WK_API const char *wk_status_name(wk_status status);
 
@@ -407,6 +420,7 @@ WK_API const char *wk_status_name(wk_status status);
  * Returns the message of the calling thread's last failed call: one sentence that begins with the function's name and
  * names the parameter and the accepted range. Empty before the first failure; successful calls do not change it. Never
  * NULL; valid until the next failing call of this thread.
+ * Thread: any; each thread has its own message.
  */
 WK_API
 const char *wk_last_error_message(void);
@@ -417,6 +431,7 @@ const char *wk_last_error_message(void);
  * `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
  * WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
  * Never NULL; valid until the next failing call of this thread.
+ * Thread: any; each thread has its own field.
  */
 WK_API
 const char *wk_last_error_field(void);
@@ -424,13 +439,16 @@ const char *wk_last_error_field(void);
 /**
  * Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
  * major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
+ * Thread: any.
  */
 WK_API wk_status wk_version(uint32_t *major, uint32_t *minor, uint32_t *patch);
 
 /**
  * Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
  * They are off by default, and Welkin never prints. There is one callback in a process. `max_level` is the least
- * severe level that is sent. `callback` must always return normally, even if it fails; Welkin ignores its failures.
+ * severe level that is sent. `callback` must return normally and must not unwind, even if it could not handle the
+ * message.
+ * Thread: any. When the call returns, the previous callback is no longer called.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown level; WK_ERROR_IN_USE in a Rust program that has its own logger.
  */
 WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_level max_level);
@@ -454,7 +472,7 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
 /** A native queue or OpenGL context. Parent of contexts, surfaces and textures. */
 typedef struct wk_device wk_device;
 
-/** Native graphics interfaces. */
+/** Native graphics interfaces, as flags. */
 typedef uint32_t wk_backend_flags;
 
 /** No graphics: draws nothing and needs no GPU, for tests of your own code. */
@@ -467,15 +485,15 @@ typedef uint32_t wk_backend_flags;
 #define WK_BACKEND_DX12 8
 /** OpenGL or OpenGL ES. */
 #define WK_BACKEND_GL 16
-/** Any interface that works, the best one first. */
+/** Any of Vulkan, Metal, Direct3D 12 and OpenGL; Welkin takes the best one that works. */
 #define WK_BACKEND_ANY 30
 
 /** Flags of an own device. */
 typedef uint32_t wk_device_flags;
 
-/** Use no compute shaders, even where the device has them. Welkin then draws as on an OpenGL 3.3 machine. */
+/** Use no compute shaders, even where the device has them. Welkin then draws as on a device with OpenGL 3.3. */
 #define WK_DEVICE_FORCE_TIER0 1
-/** Use the software driver. */
+/** Use a software driver, which draws on the CPU. */
 #define WK_DEVICE_FORCE_SOFTWARE 2
 
 /** Settings for an own device. */
@@ -547,16 +565,17 @@ typedef struct wk_caps {
 
 /**
  * Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
- * handle, which you destroy with `wk_device_destroy`; else it stays untouched. Thread: any. Errors:
- * WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels wrong or
- * does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
+ * handle, which you destroy with `wk_device_destroy`; else it stays untouched.
+ * Thread: any.
+ * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels
+ * wrong or does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
  */
 WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_device);
 
 /**
  * Destroys a device. NULL does nothing.
- * Thread: any, except for a device on an OpenGL context. Destroy that on a thread where the context is (or can be
- * made) current; elsewhere, or when the context is already gone, its GPU objects are abandoned.
+ * Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
+ * can be made) current. Elsewhere, or when the context is already gone, Welkin abandons its GPU objects.
  * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
@@ -631,7 +650,7 @@ typedef struct wk_texture_desc {
     uint32_t width;
     /** Height, pixels. Range [1, wk_caps.max_texture_size], default 1. */
     uint32_t height;
-    /** Default WK_FORMAT_RGBA8_UNORM. */
+    /** Texel format. Default WK_FORMAT_RGBA8_UNORM. */
     wk_format format;
     /** Must be 0. */
     uint32_t reserved0;
@@ -649,9 +668,10 @@ typedef struct wk_texture_desc {
 }
 
 /**
- * Makes a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
+ * Creates a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
  * Thread: any.
- * Errors: WK_ERROR_UNSUPPORTED if the device cannot make the format; WK_ERROR_OUT_OF_MEMORY.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the device cannot make the
+ * format; WK_ERROR_OUT_OF_MEMORY.
  */
 WK_API
 wk_status wk_texture_create(wk_device *device,
@@ -668,6 +688,7 @@ WK_API wk_status wk_texture_destroy(wk_texture *texture);
  * Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
  * the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
  * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
  */
 WK_API
 wk_status wk_texture_write(wk_texture *texture,
@@ -680,7 +701,7 @@ wk_status wk_texture_write(wk_texture *texture,
  * picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
  * Slow: do not call it in every frame.
  * Thread: exclusive.
- * Errors: WK_ERROR_UNSUPPORTED for WK_FORMAT_R8_UNORM.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
  */
 WK_API wk_status wk_texture_read(wk_texture *texture, void *data, size_t data_size, uint32_t bytes_per_row);
 
@@ -735,15 +756,15 @@ typedef struct wk_window {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default WK_WINDOW_XLIB. */
+    /** Window system. Default WK_WINDOW_XLIB. */
     wk_window_kind kind;
-    /** X11's screen number. Default 0. */
+    /** Number of the screen, for X11. Default 0. */
     int32_t screen;
-    /** See wk_window_kind. Default NULL. */
+    /** Display, connection or module; see wk_window_kind. Default NULL. */
     void *display;
-    /** See wk_window_kind. Default NULL. */
+    /** Handle of the window; see wk_window_kind. Default NULL. */
     void *handle;
-    /** See wk_window_kind. Default 0. */
+    /** Number of the window, for X11; see wk_window_kind. Default 0. */
     uint64_t id;
 } wk_window;
 
@@ -786,13 +807,19 @@ typedef struct wk_surface_config {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Width of the window's drawable area, pixels; 0 (the default) while it is minimised. */
+    /**
+     * Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
+     * minimised.
+     */
     uint32_t width;
-    /** Height of the window's drawable area, pixels; 0 (the default) while it is minimised. */
+    /**
+     * Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
+     * minimised.
+     */
     uint32_t height;
-    /** Default WK_SURFACE_DISPLAY_LINEAR. */
+    /** Encoding of the values drawn. Default WK_SURFACE_DISPLAY_LINEAR. */
     wk_surface_encoding encoding;
-    /** Default WK_PACING_REFRESH. */
+    /** Time at which images reach the screen. Default WK_PACING_REFRESH. */
     wk_pacing pacing;
 } wk_surface_config;
 
@@ -808,7 +835,7 @@ typedef struct wk_surface_config {
 }
 
 /**
- * Makes an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
+ * Creates an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
  * WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
  * Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
  * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
@@ -819,7 +846,7 @@ wk_status wk_device_create_for_window(const wk_device_desc *desc,
                                       wk_device **out_device);
 
 /**
- * Makes a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
+ * Creates a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
  * `wk_surface_destroy`.
  * Thread: exclusive on the device; on macOS the main one.
  * Errors: WK_ERROR_UNSUPPORTED if the device cannot present to this window.
@@ -829,7 +856,10 @@ wk_status wk_surface_create(wk_device *device,
                             const wk_window *window,
                             wk_surface **out_surface);
 
-/** Destroys a surface; the window stays the host's. NULL does nothing. */
+/**
+ * Destroys a surface; the window stays the host's. NULL does nothing.
+ * Thread: any; on macOS the main one.
+ */
 WK_API wk_status wk_surface_destroy(wk_surface *surface);
 
 /**
@@ -837,8 +867,8 @@ WK_API wk_status wk_surface_destroy(wk_surface *surface);
  * is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
  * surface is configured with an area.
  * Thread: exclusive.
- * Errors: WK_ERROR_UNSUPPORTED if the window has no format for the encoding; WK_ERROR_SURFACE_OUTDATED if the window
- * is gone.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the window has no format
+ * for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone.
  */
 WK_API
 wk_status wk_surface_configure(wk_surface *surface,
@@ -847,8 +877,9 @@ wk_status wk_surface_configure(wk_surface *surface,
 /**
  * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
  * Thread: exclusive.
- * Returns WK_PENDING if the window shows nothing now: skip this frame.
- * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised.
+ * Returns WK_PENDING if the window shows nothing now, because it is hidden or the screen is busy: skip this frame.
+ * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised;
+ * WK_ERROR_WRONG_ORDER before the first wk_surface_configure.
  */
 WK_API wk_status wk_surface_acquire(wk_surface *surface);
 
@@ -885,7 +916,7 @@ wk_status wk_surface_config_init(wk_surface_config *out,
  * sample what Welkin drew into it, as OpenGL requires between contexts.
  *
  * HOST_CONTEXT: Welkin draws in the host's own context. It saves every piece of state that it touches, sets it, and
- * restores it. Any framebuffer can be a target, also the window's (0), by copies in and out.
+ * restores it. Any framebuffer can be a target, even that of the window (0); Welkin copies its images in and out.
  *
  * In SHARED mode one device serves all windows whose contexts share objects, with one view for each. In HOST_CONTEXT
  * mode a device belongs to one context.
@@ -937,15 +968,18 @@ typedef struct wk_opengl_host_desc {
     /** Finds functions. Default NULL; must be given. */
     wk_opengl_get_proc_fn get_proc;
     /**
-     * Makes contexts current. Required in shared mode. In the host's context it may be NULL (the default); Welkin then
-     * uses the current context as it is.
+     * Makes contexts current. Required in WK_OPENGL_SHARED. In WK_OPENGL_HOST_CONTEXT it may be NULL (the default);
+     * Welkin then uses the current context as it is.
      */
     wk_opengl_make_current_fn make_current;
-    /** Passed to both callbacks. Welkin calls them on the thread that calls it, one at a time. Default NULL. */
+    /**
+     * Pointer that is passed to both callbacks. Welkin calls them on the thread that calls Welkin, one at a time.
+     * Default NULL.
+     */
     void *user;
-    /** Default WK_OPENGL_SHARED. */
+    /** Context that Welkin draws in. Default WK_OPENGL_SHARED. */
     wk_opengl_mode mode;
-    /** Default WK_OPENGL_FENCE. */
+    /** Order of the two contexts' commands. Default WK_OPENGL_FENCE. */
     wk_opengl_handover handover;
     /** WK_DEVICE_FORCE_TIER0 or 0, the default; WK_DEVICE_FORCE_SOFTWARE has no meaning here. */
     wk_device_flags flags;
@@ -976,12 +1010,12 @@ typedef uint32_t wk_opengl_image_kind;
 #define WK_OPENGL_TEXTURE 1
 /** A renderbuffer. */
 #define WK_OPENGL_RENDERBUFFER 2
-/** The attachments of a framebuffer; 0 is the window's. Only in the host's own context. */
+/** The attachments of a framebuffer; 0 is the window's. Only in WK_OPENGL_HOST_CONTEXT. */
 #define WK_OPENGL_FRAMEBUFFER 3
 
 /** A host's image, embedded in wk_opengl_target and wk_occluder_map. */
 typedef struct wk_opengl_image {
-    /** Default WK_OPENGL_NONE. */
+    /** Type of the object. Default WK_OPENGL_NONE. */
     wk_opengl_image_kind kind;
     /** Its OpenGL name. Default 0. */
     uint32_t name;
@@ -1035,7 +1069,7 @@ typedef struct wk_opengl_target {
     uint32_t height;
     /** Increase this number when you create an object again under an old name. It must never fall. Default 0. */
     uint64_t generation;
-    /** Default WK_OPENGL_MULTISAMPLE_EACH. */
+    /** Handling of multisampled images. Default WK_OPENGL_MULTISAMPLE_EACH. */
     wk_opengl_multisample multisample;
     /** Must be 0. */
     uint32_t reserved0;
@@ -1046,8 +1080,8 @@ typedef struct wk_opengl_target {
     wk_opengl_image surface_classes;
     /**
      * A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE):
-     * (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel is no
-     * unit vector (a cleared pixel), Welkin uses the host's terrain or depth. Default none.
+     * (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel holds
+     * no unit vector (a cleared pixel), Welkin uses the normal of the host's terrain or depth. Default none.
      */
     wk_opengl_image normals;
 } wk_opengl_target;
@@ -1073,8 +1107,8 @@ typedef struct wk_opengl_target {
 typedef uint32_t wk_opengl_context;
 
 /**
- * The context that the host draws in. With several windows: the one that was current when Welkin was called (store it
- * for each thread).
+ * The context that the host draws in. With several windows, this is the context that was current when the host called
+ * Welkin; the host stores it for each thread.
  */
 #define WK_OPENGL_CONTEXT_HOST 0
 /** The context that the host made for Welkin, sharing objects with its own. */
@@ -1303,7 +1337,7 @@ typedef struct wk_vulkan_semaphore {
     uint64_t semaphore;
     /** Value of a timeline semaphore to wait for or to signal. Default 0. */
     uint64_t value;
-    /** Default WK_VULKAN_SEMAPHORE_BINARY. */
+    /** Kind of semaphore. Default WK_VULKAN_SEMAPHORE_BINARY. */
     wk_vulkan_semaphore_kind kind;
     /** Must be 0. */
     uint32_t reserved0;
@@ -1332,7 +1366,7 @@ typedef struct wk_vulkan_target {
     const wk_vulkan_image *color;
     /**
      * The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
-     * depth may have more; the first of each pixel then counts. NULL (the default) shows the sky in every pixel.
+     * depth may have more; the first of each pixel then counts. With NULL (the default) every pixel shows the sky.
      */
     const wk_vulkan_image *depth;
     /**
@@ -1340,7 +1374,10 @@ typedef struct wk_vulkan_target {
      * sample, another image. Default NULL.
      */
     const wk_vulkan_image *mask;
-    /** Semaphores to wait for before drawing; the signal of a binary one must be submitted. At most 16. */
+    /**
+     * Semaphores to wait for before drawing, at most 16. The submission that signals a binary one must come before
+     * this call.
+     */
     const wk_vulkan_semaphore *wait_semaphores;
     /** Semaphores to signal when all is drawn and the images are in their final layouts. At most 16. */
     const wk_vulkan_semaphore *signal_semaphores;
@@ -1363,8 +1400,8 @@ typedef struct wk_vulkan_target {
     const wk_vulkan_image *surface_classes;
     /**
      * Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
-     * formats, n in float formats. Where a pixel is no unit vector (a cleared pixel), Welkin uses the host's terrain
-     * or depth. As large as `color`, one sample. Default NULL.
+     * formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the
+     * host's terrain or depth. As large as `color`, one sample. Default NULL.
      */
     const wk_vulkan_image *normals;
 } wk_vulkan_target;
@@ -1403,6 +1440,7 @@ WK_API wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc, wk_dev
  * when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
  * vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
  * Thread: exclusive on the device.
+ * Errors: WK_ERROR_UNSUPPORTED on a device that is not on a Vulkan host.
  */
 WK_API
 wk_status wk_device_forget_vulkan_image(wk_device *device,
@@ -1444,7 +1482,7 @@ wk_status wk_vulkan_target_init(wk_vulkan_target *out,
  * ====================================================================================================
  * [weather_kinds] Kinds of weather
  *
- * Kinds that a report names by words. Their numbers never change.
+ * Kinds that a report names with words. Their numbers never change.
  * ====================================================================================================
  */
 
@@ -1477,15 +1515,15 @@ typedef uint32_t wk_fog_kind;
 
 /** No fog: all extinction that the reported visibility requires beyond the air's is aerosol. */
 #define WK_FOG_NONE 0
-/** Mist (METAR BR): droplets, 1 to 5 km. */
+/** Mist (METAR BR): droplets, visibility 1 to 5 km. */
 #define WK_FOG_MIST 1
-/** Shallow fog (METAR MIFG): up to 2 m, clear above. */
+/** Shallow fog (METAR MIFG): fog up to 2 m high, clear above. */
 #define WK_FOG_SHALLOW 2
 /** Patches of fog (METAR BCFG). */
 #define WK_FOG_PATCHES 3
 /** Part of the aerodrome in fog (METAR PRFG). */
 #define WK_FOG_PARTIAL 4
-/** Fog (METAR FG): below 1 km. */
+/** Fog (METAR FG): visibility below 1 km. */
 #define WK_FOG_FOG 5
 /** Freezing fog (METAR FZFG): supercooled droplets. */
 #define WK_FOG_FREEZING 6
@@ -1641,9 +1679,9 @@ typedef struct wk_cloud_layer {
      * Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
      */
     double wind_from_deg;
-    /** Typical distance between clouds, m. Range [50, 200000]; 0, the default, by kind and thickness. */
+    /** Typical distance between clouds, m. Range [50, 200000]; 0, the default, lets kind and thickness decide. */
     double spacing_m;
-    /** Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, is 1200. */
+    /** Lifetime of the layer's clouds, s. Range [60, 1e6]; 0, the default, means 1200. */
     double life_s;
 } wk_cloud_layer;
 
@@ -1712,11 +1750,11 @@ typedef uint64_t wk_weather_has_flags;
 /** Properties of precipitation. */
 typedef uint32_t wk_precipitation_flags;
 
-/** From convective cloud (SH): fewer and larger drops, sharp onset and end. */
+/** Precipitation from convective cloud (SH): fewer and larger drops, sharp onset and end. */
 #define WK_PRECIPITATION_SHOWERS 1
-/** With thunder (TS). */
+/** Precipitation with thunder (TS). */
 #define WK_PRECIPITATION_THUNDERSTORM 2
-/** With hail besides the kind (GR, GS). */
+/** Precipitation with hail in addition to its kind (GR, GS). */
 #define WK_PRECIPITATION_WITH_HAIL 4
 
 /** The weather at a station and moment. Heights are above the station unless stated otherwise. */
@@ -1901,7 +1939,7 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_RAYLEIGH_DENSITY 32
 /** rayleigh_scale_height_m */
 #define WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT 64
-/** Rain adds no cloud that the report lacks. */
+/** No value: rain adds no cloud that the report lacks. */
 #define WK_OVERRIDE_RAIN_WITHOUT_CLOUD 128
 /** cloud_direct and cloud_diffuse */
 #define WK_OVERRIDE_CLOUD_LIGHT 256
@@ -1926,19 +1964,18 @@ typedef struct wk_weather_overrides {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Aerosol extinction at 550 nm and station height, 1/m, in place of the share that visibility gives. Range [0,
-     * 10].
+     * Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
      */
     double aerosol_extinction_per_m;
-    /** Extinction inside the ground layer, 1/m, in place of the rest that visibility gives. Range [0, 10]. */
+    /** Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10]. */
     double fog_extinction_per_m;
-    /** Extinction of precipitation, 1/m, in place of what the drop and flake spectra give. Range [0, 10]. */
+    /** Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10]. */
     double precipitation_extinction_per_m;
     /** Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog. */
     double visibility_above_fog_m;
     /**
-     * Growth factor of particles by humidity, relative to their size at 80 %. Range [0.1, 20]; law: Haenel's; 1
-     * switches growth off.
+     * Growth of the particles' extinction with humidity, relative to that at 80 %. Range [0.1, 20]; law: Haenel
+     * (1976); 1 switches growth off.
      */
     double humidity_growth;
     /** Ratio of the air density at sea level to the standard's. Range [0, 10]. */
@@ -1949,9 +1986,9 @@ typedef struct wk_weather_overrides {
     double cloud_direct;
     /** Diffuse light below the clouds as a fraction of the light above. Range [0, 1]. */
     double cloud_diffuse;
-    /** Significant wave height, m, in place of what wind or sea state give. Range [0, 30]. */
+    /** Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30]. */
     double wave_height_m;
-    /** Wetness of the ground, in place of what precipitation gives. Range [0, 1]. */
+    /** Wetness of the ground, in place of that from the precipitation. Range [0, 1]. */
     double wetness;
 } wk_weather_overrides;
 
@@ -2001,11 +2038,11 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
  * ====================================================================================================
  * [report] Weather reports and presets
  *
- * Turns a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that are present, in
- * any order up to the pressure. Fields that the report leaves out or marks as missing keep their defaults, or get
- * values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind (00000KT) and one
- * that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of the code change
- * nothing and are counted.
+ * These functions turn a METAR or SPECI report, as airports send it, into a wk_weather. Welkin reads the groups that
+ * are present, in any order up to the pressure. Fields that the report leaves out or marks as missing keep their
+ * defaults, or get values that the rest of the report makes likely; each has a bit in wk_metar.assumed. A calm wind
+ * (00000KT) and one that nobody measured (/////KT) thus differ by WK_METAR_ASSUMED_WIND. Words that are no group of
+ * the code change nothing and are counted.
  *
  * No report contains the altitude of its station: weather.station_altitude_m is 0 afterwards. Look wk_metar.station up
  * in your list of airports and set the altitude, because cloud bases, visibility and temperature refer to that height.
@@ -2104,9 +2141,9 @@ typedef struct wk_metar {
      * (`4000 1500NE`, `9999 3100`), else 0. For information: the weather has the prevailing visibility.
      */
     double lowest_visibility_m;
-    /** Offset of the runway visual ranges. */
+    /** Offset of the first runway visual range. */
     uint32_t runways_offset;
-    /** Bytes from the first to the last of them. */
+    /** Length of the runway visual ranges, from the first to the last, bytes. */
     uint32_t runways_length;
     /** Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included. */
     uint32_t trend_offset;
@@ -2122,7 +2159,7 @@ typedef struct wk_metar {
     uint32_t unread_length;
     /** Number of such words. */
     uint32_t unread_count;
-    /** Must be 0. */
+    /** Always 0. */
     uint32_t reserved0;
 } wk_metar;
 
@@ -2179,9 +2216,11 @@ typedef struct wk_metar_options {
  * the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
  * `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
  * there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
- * from a list of airports. Thread: any. Errors: WK_ERROR_PARSE for a text without a station, without an observation
- * (NIL) or without any group of the weather, with line and column, what was expected there and what was found;
- * WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
+ * from a list of airports.
+ * Thread: any.
+ * Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
+ * weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
+ * do not fit.
  */
 WK_API
 wk_status wk_weather_from_metar(const char *report,
@@ -2219,10 +2258,10 @@ wk_status wk_weather_from_preset(const char *name,
                                  wk_weather *out_weather);
 
 /**
- * Gets name and one-line description of the preset `index`, from 0 in the order of a menu. Both texts live as long as
- * the process. Either pointer may be NULL.
+ * Gets the name and the one-line description of the preset `index`. Indices count from 0, in an order that suits a
+ * menu. Both texts live as long as the process. Either pointer may be NULL.
  * Thread: any.
- * Errors: WK_ERROR_INVALID_ARGUMENT beyond the last one.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an index beyond the last preset.
  */
 WK_API wk_status wk_get_preset(uint32_t index, const char **out_name, const char **out_description);
 
@@ -2247,11 +2286,11 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
  * description, its timeline and its time: two contexts with the same input give the same answers on every machine.
  *
- * The kind of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT: east-north-up at the
- * origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84) coordinates. Axes of flat
- * and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world).
- * Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are degrees clockwise from
- * true north.
+ * There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
+ * east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
+ * coordinates. Axes of flat and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the
+ * usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
+ * degrees clockwise from true north.
  *
  * Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
  * of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
@@ -2292,7 +2331,7 @@ typedef uint32_t wk_exposure_mode;
 #define WK_EXPOSURE_EV100 1
 /** Factor: exposure_value is display units per cd/m^2, (0, 1e6]. */
 #define WK_EXPOSURE_FACTOR 2
-/** Exposure of the context, for a wk_frame; exposure_value is not used. */
+/** The exposure of the context. For a wk_frame only; exposure_value is not used. */
 #define WK_EXPOSURE_OF_CONTEXT 3
 
 /** Curve from exposed luminance to display values. */
@@ -2384,13 +2423,13 @@ typedef struct wk_context_desc {
 /**
  * Receives the completed share of a long operation, from 0 to 1, never less than before. Return 0 to go on; anything
  * else ends the operation with WK_ERROR_ABORTED. The function must not call Welkin and must not unwind. It may draw by
- * the host's own means, also with an OpenGL context.
+ * the host's own means, even with the OpenGL context that Welkin uses.
  */
 typedef int32_t (*wk_progress_fn)(void *user, double share);
 
 /**
  * Creates a context on a device. `desc` NULL means WK_CONTEXT_DESC_INIT. On success `*out_context` is a new handle for
- * `wk_context_destroy`. The weather is a clear standard day at noon until you set another.
+ * `wk_context_destroy`. The weather is a clear standard day (WK_WEATHER_INIT) until you set another.
  * Thread: exclusive on the device.
  * Errors: WK_ERROR_PARSE for the planet file, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field.
  */
@@ -2417,14 +2456,15 @@ WK_API wk_status wk_context_set_planet(wk_context *context, const char *planet_t
 WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve curve);
 
 /**
- * Builds the sky's tables completely for the context's planet and present weather, so that no frame has to. Call it at
- * load time, behind a progress bar. It reuses tables that another context of the device already shows or that lie in
- * the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of the sky,
- * within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY in a frame
- * builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen
- * times, the last time with 1. An aborted build leaves the context as it was and writes no file. Thread: exclusive on
- * the context. For a device on an OpenGL context the rule of wk_view_record applies; while `progress` runs, Welkin has
- * given that context back to the host. Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
+ * Builds the sky's tables completely for the context's planet and present weather, so that no frame has to build them.
+ * Call it at load time, behind a progress bar. It reuses tables that another context of the device already shows or
+ * that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of
+ * the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
+ * in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
+ * sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
+ * Thread: exclusive on the context; with an OpenGL host, the thread where its context is (or can be made) current.
+ * While `progress` runs, that context is the host's.
+ * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
  */
 WK_API
 wk_status wk_context_build_sky(wk_context *context,
@@ -2537,8 +2577,10 @@ typedef struct wk_sky_settings {
  * Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
  * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
  * first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
- * model are compiled in that frame. Setting the same values again changes nothing. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they were.
+ * model are compiled in that frame. Setting the same values again changes nothing.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they
+ * were.
  */
 WK_API wk_status wk_context_set_sky_settings(wk_context *context, const wk_sky_settings *settings);
 
@@ -2602,23 +2644,24 @@ wk_status wk_context_set_weather(wk_context *context,
 
 /**
  * Advances simulation time to `time_s`, [-1e10, 1e10]; the same time again changes nothing. Call it once a frame
- * before the views record. Weather and light are functions of time and change at once. A simulated ground
- * (WK_GROUND_SIMULATED) takes one step for every 10 s. One call computes steps for at most 50 ms, and at least one
- * step. If steps remain, as after a leap of hours, the call returns WK_PENDING: call it again with the same time, in a
- * loop or once a frame, until it returns WK_OK. Until then, water on the ground is drawn and queried as of
- * wk_context_get_state_time, and settings and later times take effect only after the remaining steps. The state
- * therefore does not depend on the number of calls. A leap of more than a day starts the ground a day before its end,
- * as wet as the weather reports it then.
- * Thread: exclusive. Returns WK_PENDING, which is no error, while steps remain.
- * Errors: WK_ERROR_WRONG_ORDER if `time_s` is before the present.
+ * before the views record. Weather and light are functions of time and change at once. Simulated states take steps:
+ * water (WK_GROUND_SIMULATED) every 10 s, snow (WK_LYING_SNOW_SIMULATED) every 60 s, soil every 1/64 s; a wind field
+ * has steps of its own. One call computes steps for at most 50 ms, and at least one step. If steps remain, as after a
+ * leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
+ * returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
+ * later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
+ * After a leap of more than a day, only the last day of the water is simulated; it starts as wet as the weather
+ * reports then.
+ * Thread: exclusive.
+ * Returns WK_PENDING, which is no error, while steps remain.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.
  */
-WK_API
-wk_status wk_context_update(wk_context *context,
-                            double time_s);
+WK_API wk_status wk_context_update(wk_context *context, double time_s);
 
 /**
  * Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
- * returns WK_PENDING. The difference is how far the state lags behind. It never decreases, except by wk_context_load.
+ * returns WK_PENDING. The difference is the lag of the state. The state's time never decreases, except by
+ * wk_context_load.
  * Thread: concurrent.
  */
 WK_API wk_status wk_context_get_state_time(const wk_context *context, double *out_state_time_s);
@@ -2634,7 +2677,8 @@ WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double 
 /**
  * Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
  * `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
- * next day, as in Unix time. Thread: any.
+ * next day, as in Unix time.
+ * Thread: any.
  */
 WK_API
 wk_status wk_utc_from_calendar(int32_t year,
@@ -2658,22 +2702,23 @@ WK_API wk_status wk_context_set_sun(wk_context *context, const wk_given_directio
 WK_API wk_status wk_context_set_moon(wk_context *context, const wk_given_direction *direction);
 
 /**
- * Sets the exposure of frames that do not set their own; see wk_exposure_mode. WK_EXPOSURE_OF_CONTEXT is refused here.
+ * Sets the exposure of frames that do not set their own. `value` has the meaning and range that wk_exposure_mode
+ * states for `mode`; WK_EXPOSURE_OF_CONTEXT is refused here.
  * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter and its range.
  */
-WK_API
-wk_status wk_context_set_exposure(wk_context *context,
-                                  wk_exposure_mode mode,
-                                  double value);
+WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode mode, double value);
 
 /**
  * Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
- * weather, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve, fog law, shelters,
- * lamps, rain areas, wind grid, the terrain with its water, and the world, place, seed and ground model that it
- * belongs to. For the tiles of a wk_terrain it has only the water. Not included: how the state is drawn (sky settings,
- * views, plans), and the images of wk_context_set_occluder_maps, because each channel may have its own. `*out_size`
- * gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call fails; with
- * `buffer` NULL and `capacity` 0 it succeeds.
+ * weather, weather regions, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve,
+ * fog law, cloud map and model, lightning, night sky, shelters, lamps, rain areas, wind grid and wind field, the
+ * terrain with its water, snow and soil, the default surface class, the sea with its regions, and the world, place,
+ * seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow and
+ * soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans, wk_terrain_drawing),
+ * the host's own list of stars, and the images of wk_context_set_occluder_maps, because each channel may have its own.
+ * `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
+ * fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
  */
@@ -2686,12 +2731,14 @@ wk_status wk_context_save(const wk_context *context,
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
  * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
- * geoid_height_m in place of the last two), seed and ground_model. A state of an earlier version without planet and
- * tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before
- * the call, set them as they were when the state was saved. Thread: exclusive. Errors: WK_ERROR_PARSE for bytes that
- * are no saved state, for a truncated or changed state, and for a state of another format, which the message names
- * (this version reads format 2; save states of format 1 again, because they did not record their place);
- * WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context stays as it was.
+ * geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. A state of an earlier version
+ * without planet and tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a
+ * wk_terrain stay too: before the call, set them as they were when the state was saved.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
+ * another format, which the message names (this version reads format 2; save states of format 1 again, because they
+ * did not record their place); WK_ERROR_INVALID_ARGUMENT naming all settings that differ. After an error the context
+ * stays as it was.
  */
 WK_API
 wk_status wk_context_load(wk_context *context,
@@ -2837,7 +2884,7 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  *
  * The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
  * answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
- * is continuous in time while the weather changes, including the geometry of a layer that comes or goes.
+ * is continuous in time while the weather changes, even the heights of a layer that appears or dissolves.
  *
  * Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
  * [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
@@ -2885,11 +2932,11 @@ typedef struct wk_conditions {
     double aerosol_asymmetry;
     /** Scale height of the particles, m: over it the density falls to 1/e. */
     double aerosol_scale_height_m;
-    /** Extinction inside the layer at the ground, at 550 nm, 1/m; 0 if there is none. */
+    /** Extinction inside the layer at the ground (fog, mist, lifted matter), at 550 nm, 1/m; 0 if there is none. */
     double fog_extinction_per_m;
-    /** Base of the layer at the ground, m. */
+    /** Base of the layer at the ground, m above the station. */
     double fog_base_m;
-    /** Top of the layer at the ground, m. */
+    /** Top of the layer at the ground, m above the station. */
     double fog_top_m;
     /** Depth of the layer's soft upper edge, m. */
     double fog_softness_m;
@@ -2912,7 +2959,7 @@ typedef struct wk_conditions {
     double hail_mm_h;
     /** Fraction of rain and drizzle that freezes where it lands. */
     double freezing;
-    /** Convectiveness of the precipitation: 0 steady, 1 showers. */
+    /** Degree to which the precipitation is convective: 0 steady, 1 showers. */
     double showers;
     /** Presence of thunder, 0 to 1. */
     double thunder;
@@ -3024,7 +3071,7 @@ typedef struct wk_conditions {
 typedef struct wk_cloud_slab {
     /** Fraction of the sky covered. */
     double cover;
-    /** Base, m. */
+    /** Base above the station, m. */
     double base_m;
     /** Thickness, m. */
     double thickness_m;
@@ -3048,8 +3095,8 @@ typedef struct wk_cloud_slab {
  * visibility_m include that precipitation. All other fields are those of the station's height unless they say
  * otherwise.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. It has
- * forgotten every time before the end of the last change of weather that was over at the last update.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
+ * before the end of the latest change of weather that had ended by the last update.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -3063,6 +3110,7 @@ wk_status wk_context_get_conditions(const wk_context *context,
  * `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
  * header.
  * Thread: concurrent.
+ * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
  */
 WK_API
 wk_status wk_context_get_cloud_slabs(const wk_context *context,
@@ -3084,8 +3132,8 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  * [query] Queries: light and visibility
  *
  * These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
- * or future simulation time that the timeline still knows. The answers are in closed form and need no device. If the
- * host has placed the sun or the moon, it stands there at all times. Only wk_context_get_ambient and
+ * or future simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or
+ * moon that the host has placed stands at that direction at all times. Only wk_context_get_ambient and
  * wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
  * Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
  * is the photometric value.
@@ -3106,7 +3154,7 @@ typedef struct wk_celestial {
     double direction[3];
     /** Direction to the body as it appears, lifted by refraction. */
     double apparent[3];
-    /** Direction in the disc's plane towards the middle of the lit limb, for the moon. */
+    /** Direction in the plane of the disc towards the middle of the lit limb; for the moon. */
     double bright_limb[3];
     /** Illuminance above the air on a surface facing it, lux per channel. */
     double illuminance_lux[3];
@@ -3116,7 +3164,7 @@ typedef struct wk_celestial {
     double elevation_deg;
     /** Elevation above the horizon as it appears, degrees. */
     double apparent_elevation_deg;
-    /** Angular radius, rad. */
+    /** Angular radius of the disc, rad. */
     double angular_radius;
     /** Lit fraction of the disc. */
     double lit;
@@ -3248,10 +3296,11 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
- * a place count, by their mean effect over all places at its height. `position_size` and `light_size` are the
- * distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
- * lights. Thread: concurrent.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Of the clouds,
+ * only those above a place count, with their mean effect over all places at its height. `position_size` and
+ * `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
+ * sizeof(wk_ground_light) of your header for lights.
+ * Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_light(const wk_context *context,
@@ -3277,8 +3326,9 @@ wk_status wk_context_get_light_at(const wk_context *context,
 
 /**
  * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
- * haze, fog, precipitation and clouds drawn as a volume, but neither clouds drawn as a deck nor the host's objects.
- * `segment_size` and `between_size` are the sizes of an element in your header. Thread: concurrent.
+ * haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the host's objects.
+ * `segment_size` and `between_size` are the sizes of an element in your header.
+ * Thread: concurrent.
  */
 WK_API
 wk_status wk_context_get_between(const wk_context *context,
@@ -3305,9 +3355,10 @@ wk_status wk_context_get_between_at(const wk_context *context,
 /**
  * Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
  * along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
- * rain, snow and clouds drawn as a volume in front of the object leave 5 % of its contrast, that is 5 % of light at
- * 550 nm. Infinite if more is left at the end of the air or at the planet's ground. Thread: concurrent. Errors: as
- * wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
+ * rain, snow and clouds drawn as a volume leave 5 % of the object's contrast, which is 5 % of the light at 550 nm.
+ * Infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
  */
 WK_API
 wk_status wk_context_get_visibility_at(const wk_context *context,
@@ -3319,8 +3370,8 @@ wk_status wk_context_get_visibility_at(const wk_context *context,
 /**
  * Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
  * frame has done so yet, and waits for the GPU once after every change of the air.
- * Thread: as wk_view_record.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the position.
+ * Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
  */
 WK_API
 wk_status wk_context_get_ambient(wk_context *context,
@@ -3329,7 +3380,8 @@ wk_status wk_context_get_ambient(wk_context *context,
 
 /**
  * Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
- * the air in the present tables; its brightness, clouds and fog are those of `time_s`. Thread: as wk_view_record.
+ * the air in the present tables; its brightness, clouds and fog are those of `time_s`.
+ * Thread: as wk_context_get_ambient.
  * Errors: as wk_context_get_ambient and wk_context_get_conditions.
  */
 WK_API
@@ -3354,11 +3406,11 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * ====================================================================================================
  * [radiance] Queries: the sky's light by direction
  *
- * For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as the
- * picture shows it where the host drew nothing. It includes the clear air, clouds as the model draws them, fog with
- * precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the discs of
- * sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host
- * drew.
+ * For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as a
+ * picture shows it in pixels that the host did not draw. It includes the clear air, clouds as the model draws them,
+ * fog with precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the
+ * discs of sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the
+ * host drew.
  *
  * The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
  * query in a new state of the air solves the reference, which takes a second or two; other threads that query
@@ -3370,7 +3422,7 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
 
 /** The sky's light from one direction. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_sky_radiance {
-    /** Radiance, cd/m^2, three channels of linear Rec. 709, none below 0. */
+    /** Radiance, cd/m^2, three channels of linear Rec. 709, never negative. */
     double radiance_cd_m2[3];
 } wk_sky_radiance;
 
@@ -3378,8 +3430,9 @@ typedef struct wk_sky_radiance {
  * Gets the sky's radiance at a place in several directions now, at most wk_caps.max_batch of them. A direction is a
  * vector (east, north, up) at the place, of length 1 within 0.001. `direction_size` and `radiance_size` are the
  * distances from one element to the next, bytes: 24 or more for directions, sizeof(wk_sky_radiance) of your header for
- * radiances. Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction;
- * nothing is written then.
+ * radiances.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the position or the first wrong direction; nothing is written then.
  */
 WK_API
 wk_status wk_context_get_sky_radiance(const wk_context *context,
@@ -3448,7 +3501,10 @@ typedef struct wk_wind {
     /* gust_deviation_m_s */ 0.0 \
 }
 
-/** Precipitation at a place and time: rain and drizzle, hail and ice pellets; all 0 if nothing falls. */
+/**
+ * Precipitation at a place and time: rain and drizzle, hail and ice pellets, but no snow. All fields are 0 if none
+ * falls.
+ */
 typedef struct wk_rainfall {
     /** sizeof(wk_rainfall) of your header. */
     uint32_t struct_size;
@@ -3531,9 +3587,9 @@ typedef struct wk_rain_surface {
 
 /** Rain on a surface. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_rain_on {
-    /** Water, mm/h, which is litres per square metre and hour. */
+    /** Rate of water, mm/h: litres per square metre and hour. */
     double rate_mm_h;
-    /** Drops of 0.1 to 6 mm on the whole surface, 1/s. */
+    /** Number of drops of 0.1 to 6 mm that land on the whole surface, 1/s. */
     double drops_per_s;
 } wk_rain_on;
 
@@ -3543,7 +3599,9 @@ typedef struct wk_rain_on {
  * have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
  * station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
  * query the station's altitude plus the height above its own ground. At and below the roughness length there is no
- * wind. Thread: concurrent. Errors: as wk_context_get_conditions.
+ * wind.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_wind_at(const wk_context *context,
@@ -3552,9 +3610,11 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Gets the precipitation at a place of the host's world and a simulation time. It begins in the lower half of the
- * clouds, at most 500 m above their bases, averaged over the clouds that cover the sky; above that nothing falls.
- * Thread: concurrent. Errors: as wk_context_get_conditions.
+ * Gets the precipitation at a place of the host's world and a simulation time. Precipitation begins in the lower half
+ * of the clouds, at most 500 m above their bases, on average over the clouds that cover the sky. Above that nothing
+ * falls.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_rainfall_at(const wk_context *context,
@@ -3569,7 +3629,7 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
  * the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
  * sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
  * Thread: concurrent.
- * Errors: as wk_context_get_conditions; the wrong field of a surface with its range.
+ * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
  */
 WK_API
 wk_status wk_context_get_rain_on_at(const wk_context *context,
@@ -3613,7 +3673,7 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
 /** Relation of depth to distance. */
 typedef uint32_t wk_depth_kind;
 
-/** As the projection matrix says: perspective (finite or infinite far) or orthographic. */
+/** Depth of the projection matrix: perspective (with a finite or infinite far plane) or orthographic. */
 #define WK_DEPTH_PROJECTION 0
 /** ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders. */
 #define WK_DEPTH_LOGARITHMIC 1
@@ -3654,8 +3714,8 @@ typedef uint32_t wk_frame_flags;
  */
 #define WK_FRAME_MEASURE 16
 /**
- * The target's normals are in the camera's axes (x right, y up, z towards the viewer: gl_NormalMatrix * gl_Normal),
- * not in those of the host's world.
+ * The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix *
+ * gl_Normal), not in those of the host's world.
  */
 #define WK_FRAME_NORMALS_IN_EYE_SPACE 32
 
@@ -3670,18 +3730,18 @@ typedef uint32_t wk_color_space;
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /**
- * Access of Welkin to the target's depth. The sea is drawn only into depth that may be written. Without a sea both
- * values give the same picture.
+ * Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
+ * depth that may be written. Without these, both values give the same picture.
  */
 typedef uint32_t wk_depth_access;
 
-/** Read it: Welkin leaves every bit as it is, and draws nothing opaque of its own. */
+/** Welkin reads the depth and leaves every bit as it is. It draws nothing opaque of its own. */
 #define WK_DEPTH_ACCESS_READ 0
 /**
- * Test and write it where Welkin draws opaque things (stage SURFACE, before the water on surfaces); stencil stays.
- * Needs depth that can be attached: a depth format, as many samples as the colour, and in Vulkan
- * DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several samples, nor on
- * an own device, whose depth is WK_FORMAT_R32_FLOAT.
+ * Welkin tests and writes the depth where it draws opaque things: the sea, and terrain (stage SURFACE, before the
+ * water on surfaces). Stencil stays. Needs depth that can be attached: a depth format, as many samples as the colour,
+ * and in Vulkan DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several
+ * samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
  */
 #define WK_DEPTH_ACCESS_READ_WRITE 1
 
@@ -3692,7 +3752,7 @@ typedef uint32_t wk_depth_access;
  */
 typedef uint32_t wk_diagnostic;
 
-/** The picture itself. */
+/** The picture itself, not in false colours. */
 #define WK_DIAGNOSTIC_NONE 0
 /**
  * Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
@@ -3930,11 +3990,11 @@ wk_status wk_frame_light_init(wk_frame_light *out,
  *
  *   PREPARE     tables and simulation textures; needs no target
  *   BACKGROUND  the sky behind everything; before or after the opaque things
- *   SURFACE     water on surfaces: darker, with the sky in it; after the opaque things, needs depth, free where it is dry
+ *   SURFACE     water and snow on surfaces, shadows of clouds, the sea, terrain; after the opaque things; needs depth
  *   MEDIUM      fog and aerial perspective on all that was drawn so far
- *   PARTICLES   particles that fall and fly
- *   LENS        water on the windscreen
- *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in the display colour spaces
+ *   PARTICLES   rain, hail and snow near the camera, channels of lightning
+ *   LENS        water and snow on the windscreen
+ *   TONE        exposure, tone curve, encoding and dither of a scene-linear picture; nothing in display colour spaces
  *
  * The calls of one frame share frame_id and record stages in this order, each at most once. WK_STAGE_ALL does
  * everything in one call and lets neighbouring stages share one pass. Stages with nothing to draw cost nothing. When
@@ -3969,13 +4029,16 @@ typedef uint32_t wk_stage_flags;
 #define WK_STAGE_PREPARE 1
 /** Sky behind everything: pixels at the far depth, or all pixels without depth. */
 #define WK_STAGE_BACKGROUND 2
-/** Water on surfaces; after the host's opaque objects. */
+/**
+ * Water and snow on surfaces, shadows of clouds, and the sea and terrain that Welkin draws; after the host's opaque
+ * objects.
+ */
 #define WK_STAGE_SURFACE 4
 /** Fog and aerial perspective on everything that the host has drawn. */
 #define WK_STAGE_MEDIUM 8
-/** Particles that fall and fly. */
+/** Rain, hail and snow near the camera, and the channels of lightning. */
 #define WK_STAGE_PARTICLES 16
-/** Water on the windscreen. */
+/** Water and snow on the windscreen. */
 #define WK_STAGE_LENS 32
 /**
  * Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
@@ -4023,7 +4086,7 @@ typedef struct wk_report {
     uint64_t bytes;
     /** Flags of the following fields that are set. */
     wk_report_flags has;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
     /**
      * Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
@@ -4045,15 +4108,15 @@ typedef struct wk_report {
     double checked_error_bound;
     /** Error that the gauge then measured in that picture. */
     double checked_error;
-    /** Number of drops and stones around the camera; those in the picture were drawn. */
+    /** Number of drops and hailstones around the camera; those inside the picture were drawn. */
     uint32_t drops;
-    /** Number of flakes around the camera; those in the picture were drawn. 0 if none were. */
+    /** Number of flakes around the camera; those inside the picture were drawn. 0 if none were. */
     uint32_t flakes;
     /** Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
     double drop_weight;
-    /** Splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops. */
+    /** Rate of splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops. */
     double splashes_left_out_per_m2_s;
-    /** Stones that did not bounce for lack of room, 1/(m^2 s): the smallest ones. */
+    /** Rate of stones that did not bounce for lack of room, 1/(m^2 s) on level ground: the smallest ones. */
     double stones_left_out_per_m2_s;
     /** Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn. */
     double contrast_gain;
@@ -4104,15 +4167,15 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_MEDIUM 3
 /** Exposure, tone curve, encoding. */
 #define WK_EFFECT_TONE 4
-/** Stages in one draw, where the target's format does not allow separate draws. */
+/** Several stages in one draw, where the target's format does not allow separate draws. */
 #define WK_EFFECT_COMPOSITION 5
 /** Textures for the host's own shaders. */
 #define WK_EFFECT_VEIL 6
 /** Acquiring the host's context and images, and returning them. */
 #define WK_EFFECT_HAND_OVER 7
-/** Rain, hail and snow near the camera. */
+/** Rain, hail and snow near the camera, and the channels of lightning. */
 #define WK_EFFECT_PARTICLES 8
-/** Water on surfaces. */
+/** Water and snow on surfaces, and the sea and terrain that Welkin draws. */
 #define WK_EFFECT_SURFACE 9
 /** Water on the windscreen: its steps (after the sky's tables) and the lens. */
 #define WK_EFFECT_WINDSCREEN 10
@@ -4121,7 +4184,7 @@ typedef uint32_t wk_effect;
 typedef struct wk_effect_cost {
     /** Effect whose cost this is. */
     wk_effect effect;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
     /** Name of the effect in English; lives as long as the library. */
     const char *name;
@@ -4132,7 +4195,7 @@ typedef struct wk_effect_cost {
 } wk_effect_cost;
 
 /**
- * Makes a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
+ * Creates a view of a context. `desc` NULL means WK_VIEW_DESC_INIT. On success `*out_view` is a new handle for
  * `wk_view_destroy`.
  * Thread: exclusive on the context.
  */
@@ -4140,7 +4203,7 @@ WK_API wk_status wk_view_create(wk_context *context, const wk_view_desc *desc, w
 
 /**
  * Destroys a view. NULL does nothing.
- * Thread: any; the GPU's part is released at the device's next call if it must be.
+ * Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
  */
 WK_API wk_status wk_view_destroy(wk_view *view);
 
@@ -4149,7 +4212,8 @@ WK_API wk_status wk_view_destroy(wk_view *view);
  * the frame before any work: after an error nothing is drawn, built or changed.
  * Thread: exclusive on the view; views of one context may record from several threads while none updates the context.
  * Errors: WK_ERROR_WRONG_ORDER if a stage is repeated or out of order; WK_ERROR_UNSUPPORTED and
- * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST.
+ * WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST; with wk_own_target.surface also the statuses of
+ * wk_surface_acquire.
  */
 WK_API
 wk_status wk_view_record(wk_view *view,
@@ -4157,22 +4221,22 @@ wk_status wk_view_record(wk_view *view,
                          wk_stage_flags stages);
 
 /**
- * Draws weathers that may come, into small images of Welkin's own, so that hardly a frame waits for a shader once they
- * come.
- * Each weather is drawn while the one before it (the context's own before the first) changes to it, once it lasts, and
- * under several heights of the sun. Call it behind a loading screen, before the view's first frame: the next frame
- * begins as a view's first one does. The context is as before afterwards.
+ * Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
+ * and hardly any later frame waits for one. Each weather is drawn during the change from the weather before it (for
+ * the first, the context's own), after the change, and with the sun at several heights. Call this function behind a
+ * loading screen, before the view's first frame: the next frame begins as a view's first one does. Afterwards the
+ * context is as before.
  *
- * `frame` is one like those to come: with their settings, and with images of their formats, samples and usages. These
- * are neither drawn into nor waited for. `calls` are the stages of the calls of one frame in order, 1 to 7; NULL with
- * `call_count` 0 means one call with WK_STAGE_ALL. `weathers` are 0 to 64, `weather_stride` bytes apart, each perhaps
- * with a wk_weather_overrides in its chain. One call draws for about `most_s`, [0, 3600] s, and at least one moment of
- * a weather. It returns WK_PENDING, which is no error, while moments remain: call it again with the same weathers.
- * Others begin anew.
+ * `frame` stands for the later frames: it has their settings, and images with their formats, samples and usages.
+ * Welkin neither draws into these images nor waits for them. `calls` has the stages of each wk_view_record of one
+ * frame, in order: 1 to 7 elements; NULL with `call_count` 0 means one call with WK_STAGE_ALL. `weathers` has 0 to 64
+ * elements, `weather_stride` bytes apart; each may have a wk_weather_overrides in its chain. One call draws for about
+ * `most_s`, in [0, 3600] s, and at least one moment of a weather. It returns WK_PENDING, which is no error, while
+ * moments remain: call it again with the same weathers. Other weathers start from the beginning.
  * Thread: exclusive on the view and on its context.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
  * WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
- * as before, and the same call goes on with the moment that failed.
+ * as before, and the same call continues with the moment that failed.
  */
 WK_API
 wk_status wk_view_prepare(wk_view *view,
@@ -4191,10 +4255,10 @@ wk_status wk_view_prepare(wk_view *view,
 WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
 
 /**
- * Gets the cost of each effect of the view's last frame, in the order in which they run. `*out_count` gets their
- * number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small, nothing
- * else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of your
- * header. Later versions may have more effects.
+ * Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` gets
+ * their number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
+ * nothing else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of
+ * your header. Later versions may have more effects.
  * Thread: exclusive on the view.
  */
 WK_API
@@ -4220,13 +4284,16 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * ====================================================================================================
  * [veil] Textures for the host's transparent things
  *
- * Glass, lamps and smoke that the host draws after MEDIUM lie in the same air. Their shaders sample the frame's veil:
- * the light that air, fog and rain add on the way to a point, and the transmittance up to it. The published sampling
- * functions, GLSL and WGSL, map clip coordinates and distance to texels.
+ * Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them. Their shaders
+ * sample the frame's veil: the light that air, fog and rain add on the way to a point, and the transmittance up to it.
+ * The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
  * ====================================================================================================
  */
 
-/** The veil of the view's last frame: air, clouds drawn as a volume, fog, the weather's rain, and rain areas. */
+/**
+ * The veil of the view's last frame. It includes air, clouds drawn as a volume, fog, the rain of the weather, and rain
+ * areas.
+ */
 typedef struct wk_frame_textures {
     /** sizeof(wk_frame_textures) of your header. */
     uint32_t struct_size;
@@ -4234,9 +4301,11 @@ typedef struct wk_frame_textures {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Light that air and fog add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage. */
+    /**
+     * Light that air, fog and precipitation add, RGB half floats: an OpenGL texture name (GL_TEXTURE_2D) or a VkImage.
+     */
     uint64_t light;
-    /** Transmittance: share of the light from behind that passes, RGB half floats: as `light`. */
+    /** Transmittance: share of the light from behind that passes. A texture of the same kind as `light`. */
     uint64_t through;
     /** Width of both textures, pixels. */
     uint32_t width;
@@ -4271,7 +4340,7 @@ typedef uint32_t wk_shading_language;
  * the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
  * between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_UNSUPPORTED on an own device, which has no shaders of the host's.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
 WK_API wk_status wk_view_get_frame_textures(wk_view *view, wk_frame_textures *out_textures);
 
@@ -4301,8 +4370,8 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  * roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
  * specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
  * filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
- * with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. Views whose hosts never ask for the cube
- * map do not draw it.
+ * with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. A view draws the cube map only if its
+ * host has asked for it.
  * ====================================================================================================
  */
 
@@ -4326,8 +4395,8 @@ typedef struct wk_environment {
     /** Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces. */
     double cd_m2_per_unit;
     /**
-     * Factor from texels to units of the last frame's colour for a scene-linear host, or else to display values before
-     * the tone curve.
+     * Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these are the host's
+     * units, in the display spaces display values before the tone curve.
      */
     double light_scale;
 } wk_environment;
@@ -4348,8 +4417,9 @@ typedef struct wk_environment {
  * Gets the native texture of the cube map. From the first call on, the first call of each frame with
  * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
  * same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
- * wk_view_record call. Call this after each frame for its scales. Thread: exclusive on the view. Errors:
- * WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+ * wk_view_record call. Call this after each frame for its scales.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
 WK_API wk_status wk_view_get_environment(wk_view *view, wk_environment *out_environment);
 
@@ -4434,9 +4504,9 @@ typedef struct wk_part_wish {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Flags of the optional fields that are set. */
+    /** Flags of the optional fields that are set. Default 0. */
     wk_part_wish_has_flags has;
-    /** Part that the wish is about. */
+    /** Part that the wish is about. Default WK_PART_AIR. */
     wk_part part;
     /**
      * Optional: draw the part at exactly this rung, whatever the tolerance and the time, so that all channels draw the
@@ -4444,7 +4514,7 @@ typedef struct wk_part_wish {
      * time is exceeded.
      */
     uint32_t rung;
-    /** 0. */
+    /** Must be 0. */
     uint32_t reserved;
     /**
      * Optional: importance of the part to viewers. A budget of time leaves out the less important parts first. Range
@@ -4475,13 +4545,13 @@ typedef struct wk_budget {
     const void *next;
     /** Flags of the optional fields that are set. Default 0: everything is drawn. */
     wk_budget_has_flags has;
-    /** Length of `wishes`. Default 0. Parts that are not in the list are planned with their default importance. */
+    /** Number of wishes. Default 0. Parts without a wish are planned with their default importance. */
     uint32_t wish_count;
-    /** sizeof(wk_part_wish) of your header. */
+    /** Bytes from one wish to the next: sizeof(wk_part_wish) of your header, which is the default. */
     uint32_t wish_stride;
-    /** 0. */
+    /** Must be 0. */
     uint32_t reserved;
-    /** Wishes for single parts, at most one for each part. */
+    /** Wishes for single parts, at most one for each part; read during the call only. Default NULL. */
     const wk_part_wish *wishes;
     /** Optional: largest error that leaving parts out may cause. Range (0, 1]; an error of 0.01 is not visible. */
     double tolerance;
@@ -4506,7 +4576,7 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0 \
 }
 
-/** Limit of a budget that the picture exceeds, by the estimates. */
+/** Limit of a budget that the picture exceeds, according to the estimates. */
 typedef uint32_t wk_gave_way;
 
 /** Nothing had to give way. */
@@ -4514,8 +4584,7 @@ typedef uint32_t wk_gave_way;
 /** The tolerance: a better picture would take longer than the budget. */
 #define WK_GAVE_WAY_TOLERANCE 1
 /**
- * Time and the tolerance: even with every part left out, or with the pinned parts, the picture takes longer than the
- * budget.
+ * Time and the tolerance: the picture takes longer than the budget even with all parts left out that are not pinned.
  */
 #define WK_GAVE_WAY_TIME 2
 
@@ -4572,7 +4641,7 @@ typedef uint32_t wk_plan_reason;
 #define WK_PLAN_REASON_NOT_GAUGED 1
 /** The weather does not have this part, or the recorded stages do not draw it. */
 #define WK_PLAN_REASON_ABSENT 2
-/** With less of the part the error would exceed the tolerance. */
+/** The error would exceed the tolerance with less of the part. */
 #define WK_PLAN_REASON_NEEDED 3
 /** The error with less of the part is within the tolerance. */
 #define WK_PLAN_REASON_WITHIN_TOLERANCE 4
@@ -4595,7 +4664,7 @@ typedef struct wk_part_plan {
     uint32_t rung;
     /** Number of its rungs. */
     uint32_t rung_count;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved;
     /**
      * Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
@@ -4608,7 +4677,8 @@ typedef struct wk_part_plan {
     /** Importance of the part where a budget does not set it. */
     double importance;
     /**
-     * Share of the part that is drawn: 1 all of it, 0 its last rung, between them while it fades or on a rung between.
+     * Share of the part that is drawn: 1 all of it, 0 its last rung; between these while the part fades, or on a rung
+     * in between.
      */
     double share;
     /** Error of the picture with this part alone at its last rung, as of the last gauge. */
@@ -4649,8 +4719,9 @@ typedef struct wk_part_plan {
 WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
 
 /**
- * Reports the time that the weather took in the last frame, ms, measured as for the budget (your GPU timer, or a call
- * that you wait for). Under a budget of time the plan uses the median of the last five reports.
+ * Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure it as you chose the budget: with
+ * a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses the median of the last
+ * five reports.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
  */
@@ -4664,7 +4735,8 @@ WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
 
 /**
  * Gets how much of one part the view's last frame drew, and why. The part's name can be read before any frame too.
- * Thread: exclusive on the view. Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a number that no part has.
  */
 WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan *out_part);
 
@@ -4673,16 +4745,18 @@ WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan
  * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
  * else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet, which is so for some
- * frames after each jump of camera, sun or weather.
+ * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
+ * each jump of camera, sun or weather.
  */
 WK_API wk_status wk_view_save_plan(wk_view *view, void *buffer, size_t capacity, size_t *out_size);
 
 /**
  * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
- * budget stays; wk_view_set_budget removes the pins. Thread: exclusive on the view. Errors: WK_ERROR_PARSE for bytes
- * that are no saved plan or one of another version, naming line and column or the field; WK_ERROR_INVALID_ARGUMENT
- * naming the setting of the sky in which the view's context differs. After an error the view's plan stays as it was.
+ * budget stays; wk_view_set_budget removes the pins.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_PARSE for bytes that are no saved plan or one of another version, naming line and column or the
+ * field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error
+ * the view's plan stays as it was.
  */
 WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
@@ -4726,18 +4800,22 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
-/** wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and faint. */
+/**
+ * Value of wk_rain.shutter_s for the eye, which integrates light over about this time by day. Streaks are long and
+ * faint.
+ */
 #define WK_RAIN_SHUTTER_EYE_S 0.05
 
 /**
- * wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the default.
+ * Value of wk_rain.shutter_s for a video camera at 60 frames a second with its shutter open for a whole frame: the
+ * default.
  */
 #define WK_RAIN_SHUTTER_CAMERA_60_S 0.016666666666666666
 
-/** wk_rain.shutter_s for a camera in good light. Streaks are short. */
+/** Value of wk_rain.shutter_s for a camera in good light. Streaks are short. */
 #define WK_RAIN_SHUTTER_CAMERA_500_S 0.002
 
-/** wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film. */
+/** Value of wk_rain.contrast_gain for trainers: on an 8-bit display rain by day is then as visible as in a film. */
 #define WK_RAIN_GAIN_TRAINER 4.0
 
 /** Way in which a view draws rain. The rain that falls does not depend on it. */
@@ -4782,8 +4860,8 @@ typedef struct wk_rain {
     /** A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose. */
     wk_rain_model model;
     /**
-     * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, a
-     * streak, stone or splash hides as much of the background as g of them one behind another. This departs from
+     * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, one
+     * streak, stone or splash hides as much of the background as g of them one behind another would. This departs from
      * physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
      * water and queries do not depend on it. Set the same value on all channels of a simulator.
      */
@@ -4809,13 +4887,13 @@ typedef struct wk_shelter {
     wk_struct_type struct_type;
     /** NULL (the default), or a wk_shelter_shape. */
     const void *next;
-    /** Its centre, m, within 1e12 m of the origin. Default 0, 0, 0. */
+    /** Centre, m, within 1e12 m of the origin. Default 0, 0, 0. */
     double center_m[3];
-    /** Its three axes, one after the other: unit vectors at right angles. Default: the world's axes. */
+    /** Three axes, one after the other: unit vectors at right angles. Default: the world's axes. */
     double axes[9];
-    /** Half its size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
+    /** Half the size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
     double half_size_m[3];
-    /** Its velocity, m/s; its length is at most 2000. Default 0, 0, 0. */
+    /** Velocity, m/s; its length is at most 2000. Default 0, 0, 0. */
     double velocity_m_s[3];
 } wk_shelter;
 
@@ -4831,8 +4909,8 @@ typedef struct wk_shelter {
 }
 
 /**
- * Planes that cut a wk_shelter to another convex shape; put it into the shelter's chain. The part of the box beyond
- * any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
+ * Planes that cut a wk_shelter to another convex shape. An extension: put it into wk_shelter.next. The part of the box
+ * beyond any plane does not keep rain off. Describe a convex shape by the box around it and the planes of its faces.
  */
 typedef struct wk_shelter_shape {
     /** sizeof(wk_shelter_shape) of your header. */
@@ -4863,15 +4941,16 @@ typedef struct wk_shelter_shape {
 }
 
 /**
- * Sets how the view draws rain; NULL returns to the default. Unchanged after an error. Thread: exclusive on the view.
+ * Sets how the view draws rain; NULL returns to the default. Unchanged after an error.
+ * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED for a model that the device
  * cannot draw, or for more drops than it can draw with the model.
  */
 WK_API wk_status wk_view_set_rain(wk_view *view, const wk_rain *rain);
 
 /**
- * Sets the boxes that keep rain off and replaces those set before; set moving ones again in every frame. count 0
- * removes all. At most 32. Unchanged after an error.
+ * Sets the boxes that keep rain off, at most 32, and replaces those set before; count 0 removes all. Set moving boxes
+ * again in every frame. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -4976,10 +5055,10 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * [area] Rain areas
  *
  * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
- * area's rain replaces the weather's rain and drizzle; the change is smooth over the rim inside the region's border.
- * Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each place has
- * as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans because
- * the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
+ * area's rain replaces the weather's rain and drizzle; the change is smooth over the rim, a band inside the region's
+ * border. Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each
+ * place has as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans
+ * because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
  * ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
  * above it. wk_context_save keeps the areas.
  * ====================================================================================================
@@ -5049,7 +5128,7 @@ typedef struct wk_rain_area {
      * extent of an ellipse, or the radius of the largest circle in a polygon. Default 500.
      */
     double rim_m;
-    /** Rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
+    /** Rain rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
      * Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
@@ -5090,7 +5169,7 @@ typedef struct wk_rain_area {
 }
 
 /**
- * Replaces the list of rain areas; count 0 removes all. At most 16. Areas move by themselves: set them again only to
+ * Replaces the list of rain areas, at most 16; count 0 removes all. Areas move by themselves: set them again only to
  * change them. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
@@ -5112,16 +5191,16 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * [region] Weather regions
  *
  * Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
- * ground plan, a perimeter outside it over which its weather fades into what is around it, and a wk_weather of which
- * `has` names the parts that it takes. At each place, every query and the picture of a camera there see the merged
- * weather; queries along a way integrate the extinction of all regions on it. Regions move at their own velocity,
- * never with the wind; a host may also set them again in every frame. wk_context_save keeps them, and they are the
- * same on every channel.
+ * ground plan, a perimeter outside it over which its weather fades into the weather around, and a wk_weather. The
+ * region's field `has` names the parts of that weather that the region takes. At each place, every query and the
+ * picture of a camera there see the merged weather. Queries between two points integrate the extinction of all regions
+ * on the way. Regions move at their own velocity, never with the wind; a host may also set them again in every frame.
+ * wk_context_save keeps them, and they are the same on every channel.
  *
  * Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
  * them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
- * weights. docs/regions.md has the rules, and a table of what differs by place and what does not yet: a camera's
- * picture shows the weather at the camera, so a region is not seen from outside.
+ * weights. A camera's picture shows the weather at the camera, so a region is not visible from outside.
+ * docs/regions.md has the rules, and a table of what differs by place and what does not yet.
  * ====================================================================================================
  */
 
@@ -5130,7 +5209,10 @@ typedef uint32_t wk_weather_part_flags;
 
 /** Haze: visibility_m without fog and precipitation, and the aerosol fields. */
 #define WK_WEATHER_PART_HAZE 1
-/** Low layer: fog or mist with its top, matter that the wind lifts. Alone, it lies in the haze around the region. */
+/**
+ * Low layer: fog or mist with its top, or matter that the wind lifts. Without WK_WEATHER_PART_HAZE it lies in the haze
+ * of the weather around the region.
+ */
 #define WK_WEATHER_PART_FOG 2
 /** Precipitation of all kinds. */
 #define WK_WEATHER_PART_PRECIPITATION 4
@@ -5247,8 +5329,9 @@ typedef struct wk_weather_region {
 }
 
 /**
- * Replaces the list of weather regions; count 0 removes all. At most 64. Regions move by themselves; set them again to
- * change them, or in every frame at their new places. Unchanged after an error. Copied during the call.
+ * Replaces the list of weather regions, at most 64; count 0 removes all. Regions move at their velocity by themselves.
+ * Set them again to change them; you may also do so in every frame, at their new places. Unchanged after an error.
+ * Copied during the call.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
  * corner radius beyond the smaller half extent.
@@ -5334,8 +5417,8 @@ WK_API wk_status wk_air_init(wk_air *out, uint32_t struct_size);
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
  * They act in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and on
- * drops and flakes near a camera, in place of those of a wind field (wk_context_set_wind_field). Everything else
- * follows the weather's wind.
+ * drops and flakes near a camera. They replace the velocities of a wind field (wk_context_set_wind_field). Everything
+ * else follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -5415,9 +5498,9 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  *
  * A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
  * round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
- * wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field has effect where a wind
- * grid of your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and
- * windscreens, and on drops and flakes near a camera. Nothing is solved unless you ask for it.
+ * wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field acts where a wind grid of
+ * your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and windscreens, and
+ * on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
  * ====================================================================================================
  */
 
@@ -5425,8 +5508,8 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
 typedef uint32_t wk_wind_field_mode;
 
 /**
- * The mean wind. It is solved for over the first moments after the wind or an obstacle has changed; after that it
- * rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
+ * The mean wind. It is solved in the first moments after the wind or an obstacle has changed; after that it rests at
+ * no cost. The weather's gusts are scaled in proportion to the local mean wind.
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
@@ -5447,13 +5530,13 @@ typedef uint32_t wk_wind_walls;
 typedef uint32_t wk_wind_scheme;
 
 /**
- * Half a step, a projection, a reflection at it, another half step and a projection (Zehnder et al. 2018), by limited
- * cubic interpolation: eddies keep their energy.
+ * Half a step, a projection, a reflection about the projected field, another half step and a projection (Zehnder et
+ * al. 2018), with limited cubic interpolation: eddies keep their energy.
  */
 #define WK_WIND_SCHEME_REFLECTION 0
 /**
- * Linear interpolation along curved paths, corrected by the error that carrying the result back shows (Selle et al.
- * 2008).
+ * Linear interpolation along curved paths, corrected by the error that appears when the result is carried back (Selle
+ * et al. 2008).
  */
 #define WK_WIND_SCHEME_MACCORMACK 1
 /** Linear interpolation along straight paths (Stam 1999): the cheapest; it smears eddies within seconds. */
@@ -5509,8 +5592,8 @@ typedef struct wk_wind_field {
     /** A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state. */
     wk_wind_pressure pressure;
     /**
-     * Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], of a projection. 0, the
-     * default, means 50 V-cycles or 5 iterations.
+     * Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], in one projection. 0,
+     * the default, means 50 V-cycles or 5 iterations.
      */
     uint32_t most_iterations;
     /** Must be 0. */
@@ -5589,13 +5672,13 @@ typedef struct wk_wind_field_report {
 }
 
 /**
- * Sets a wind field from simulation time start_time_s on, not before the last update or change; NULL ends it then. A
- * field with the same size, mode, walls, scheme and pressure method at another place moves there by whole cells; any
- * other field begins anew. wk_context_update advances it in steps on a grid anchored at time 0, whatever is drawn, so
- * it is the same on every channel. It begins with the steady field of its first moment. Part of the saved state.
- * Unchanged after an error.
- * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time
- * that has passed.
+ * Sets a wind field from simulation time `start_time_s` on, [-1e10, 1e10] s, not before the last update or change;
+ * NULL ends the field at that time. A field with the same size, mode, walls, scheme and pressure method at another
+ * place moves there by whole cells; any other field begins anew. wk_context_update advances it in steps on a grid
+ * anchored at time 0, whatever is drawn, so it is the same on every channel. It begins with the steady field of its
+ * first moment. Part of the saved state. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
  */
 WK_API
 wk_status wk_context_set_wind_field(wk_context *context,
@@ -5627,8 +5710,8 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
  * ====================================================================================================
  * [occluder] Maps of objects that keep rain off
  *
- * For shelter that boxes cannot describe, give up to four depth images of your world, of standing or moving objects,
- * from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
+ * For shelter that boxes cannot describe, give up to four depth images of your world, with standing or moving objects,
+ * seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
  *
  * A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s, the path of
  * the median drop. Then the hidden parts do not matter for half of the rain, and matter little for the other half.
@@ -5661,9 +5744,9 @@ typedef struct wk_occluder_map {
      * identity.
      */
     double clip_from_world[16];
-    /** Default 0. */
+    /** Flags of the map. Default 0. */
     wk_occluder_map_flags flags;
-    /** Default WK_CLIP_ZERO_TO_ONE. */
+    /** Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE. */
     wk_clip_space clip_space;
     /** Simulation time at which the objects stood as the map shows them, s. Default 0. */
     double time_s;
@@ -5705,7 +5788,7 @@ typedef struct wk_occluder_map {
 }
 
 /**
- * Sets the maps of objects that keep rain off and replaces those set before. count 0 removes them. At most 4. After an
+ * Sets the maps of objects that keep rain off, at most 4, and replaces those set before; count 0 removes all. After an
  * error the previous maps stay. They are not part of a saved state, because each channel may have its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
@@ -5753,7 +5836,10 @@ typedef struct wk_light {
     double intensity_cd[3];
     /** Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10. */
     double inner_deg;
-    /** Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; 180: no end. */
+    /**
+     * Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; with 180 the beam has
+     * no end.
+     */
     double outer_deg;
 } wk_light;
 
@@ -5770,8 +5856,8 @@ typedef struct wk_light {
 }
 
 /**
- * Sets the host's lamps and replaces those set before; set moving ones again in every frame. count 0 removes all. At
- * most 64. Unchanged after an error.
+ * Sets the host's lamps, at most 64, and replaces those set before; count 0 removes all. Set moving lamps again in
+ * every frame. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -5815,14 +5901,17 @@ typedef struct wk_stars {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default 0: the catalogue's stars and the planets, at their positions over the Earth. */
+    /**
+     * Flags of the settings that are set. Default 0: the stars of the catalogue and the planets, at their positions
+     * over the Earth.
+     */
     wk_stars_flags flags;
     /** Number of stars in `stars`, at most 1 000 000. Default 0. */
     uint32_t star_count;
     /**
-     * With WK_STARS_OWN: four numbers for each star: right ascension, degrees, and declination, degrees in [-90, 90],
-     * both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a black body,
-     * K, in [1000, 100000]. Copied. Default NULL.
+     * With WK_STARS_OWN: four numbers for each star: right ascension, degrees in [-1e6, 1e6], and declination, degrees
+     * in [-90, 90], both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a
+     * black body, K, in [1000, 100000]. Copied. Default NULL.
      */
     const double *stars;
     /**
@@ -5850,16 +5939,18 @@ typedef struct wk_stars {
 
 /**
  * Sets how the night sky is drawn; NULL returns to the default. Part of the saved state, except the list of stars: a
- * context that loads a state keeps its own list. Unchanged after an error. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * context that loads a state keeps its own list. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_context_set_stars(wk_context *context, const wk_stars *stars);
 
 /**
  * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
- * a simulation time. It falls with the brightness of the sky, and with the extinction of the star's light in air, fog
- * and clouds. Minus infinity where no starlight gets through. Thread: concurrent. Errors: as
- * wk_context_get_conditions.
+ * a simulation time. It decreases with the brightness of the sky, and with the extinction of the star's light in air,
+ * fog and clouds. Where no starlight gets through it is minus infinity.
+ * Thread: concurrent.
+ * Errors: as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_limiting_magnitude_at(const wk_context *context,
@@ -5885,8 +5976,8 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
 /**
  * Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
  * layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
- * Clouds drift through it with their wind, and grow and dissolve as the map says. Values are interpolated linearly
- * between the centres of cells, and constant beyond the outermost centres.
+ * Clouds drift across it with their wind, and grow and dissolve until the cover is that of the map. Values are
+ * interpolated linearly between the centres of cells, and constant beyond the outermost centres.
  */
 typedef struct wk_cloud_map {
     /** sizeof(wk_cloud_map) of your header. */
@@ -5909,8 +6000,8 @@ typedef struct wk_cloud_map {
      */
     double base_m[2];
     /**
-     * Numbers in [0, 1], one for each cell: 0 for no cloud, 1 for the layer's cover. Cells run from west to east, rows
-     * from south to north. Copied by the call.
+     * Share of the layer's cover in each cell, in [0, 1]: 0 for no cloud, 1 for the layer's cover. Cells run from west
+     * to east, rows from south to north. Copied by the call.
      */
     const float *cover;
     /** Number of cells in `cover`: the product of `cells`. */
@@ -5935,12 +6026,11 @@ typedef struct wk_cloud_map {
 
 /**
  * Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
- * state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_context_set_cloud_map(wk_context *context,
-                                   const wk_cloud_map *cloud_map);
+WK_API wk_status wk_context_set_cloud_map(wk_context *context, const wk_cloud_map *cloud_map);
 
 /**
  * Writes the default of every field: the same bytes as `WK_CLOUD_MAP_INIT`. `struct_size` is `sizeof(wk_cloud_map)`
@@ -5956,10 +6046,10 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
  * views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
  * and errors.
  *
- * Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). From
- * the host's depth, the stage SURFACE multiplies each pixel by the ratio of the light at its place to the mean light.
- * A host that lights an object separately, such as the view out of a cab, can query the share at the object's place
- * (wk_context_get_sun_share).
+ * Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). The
+ * stage SURFACE then finds the place of each pixel from the host's depth, and multiplies the pixel by the ratio of the
+ * light there to the mean light. A host that lights an object separately, such as the view out of a cab, can query the
+ * share at the object's place (wk_context_get_sun_share).
  * ====================================================================================================
  */
 
@@ -5978,13 +6068,13 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
-/** Optional effects of clouds that a view draws. */
+/** Flags of the optional effects of clouds in a view. */
 typedef uint32_t wk_clouds_flags;
 
 /**
  * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
  * shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
- * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without it the air has its mean brightness
+ * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without this flag the air has its mean brightness
  * everywhere.
  */
 #define WK_CLOUDS_SHAFTS 1
@@ -6020,7 +6110,9 @@ typedef struct wk_clouds {
 
 /**
  * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
- * Part of the saved state. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
+ * Part of the saved state.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
  */
 WK_API
 wk_status wk_context_set_cloud_model(wk_context *context,
@@ -6028,10 +6120,10 @@ wk_status wk_context_set_cloud_model(wk_context *context,
 
 /**
  * Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
- * place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at the very
- * place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the mean,
- * wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some tenths
- * of a second.
+ * place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at exactly
+ * this place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
+ * mean, wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some
+ * tenths of a second.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -6134,8 +6226,10 @@ typedef struct wk_cloud_shadows {
  * updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
  * and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
  * calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
- * last frame, or record WK_STAGE_PREPARE first. Thread: exclusive on the view. Errors: WK_ERROR_UNSUPPORTED on a
- * device that Welkin made itself (wk_device_create), on which the host's shaders cannot run.
+ * last frame, or record WK_STAGE_PREPARE first.
+ * Thread: exclusive on the view.
+ * Errors: WK_ERROR_UNSUPPORTED on a device that Welkin made itself (wk_device_create), on which the host's shaders
+ * cannot run.
  */
 WK_API wk_status wk_view_get_cloud_shadows(wk_view *view, wk_cloud_shadows *out_shadows);
 
@@ -6200,9 +6294,9 @@ typedef struct wk_lightning {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default 0: the weather's rate. */
+    /** Flags of the settings that are set. Default 0: the rate of the weather. */
     wk_lightning_flags flags;
-    /** Default WK_FLICKER_AS_IN_NATURE. */
+    /** Flicker of the drawn flashes. Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
      * Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
@@ -6264,7 +6358,7 @@ typedef struct wk_flash_trigger {
     double position_m[3];
     /** Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random. */
     double peak_ka;
-    /** Default WK_FLASH_KIND_TO_GROUND. */
+    /** Place where the flash ends. Default WK_FLASH_KIND_TO_GROUND. */
     wk_flash_kind kind;
     /** Number of strokes. Range [0, 26], default 0: random. */
     uint32_t strokes;
@@ -6296,7 +6390,7 @@ typedef struct wk_flash {
     uint32_t strokes;
     /** Largest peak current of its strokes, kA. */
     double peak_ka;
-    /** Position of what it struck, or of the middle of its path in the cloud, in the host's world, m. */
+    /** Position where it struck, or of the middle of its path in the cloud, in the host's world, m. */
     double position_m[3];
     /** Distance to the nearest point of its channel, m. */
     double distance_m;
@@ -6339,7 +6433,7 @@ typedef struct wk_flash_light {
 }
 
 /**
- * Sets how often it flashes, where, and how views draw the flashes; NULL returns to the default. Part of the saved
+ * Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. Part of the saved
  * state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
@@ -6347,19 +6441,24 @@ typedef struct wk_flash_light {
 WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightning *lightning);
 
 /**
- * Triggers a flash, whatever the weather. Part of the saved state until 120 s after it; at most 64 at a time.
- * Unchanged after an error. Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range;
- * WK_ERROR_WRONG_ORDER for a time before the present.
+ * Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after it; there are at most
+ * 64 such flashes at a time. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or for too many flashes; WK_ERROR_WRONG_ORDER for
+ * a time before the present.
  */
-WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
+WK_API
+wk_status wk_context_trigger_flash(wk_context *context,
+                                   const wk_flash_trigger *flash);
 
 /**
  * Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
- * 3600 s apart. Flashes count within the horizontal distance `most_distance_m`, at most 50000 m, of a place of the
- * host's world. `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and
- * the call fails; with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose
- * weather the timeline has dropped, the earliest weather that it still has applies. Thread: concurrent. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * 3600 s apart. Only flashes within the horizontal distance `most_distance_m`, in [0, 50000] m, of the position count.
+ * `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and the call fails;
+ * with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline
+ * has dropped, the earliest weather that it still has applies.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flashes(const wk_context *context,
@@ -6373,9 +6472,11 @@ wk_status wk_context_get_flashes(const wk_context *context,
                                  uint32_t *out_count);
 
 /**
- * Gets the light of flashes at a place of the host's world, averaged over the `exposure_s`, [0, 1], before `time_s`;
- * with 0, at that instant. Use it to light the host's own scene, with the time since its last frame as exposure.
- * Thread: concurrent. Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
+ * Gets the light of flashes at a place of the host's world, averaged over the time `exposure_s`, in [0, 1] s, that
+ * ends at `time_s`; with 0, at that instant. Use it to light the host's own scene, with the time since its last frame
+ * as exposure.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
 WK_API
 wk_status wk_context_get_flash_light(const wk_context *context,
@@ -6458,8 +6559,8 @@ typedef struct wk_wiper_arm {
     /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
     double far_deg;
     /**
-     * Position of the blade in this frame: 0 parked, 1 at the far end. Between two frames it moves at constant speed.
-     * Default 0.
+     * Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. Between two frames the
+     * blade moves at constant speed.
      */
     double position;
     /** Width of the rubber on the glass, m. Range [0, 0.1], default 0.006. */
@@ -6488,7 +6589,7 @@ typedef struct wk_windscreen {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default WK_WINDSCREEN_PANE_QUAD. */
+    /** Shape of the glass. Default WK_WINDSCREEN_PANE_QUAD. */
     wk_windscreen_pane pane;
     /** Number of wipers in `arms`, at most 2. Default 0. */
     uint32_t arm_count;
@@ -6525,7 +6626,7 @@ typedef struct wk_windscreen {
     double demist;
     /** The wipers; may be NULL if there are none. Read during the call only. */
     const wk_wiper_arm *arms;
-    /** sizeof(wk_wiper_arm) of your header. Default that of this header. */
+    /** Bytes from one wiper to the next: sizeof(wk_wiper_arm) of your header, which is the default. */
     uint32_t arm_stride;
     /** Must be 0. */
     uint32_t reserved0;
@@ -6592,24 +6693,25 @@ typedef struct wk_windscreen_report {
 }
 
 /**
- * Sets the window that the view looks through; NULL removes it. If you drive, wipe or turn the camera, set it again
- * before each frame: the water stays on the glass as long as the glass keeps its size. Unchanged after an error. With
- * a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour and for parallel projections.
+ * Sets the window that the view looks through; NULL removes it. While the vehicle drives, the wipers move or the
+ * camera turns, set it again before each frame: the water stays on the glass as long as the glass keeps its size.
+ * Unchanged after an error. With a window, recording the stage LENS gives WK_ERROR_UNSUPPORTED for multisampled colour
+ * and for parallel projections.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API wk_status wk_view_set_windscreen(wk_view *view, const wk_windscreen *windscreen);
+WK_API
+wk_status wk_view_set_windscreen(wk_view *view,
+                                 const wk_windscreen *windscreen);
 
 /**
- * Gets how much water is on the view's windscreen as of its last frame, and how much lands on it. Reads the state back
- * and waits for the GPU: call it now and then, not in every frame. All 0 without a windscreen or before the view's
- * first frame.
+ * Gets the amount of water on the view's windscreen as of its last frame, and the rate at which it lands. The call
+ * reads the state back and waits for the GPU: use it now and then, not in every frame. All 0 without a windscreen or
+ * before the view's first frame.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_DEVICE_LOST.
  */
-WK_API
-wk_status wk_view_get_windscreen_report(wk_view *view,
-                                        wk_windscreen_report *out_report);
+WK_API wk_status wk_view_get_windscreen_report(wk_view *view, wk_windscreen_report *out_report);
 
 /**
  * Writes the default of every field: the same bytes as `WK_WIPER_ARM_INIT`. `struct_size` is `sizeof(wk_wiper_arm)`
@@ -6638,8 +6740,8 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * The stage SURFACE reads the host's depth and draws water onto the host's picture. Wet ground is darker and mirrors
  * the sky, paved ground has puddles, and rain makes rings in them. Colours are right with WK_COLOR_SCENE_LINEAR; in
  * the display spaces Welkin takes the displayed colour for the ground's albedo. Ground without a wk_surface_class is
- * natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. Mirrors show the sky. Of the host's
- * objects, only shelters and occluder maps appear in them, as dark shapes.
+ * natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. The mirrored picture is the sky's. Of
+ * the host's objects, only shelters and occluder maps appear in it, as dark shapes.
  *
  * Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
  * wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
@@ -6678,14 +6780,14 @@ typedef struct wk_ground {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Depth of the water, mm, as tyres meet it: the film, plus standing water in a hollow. */
+    /** Depth of the water on the ground, mm, as a tyre meets it: the film, plus standing water in a hollow. */
     double water_mm;
     /**
-     * Depth of the film on level ground outside hollows, mm; on the host's terrain, that of the film at the place.
+     * Depth of the film on level ground outside hollows, mm; on the host's terrain, depth of the film at the place.
      */
     double film_mm;
     /**
-     * Wetness of the ground everywhere, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+     * Wetness of level, open ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
      */
     double wetness;
     /** Share of all ground, or of the host's terrain, that is under standing water. */
@@ -6882,34 +6984,38 @@ typedef struct wk_ground_grid {
  * packed array can be uploaded as a texture of four floats per texel.
  */
 typedef struct wk_ground_cell {
-    /** Film: water between and on the grains, mm; 0 under standing water. */
+    /** Film: water on and between the grains of the surface, mm; 0 under standing water. */
     float film_mm;
     /** Water in the pores, as a share of their capacity, 0 to 1. */
     float soaked;
     /** Standing water, mm. */
     float standing_mm;
     /**
-     * Share of the cell under ice, by the weather of the moment; freezing rain leaves no ice where standing boxes keep
-     * it off.
+     * Share of the cell under ice, 0 to 1, by the weather of the moment. Where standing boxes keep freezing rain off,
+     * it leaves no ice.
      */
     float ice;
 } wk_ground_cell;
 
 /**
- * Sets the heights of the host's terrain, in place of those before; NULL leaves level ground everywhere. Setting the
- * same grid again keeps its water, even with other classes; a different grid starts as wet as level ground is. May
- * take some tenths of a second for the largest grids. Unchanged after an error.
+ * Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before; NULL leaves
+ * level ground everywhere. Setting the same grid again keeps its water, even with other classes; a different grid
+ * starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API wk_status wk_context_set_ground_grid(wk_context *context, const wk_ground_grid *ground_grid);
+WK_API
+wk_status wk_context_set_ground_grid(wk_context *context,
+                                     const wk_ground_grid *ground_grid);
 
 /**
- * Copies the water of the terrain's cells as of wk_context_get_state_time, in the order of the heights. `cell_size` is
- * sizeof(wk_ground_cell) of your header. `out_revision` gets a number that changes whenever the cells change, at most
- * once every 10 s of simulation time. With capacity 0 the call returns only this number, so you can skip uploads when
- * nothing has changed. Thread: concurrent. Errors: WK_ERROR_WRONG_ORDER without a terrain; WK_ERROR_INVALID_ARGUMENT
- * for a capacity other than 0 that is too small.
+ * Copies the water of the cells of a wk_ground_grid as of wk_context_get_state_time, in the order of the heights. For
+ * tiles use wk_context_get_terrain_water. `cell_size` is sizeof(wk_ground_cell) of your header. `out_revision` gets a
+ * number that changes whenever the cells change, at most once every 10 s of simulation time. With capacity 0 the call
+ * returns only this number, so you can skip uploads when nothing has changed.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is
+ * too small.
  */
 WK_API
 wk_status wk_context_get_ground_cells(const wk_context *context,
@@ -6930,9 +7036,9 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * ====================================================================================================
  * [ground_texture] Water on the host's terrain as a texture
  *
- * A native texture for the host's own materials, with the water of the terrain's cells. A grid
- * (wk_context_set_ground_grid) is uploaded once for both the host and the stage SURFACE; of tiles
- * (wk_context_set_terrain) the texture has those around a place. Each cell is one texel; the first one is the
+ * A native texture for the host's own materials, with the water of the terrain's cells. The cells of a grid
+ * (wk_context_set_ground_grid) are uploaded once for both the host and the stage SURFACE. For tiles
+ * (wk_context_set_terrain) the texture covers a window around a place. Each cell is one texel; the first one is the
  * south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
  * how the wet surface looks.
  * ====================================================================================================
@@ -6961,9 +7067,9 @@ typedef struct wk_ground_texture {
     uint64_t generation;
     /** Revision of the texture's contents, as in wk_context_get_ground_cells. */
     uint64_t revision;
-    /** Width, texels: the grid's number of nodes east. */
+    /** Width, texels: the number of nodes of a grid to the east, or 512 for tiles. */
     uint32_t width;
-    /** Height, texels: the grid's number of nodes north. */
+    /** Height, texels: the number of nodes of a grid to the north, or 512 for tiles. */
     uint32_t height;
     /**
      * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
@@ -6994,13 +7100,15 @@ typedef struct wk_ground_texture {
 }
 
 /**
- * Gets the native texture of the terrain's water, up to date: call it after each wk_context_update. It costs nothing
- * if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a wk_view_record with
- * SURFACE, uploads them in order with the host's work on the device's queue or context. The texture belongs to the
- * context and stays the same until another grid, or none, is set or loaded; before that, wait for GPU work that
- * samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy
- * from it. It has no mipmaps; choose filter and wrap yourself. Thread: exclusive. Errors: WK_ERROR_WRONG_ORDER without
- * a terrain; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+ * Gets the native texture of the water on a wk_ground_grid, up to date: call it after each wk_context_update. It costs
+ * nothing if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a
+ * wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue or context. The
+ * texture belongs to the context and stays the same until you set or load another grid, or none; before you do so,
+ * wait for GPU work that samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
+ * calls, and you may copy from it. It has no mipmaps; choose filter and wrap yourself.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_UNSUPPORTED on an own device, where the host has no
+ * shaders.
  */
 WK_API
 wk_status wk_context_get_ground_texture(wk_context *context,
@@ -7009,12 +7117,13 @@ wk_status wk_context_get_ground_texture(wk_context *context,
 /**
  * Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
  * The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
- * middle quarter. `uv_from_world` is its present placement; where no tile has ground there is neither water nor snow.
- * Call it after each wk_context_update; with several cameras, call it before you draw each one. It costs nothing if
- * nothing has changed; after a move the whole window is uploaded. Both textures stay the same as long as the context
- * lives.
- * Thread: exclusive. Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile
- * reaches into the window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
+ * middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
+ * neither water nor snow. Call it after each wk_context_update; with several cameras, call it before you draw each
+ * one. The call costs nothing if nothing has changed; after a move it uploads the whole window. Both textures stay the
+ * same as long as the context lives.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
+ * window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
 WK_API
 wk_status wk_context_get_terrain_texture(wk_context *context,
@@ -7060,9 +7169,9 @@ typedef uint32_t wk_snow_friction;
 #define WK_SNOW_FRICTION_LOOSE 1
 /** Snow above 350 kg/m^3: pressed, or packed by wind. */
 #define WK_SNOW_FRICTION_PACKED 2
-/** Slush: more than half of the water that it can hold. */
+/** Slush: snow with more than half of the liquid water that it can hold. */
 #define WK_SNOW_FRICTION_SLUSH 3
-/** Above 650 kg/m^3: frozen hard. */
+/** Snow above 650 kg/m^3: frozen hard. */
 #define WK_SNOW_FRICTION_ICE 4
 
 /** Snow at a place. Element of an array, without struct_size; calls take its sizeof instead. */
@@ -7086,7 +7195,7 @@ typedef struct wk_lying_snow {
     double surface_m[3];
     /** Grip of a wheel. */
     wk_snow_friction friction;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
 } wk_lying_snow;
 
@@ -7152,23 +7261,21 @@ wk_status wk_context_take_snow(wk_context *context,
                                double *out_mass_kg);
 
 /**
- * Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense: a wheel's track.
+ * Compacts the snow of a strip of the host's terrain to 500 kg/m^3 where it is less dense, as a wheel does.
  * Thread: exclusive.
  * Errors: as wk_context_take_snow.
  */
 WK_API wk_status wk_context_press_snow(wk_context *context, const wk_snow_strip *strip);
 
 /**
- * Advances time by `hours`, in (0, 720], and simulates the snow of that time in steps of ten minutes, so that a lesson
- * can begin after a night's snowfall. The laws are those of ordinary steps. The resulting state differs from theirs by
- * up to some percent, and records that it was made in this way (wk_context_state_hash). Everything else is advanced as
- * by wk_context_update, to the end: with the largest terrain this may take some seconds.
+ * Advances time by `hours`, in (0, 720], with the snow in steps of ten minutes, so that a lesson can begin after a
+ * night's snowfall. The laws are those of ordinary steps, but the resulting state differs by up to some percent from
+ * the state after ordinary steps. The state records that it was made in this way (wk_context_state_hash). Everything
+ * else advances as with wk_context_update, but in this one call: with the largest terrain it may take some seconds.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the range; WK_ERROR_WRONG_ORDER while steps of an update remain.
  */
-WK_API
-wk_status wk_context_accumulate(wk_context *context,
-                                double hours);
+WK_API wk_status wk_context_accumulate(wk_context *context, double hours);
 
 /**
  * Writes the default of every field: the same bytes as `WK_SNOW_STRIP_INIT`. `struct_size` is `sizeof(wk_snow_strip)`
@@ -7182,7 +7289,7 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  *
  * The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
  * aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
- * and removed, and rectangles of their cells changed. The time of a change grows with the rectangle, so an excavator's
+ * and removed, and rectangles of their cells changed. The cost of a change grows with the rectangle, so an excavator's
  * bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
  * has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
  * ground. A context has either tiles or one wk_ground_grid.
@@ -7315,9 +7422,9 @@ typedef struct wk_terrain_drawing {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Largest vertical error of the drawn triangles that 99.7 % of the ground keeps, pixels. Range [0.25, 16],
-     * default 1. It sets how far each level of detail reaches, between 40 and 160 sides of its squares; ground that is
-     * so rough that more would be needed is drawn with a larger error.
+     * Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
+     * default 1. It sets the distance that each level of detail reaches, in [40, 160] sides of its squares. Ground so
+     * rough that it would need a longer reach is drawn with a larger error.
      */
     double error_px;
 } wk_terrain_drawing;
@@ -7345,7 +7452,10 @@ typedef struct wk_terrain_point {
     int32_t tile[2];
     /** Material of the nearest cell; WK_SURFACE_CLASS_UNSPECIFIED if it has none. */
     wk_surface_class surface_class;
-    /** 1 on the ground of a tile, else 0: on a triangle of which a cell is a hole or lies off all tiles. */
+    /**
+     * 1 on the ground of a tile; 0 off all tiles, and on a triangle with a corner that is a hole or lies off all
+     * tiles.
+     */
     uint32_t has_ground;
 } wk_terrain_point;
 
@@ -7368,9 +7478,10 @@ WK_API wk_status wk_context_set_terrain_tile(wk_context *context, const wk_terra
 
 /**
  * Changes the heights, the classes, or both, of a rectangle of a tile's cells. Water that stands there flows as the
- * new ground allows: off a raised floor, into a new pit. The time grows with the rectangle and with the standing water
- * that it touches, not with the tile or the terrain. Unchanged after an error. Thread: exclusive. Errors: as
- * wk_context_set_terrain_tile, and for the key of no tile.
+ * new ground allows: off a raised floor, into a new pit. The cost grows with the rectangle and with the standing water
+ * that it touches, not with the tile or the terrain. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: as wk_context_set_terrain_tile; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
  */
 WK_API
 wk_status wk_context_update_terrain(wk_context *context,
@@ -7379,14 +7490,15 @@ wk_status wk_context_update_terrain(wk_context *context,
 /**
  * Removes a tile and the water on it. Where it was, water of the other tiles runs off.
  * Thread: exclusive.
- * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for the key of no tile.
+ * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
  */
 WK_API wk_status wk_context_remove_terrain_tile(wk_context *context, int32_t tile_east, int32_t tile_north);
 
 /**
  * Sets whether and how Welkin draws the tiles into frames whose depth it may write, in WK_STAGE_SURFACE. NULL, the
- * default, leaves them to the host. Settings are not saved. Unchanged after an error. Thread: exclusive. Errors:
- * WK_ERROR_INVALID_ARGUMENT naming the field and its range.
+ * default, leaves them to the host. Settings are not saved. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API
 wk_status wk_context_set_terrain_drawing(wk_context *context,
@@ -7401,7 +7513,9 @@ WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint
 /**
  * Gets the terrain straight below or above places of the host's world, at most wk_caps.max_batch of them.
  * `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
- * sizeof(wk_terrain_point) of your header for points. Thread: concurrent.
+ * sizeof(wk_terrain_point) of your header for points.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position.
  */
 WK_API
 wk_status wk_context_get_terrain_at(const wk_context *context,
@@ -7414,8 +7528,9 @@ wk_status wk_context_get_terrain_at(const wk_context *context,
 /**
  * Copies the water of a tile's cells as of wk_context_get_state_time, by rows from the south-west; `cell_size` is
  * sizeof(wk_ground_cell) of your header. Holes are dry. `out_revision` gets a number that changes whenever water on
- * the terrain changes; with capacity 0 the call returns only this number. Thread: concurrent. Errors:
- * WK_ERROR_INVALID_ARGUMENT for the key of no tile, or a capacity other than 0 that is too small.
+ * the terrain changes; with capacity 0 the call returns only this number.
+ * Thread: concurrent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, or a capacity other than 0 that is too small.
  */
 WK_API
 wk_status wk_context_get_terrain_water(const wk_context *context,
@@ -7452,12 +7567,12 @@ wk_status wk_terrain_cells_init(wk_terrain_cells *out,
  * ====================================================================================================
  * [sea] The sea: settings and queries
  *
- * Say what your sea is like, and ask at any time where its surface is, how steep it is and how the water moves; a hull
- * can float by the answers. Without settings a context has no sea. What you set here replaces the wave height and the
- * swell of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m); what you leave out follows the
- * weather: its wind raises waves by fetch and duration. Heights keep what was asked within 1 %, no two places look
- * alike, and the same time gives the same bits on every machine. Regions say where there is no water, where a harbour
- * shelters it, and where a lake has a level of its own.
+ * Describe your sea, and query for any time the height and slope of its surface and the motion of the water; a hull
+ * can float by the answers. Without settings a context has no sea. A wave height or swell that you set here replaces
+ * that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else follows the weather:
+ * its wind raises waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
+ * repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
+ * places, sheltered harbours, and lakes with a level of their own. Hulls (wk_context_set_sea_hulls) raise wakes.
  *
  * wk_sea sea = WK_SEA_INIT;
  * sea.has = WK_SEA_HAS_HEIGHT | WK_SEA_HAS_PEAK_PERIOD;
@@ -7536,7 +7651,7 @@ typedef struct wk_sea_swell {
     double period_s;
     /** Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double from_deg;
-    /** Directional width, degrees. Range [1, 60]; 0, the default, is 15. */
+    /** Directional width, degrees. Range [1, 60]; 0, the default, means 15. */
     double spread_deg;
 } wk_sea_swell;
 
@@ -7551,7 +7666,7 @@ typedef struct wk_sea_swell {
     /* spread_deg */ 0.0 \
 }
 
-/** A regular wave of infinite crests, added to all others. */
+/** A regular wave with infinitely long crests, added to all others. */
 typedef struct wk_sea_wave {
     /** sizeof(wk_sea_wave) of your header. */
     uint32_t struct_size;
@@ -7564,15 +7679,15 @@ typedef struct wk_sea_wave {
      * 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
      */
     double height_m;
-    /** Wave length, m. Range [0.1, 2000]; 0, the default, where period_s says it. */
+    /** Wave length, m. Range [0.1, 2000]; 0, the default, if you set period_s instead. */
     double length_m;
-    /** Period, s. Range [0.25, 40]; 0, the default, where length_m says it. One of the two must be set. */
+    /** Period, s. Range [0.25, 40]; 0, the default, if you set length_m instead. Set exactly one of the two. */
     double period_s;
     /** Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double from_deg;
     /**
-     * Time of a crest at the world's origin, in degrees of the period after simulation time 0. Range [-360, 360],
-     * default 0.
+     * Time after simulation time 0 at which a crest passes the world's origin, in degrees of the period (360 is one
+     * period). Range [-360, 360], default 0.
      */
     double phase_deg;
 } wk_sea_wave;
@@ -7605,7 +7720,7 @@ typedef struct wk_sea {
     double level_m;
     /**
      * Depth of the water below the mean level, m, the same everywhere. Range [0.5, 12000], default 4000. It sets the
-     * lengths and speeds of waves; where the terrain has a bed, answers have the depth above that.
+     * lengths and speeds of waves. Over the host's terrain tiles, queries return the depth above the terrain instead.
      */
     double depth_m;
     /**
@@ -7628,7 +7743,10 @@ typedef struct wk_sea {
     double peak_period_s;
     /** Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without. */
     double peak_gamma;
-    /** Optional: Beaufort number. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch. */
+    /**
+     * Optional: Beaufort number B. Range [0, 12]. The sea is the one that a steady wind of 0.836 B^1.5 m/s sustains
+     * over the fetch.
+     */
     double beaufort;
     /**
      * Optional: direction that the wind sea comes from, degrees clockwise from true north. Range [0, 360]; else that
@@ -7640,21 +7758,22 @@ typedef struct wk_sea {
     /** Salinity, g/kg. Range [0, 45], default 35. */
     double salinity_g_kg;
     /**
-     * Optional: share of downward blue light (450 nm) that a metre of water leaves, percent. Range [41.1, 98.1], which
-     * are types 7C and I; else by water_type.
+     * Optional: share of downward blue light (450 nm) that passes a metre of water, percent. Range [41.1, 98.1]: from
+     * type 7C to type I; else by water_type.
      */
     double clarity_percent;
     /** Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice. */
     double ice_cover;
-    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Shorter waves do not lift them. */
+    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than this do not lift them. */
     double ice_floe_m;
     /**
-     * Distance that the waves have come through the ice, m. Range [0, 1e7], default 1000. They fade along it by
-     * Meylan, Bennetts and Kohout (2014).
+     * Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. They decay along it
+     * (Meylan, Bennetts and Kohout 2014).
      */
     double ice_width_m;
     /**
-     * Optional: WMO sea state, code table 3700. Range 0 to 9: the middle of its range of heights, fully developed.
+     * Optional: WMO sea state, code table 3700. Range 0 to 9. The sea is fully developed, with the middle of the
+     * code's range of heights.
      */
     uint32_t sea_state;
     /** Optical type of the water. Default WK_WATER_TYPE_IB. */
@@ -7725,22 +7844,23 @@ typedef struct wk_sea_region {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Corners of the outline, m to the right and ahead of the centre, in order, either way around, each within 1e6 m.
-     * The outline must not cross or touch itself. Read during the call only.
+     * Corners of the outline, in either direction around it. Each corner is two numbers: the distance from the centre
+     * to the right of the heading, and along it, m, within 1e6. The outline must not cross or touch itself. Read
+     * during the call only.
      */
     const double (*corners_m)[2];
-    /** Number of corners. Range 3 to 64. */
+    /** Number of corners, [3, 64]. Default 0; must be given. */
     uint32_t corner_count;
     /** Kind of water inside. Default WK_SEA_REGION_DRY. */
     wk_sea_region_kind kind;
     /**
-     * Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin. Its height does not
-     * matter. Default 0, 0, 0.
+     * Position of the centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no
+     * effect. Default 0, 0, 0.
      */
     double center_m[3];
-    /** Heading of `ahead` at at_s, degrees clockwise from true north. Range [-360, 360], default 0. */
+    /** Heading of the outline at the time at_s, degrees clockwise from true north. Range [-360, 360], default 0. */
     double heading_deg;
-    /** Velocity east and north, m/s, of at most 60 m/s. Default 0, 0. */
+    /** Velocity to the east and north, m/s; its length is at most 60. Default 0, 0. */
     double velocity_m_s[2];
     /** Rate of turn, degrees clockwise a second. Range [-90, 90], default 0. */
     double turn_deg_s;
@@ -7753,11 +7873,13 @@ typedef struct wk_sea_region {
      * sea's depth.
      */
     double depth_m;
-    /** Lakes and sheltered regions: height of the waves over that on the open sea. Range [0, 1], default 1. */
+    /**
+     * Lakes and sheltered regions: ratio of the height of the waves to that on the open sea. Range [0, 1], default 1.
+     */
     double wave_share;
     /**
-     * Sheltered regions: width of the band inside the outline over which waves become lower, m. Range [0, 10000],
-     * default 0: at once.
+     * Sheltered regions: width of the band inside the outline over which the waves become lower, m. Range [0, 10000];
+     * 0, the default, is a step at the outline.
      */
     double rim_m;
 } wk_sea_region;
@@ -7782,14 +7904,69 @@ typedef struct wk_sea_region {
 }
 
 /**
+ * A hull that moves through the water and raises a wake: waves of its bow and its stern by its length, beam, draught
+ * and speed (Michell 1898), and the foam of its wash. It goes on at its speed and rate of turn until it is set anew.
+ */
+typedef struct wk_sea_hull {
+    /** sizeof(wk_sea_hull) of your header. */
+    uint32_t struct_size;
+    /** WK_STRUCT_TYPE_SEA_HULL. */
+    wk_struct_type struct_type;
+    /** No extensions in this version: NULL. */
+    const void *next;
+    /** Your number for the hull; no two hulls of a list have the same. Default 0. */
+    uint32_t id;
+    /** 0. */
+    uint32_t reserved0;
+    /** Length of the waterline, m. Range [1, 500], default 30. */
+    double length_m;
+    /** Beam of the waterline, m. Range [0.2, 100], default 8. */
+    double beam_m;
+    /** Draught, m. Range [0.05, 30], default 2.5. */
+    double draught_m;
+    /**
+     * Position of the middle of the waterline in the host's world at the time at_s, m, within 1e12 m of the origin.
+     * Its height does not matter. Default 0, 0, 0.
+     */
+    double position_m[3];
+    /** Heading at at_s, degrees clockwise from true north. Range [-360, 360], default 0. The hull moves along it. */
+    double heading_deg;
+    /** Speed through the water, m/s. Range [0, 60], default 0. */
+    double speed_m_s;
+    /** Rate of turn, degrees clockwise a second. Range [-90, 90], default 0. */
+    double turn_deg_s;
+    /** Simulation time of position and heading, s. Range [-1e10, 1e10], default 0. */
+    double at_s;
+} wk_sea_hull;
+
+/** Every field of `wk_sea_hull` at its default. */
+#define WK_SEA_HULL_INIT { \
+    /* struct_size */ (uint32_t)sizeof(wk_sea_hull), \
+    /* struct_type */ WK_STRUCT_TYPE_SEA_HULL, \
+    /* next */ NULL, \
+    /* id */ 0, \
+    /* reserved0 */ 0, \
+    /* length_m */ 30.0, \
+    /* beam_m */ 8.0, \
+    /* draught_m */ 2.5, \
+    /* position_m */ { 0.0, 0.0, 0.0 }, \
+    /* heading_deg */ 0.0, \
+    /* speed_m_s */ 0.0, \
+    /* turn_deg_s */ 0.0, \
+    /* at_s */ 0.0 \
+}
+
+/**
  * The sea at a place and time. Element of an array, without struct_size; calls take its sizeof instead. Where there is
- * no water, surface_m is the position that was asked about, normal is up, and all other numbers are 0.
+ * no water, surface_m is the queried position, normal is up, and all other numbers are 0. A dry region is an
+ * exception: there has_water is 0, and the other fields are those of the water around the region.
  */
 typedef struct wk_sea_point {
     /** Height of the surface above mean sea level, m. */
     double height_m;
     /**
-     * Largest error of the height, m: 4 standard deviations of the waves left out, and the tolerances of the sums.
+     * Bound of the error of height_m, m: 4 standard deviations of the waves left out, plus the tolerance of the
+     * computation.
      */
     double height_error_m;
     /** Point of the surface above or below the position, in the host's world, m. */
@@ -7802,11 +7979,14 @@ typedef struct wk_sea_point {
     double acceleration_m_s2[3];
     /** Depth of the water under the surface, m. */
     double depth_m;
-    /** Share of the place under foam, 0 to 1: of waves that break now, and what those of the last 3.6 s left. */
+    /**
+     * Share of the place under foam, 0 to 1: foam of waves that break now, and what is left of the foam of the last
+     * 3.6 s.
+     */
     double foam;
     /** 1 where there is water, 0 where there is none or in a dry region. */
     uint32_t has_water;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
 } wk_sea_point;
 
@@ -7824,7 +8004,7 @@ typedef struct wk_sea_state {
      * Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
      */
     double significant_height_m;
-    /** Period of the strongest waves, s; 0 without waves. */
+    /** Period of the strongest waves, s; that of the highest single wave if there are no others; 0 without waves. */
     double peak_period_s;
     /**
      * Mean direction that the waves come from, degrees clockwise from true north, weighted by variance; 0 without
@@ -7835,7 +8015,10 @@ typedef struct wk_sea_state {
      * Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
      */
     double mean_square_slope;
-    /** Part of it that the waves of the surface have; the rest is in waves too short for it. */
+    /**
+     * Part of mean_square_slope that belongs to the waves in the computed surface. The rest belongs to waves too short
+     * for it.
+     */
     double drawn_square_slope;
     /**
      * Height of the largest wave expected in an hour, m, crest to trough (Longuet-Higgins 1952), plus the heights of
@@ -7871,19 +8054,21 @@ typedef struct wk_sea_state {
 }
 
 /**
- * Sets the sea; NULL removes it. Part of the state that wk_context_save keeps. Set it before the first update: what
- * it says about fetch holds for all weather that the timeline still knows. Unchanged after an error.
+ * Sets the sea; NULL removes it. Part of the saved state. Set it before the first update, because its fetch applies to
+ * all past weather that the timeline still knows. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
  */
-WK_API wk_status wk_context_set_sea(wk_context *context, const wk_sea *sea);
+WK_API
+wk_status wk_context_set_sea(wk_context *context,
+                             const wk_sea *sea);
 
 /**
- * Replaces the list of regions; count 0 removes all. At most 64. Regions that move at a constant velocity and rate of
- * turn move by themselves: set them again when these change. Later regions count before earlier ones, dry ones before
- * all. Part of the state that wk_context_save keeps. Unchanged after an error.
+ * Replaces the list of regions, at most 64; count 0 removes all. Regions move at their velocity and rate of turn by
+ * themselves: set them again when these change. Where regions overlap, the later one in the list counts, but a dry one
+ * counts before all others. Part of the saved state. Unchanged after an error.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range: outlines that cross themselves, too.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for an outline that crosses itself.
  */
 WK_API
 wk_status wk_context_set_sea_regions(wk_context *context,
@@ -7892,14 +8077,31 @@ wk_status wk_context_set_sea_regions(wk_context *context,
                                      uint32_t stride);
 
 /**
+ * Replaces the list of hulls that raise wakes; count 0 removes all. At most 64. A hull goes on at its speed and rate
+ * of turn: set the list again when these change, in every frame if you like. A hull whose id was in the list before
+ * goes on with its track, unless it stands more than two of its lengths beside it. The waves of a hull that is no
+ * longer in the list stay until they have faded, after 240 s at most. Wakes are in the picture and in the answers of
+ * wk_context_get_sea_at; there, a hull inside a dry region does not feel its own. Keep water out of the hull by a dry
+ * region (wk_context_set_sea_regions). Part of the state that wk_context_save keeps. Unchanged after an error.
+ * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for two hulls with the same id.
+ */
+WK_API
+wk_status wk_context_set_sea_hulls(wk_context *context,
+                                   const wk_sea_hull *hulls,
+                                   uint32_t count,
+                                   uint32_t stride);
+
+/**
  * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
- * them. Only the place on the ground of a position counts, not its height. There is no water where the terrain's tiles
- * lie above the surface, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other
- * fields are those of the water around, by which a hull floats. `shortest_wave_m`, range [0, 10000], leaves out waves
- * shorter than your hull feels; 0 leaves out none. `position_size` and `point_size` are the distances from one element
- * to the next, bytes: 24 or more for positions, sizeof(wk_sea_point) of your header for points. The first call for a
- * time costs some milliseconds; the sums of the last two times are kept, and each place then costs some microseconds.
- * No device is needed, and nothing is allocated after the first calls.
+ * them. The height of a position does not count. There is no water where the terrain's tiles lie above the surface,
+ * except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of the
+ * water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of the
+ * shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+ * `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
+ * of your header for points. The first call for a time costs some milliseconds; the sums of the last two times are
+ * kept, and each place then costs some microseconds. No device is needed, and nothing is allocated after the first
+ * calls.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
  * wk_context_get_conditions.
@@ -7946,6 +8148,12 @@ WK_API wk_status wk_sea_init(wk_sea *out, uint32_t struct_size);
 WK_API wk_status wk_sea_region_init(wk_sea_region *out, uint32_t struct_size);
 
 /**
+ * Writes the default of every field: the same bytes as `WK_SEA_HULL_INIT`. `struct_size` is `sizeof(wk_sea_hull)`
+ * as the caller was compiled, and is stored in the struct.
+ */
+WK_API wk_status wk_sea_hull_init(wk_sea_hull *out, uint32_t struct_size);
+
+/**
  * Writes the default of every field: the same bytes as `WK_SEA_STATE_INIT`. `struct_size` is `sizeof(wk_sea_state)`
  * as the caller was compiled, and is stored in the struct.
  */
@@ -7956,18 +8164,18 @@ WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
  * [soil] Soil
  *
  * Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
- * undug ground: soil adds what was dug and heaped, and wk_context_get_terrain_at, water, snow and wind see the
- * sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond it,
- * heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by wk_context_update,
- * saved and hashed with the context. It depends on the timed poses of the tools alone, at any frame rate: send each
- * pose before the update that reaches its time.
+ * undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind use
+ * the sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond
+ * it, heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by
+ * wk_context_update, saved and hashed with the context. It depends on the timed poses of the tools, not on the frame
+ * rate: send each pose before the update that reaches its time.
  *
  * A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
  * are 1/64 s long. docs/soil.md shows how to dig.
  * ====================================================================================================
  */
 
-/** Number of the built-in kinds: the number of the first kind of a wk_soil. */
+/** Number of the built-in kinds, and thus the number of the first kind in wk_soil.own_kinds. */
 #define WK_SOIL_BUILT_IN_KINDS 7
 
 /** Largest number of kinds, the built-in ones among them. */
@@ -7988,15 +8196,15 @@ typedef struct wk_soil_kind {
     /** Angle at which the loose soil rests, degrees. Range [5, 60], default 37. */
     double repose_deg;
     /**
-     * Cohesion of moist bank, kPa. Range [0, 10 000], default 2. From 100 on it counts as cemented, and water takes
-     * nothing of it.
+     * Cohesion of moist bank, kPa. Range [0, 10 000], default 2. Soil with 100 kPa or more counts as cemented: water
+     * does not weaken it.
      */
     double cohesion_kpa;
     /** Friction angle of the bank, degrees. Range [0, 60], default 30. */
     double friction_deg;
     /**
-     * 1 if wheels and tracks sink into it by the three numbers below (Bekker 1969); 0, the default, if it carries
-     * them.
+     * 1 if wheels and tracks sink into the soil, by the three numbers below (Bekker 1969); 0, the default, if it
+     * carries them without sinking.
      */
     uint32_t sinks;
     /** Must be 0. */
@@ -8026,12 +8234,15 @@ typedef struct wk_soil_kind {
     /* sinkage_n */ 1.0 \
 }
 
-/** Number of a kind of soil: a built-in one, or 7 and more for the kinds of a wk_soil, in their order. */
+/**
+ * Number of a kind of soil: a constant below for a built-in kind, or 7 and more for the kinds in wk_soil.own_kinds, in
+ * their order.
+ */
 typedef uint32_t wk_soil_kind_id;
 
 /** Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees. */
 #define WK_SOIL_SAND 0
-/** Dry gravel: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
+/** Dry gravel, with the same five values: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
 #define WK_SOIL_GRAVEL 1
 /** Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees. */
 #define WK_SOIL_CLAY 2
@@ -8063,15 +8274,15 @@ typedef struct wk_soil {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Depth of the upper side of each layer below the undug surface, m: 0 for the first, and more for each other than
-     * for the one before, up to 1000. Copied. Default NULL.
+     * Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
+     * 1000. Copied. Default NULL.
      */
     const double *horizon_tops_m;
     /** Kind of each layer, a wk_soil_kind_id. Copied. Default NULL. */
     const wk_soil_kind_id *horizon_kinds;
     /**
-     * Share of the pores of the bank that water fills without rain and sun. Range [0, 1], default 0.3, moist. Bank at
-     * 0 (dry sand) and at 1 (below the water table) has no cohesion.
+     * Share of the pores of the bank that water fills before rain and sun change it. Range [0, 1], default 0.3, moist.
+     * Bank at 0 (dry sand) and at 1 (below the water table) has no cohesion.
      */
     double saturation;
 } wk_soil;
@@ -8091,7 +8302,7 @@ typedef struct wk_soil {
     /* saturation */ 0.3 \
 }
 
-/** Shape of a tool, and what it does to the soil. */
+/** Shape of a tool, which decides how it moves the soil. */
 typedef uint32_t wk_soil_tool_shape;
 
 /** Bucket or shovel: cuts with its edge, fills, carries and pours. */
@@ -8113,15 +8324,15 @@ typedef struct wk_soil_tool {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Default WK_SOIL_TOOL_BUCKET. */
+    /** Shape of the tool. Default WK_SOIL_TOOL_BUCKET. */
     wk_soil_tool_shape shape;
     /** Must be 0. */
     uint32_t reserved0;
     /** Volume of a bucket or bed when struck level, m^3. Range [0.001, 1000], default 1. Not used by other tools. */
     double struck_m3;
     /**
-     * Rise of its rated heap per unit of length: 1 for excavators by SAE J296, the default; 0.5 by CECE and for
-     * loaders (SAE J742). Range [0, 1]. Used by buckets and beds.
+     * Slope of the rated heap of a bucket or bed, rise per unit of length: 1, the default, for excavators by SAE J296;
+     * 0.5 by CECE and for loaders (SAE J742). Range [0, 1]. Not used by other tools.
      */
     double heap_rise;
     /** Diameter of a wheel, m. Range [0.1, 10], default 1. Not used by other tools. */
@@ -8143,7 +8354,10 @@ typedef struct wk_soil_tool {
     /* contact_m */ 3.0 \
 }
 
-/** Pose of a tool at a time. Left and right are those of a viewer inside the tool who looks out of its opening. */
+/**
+ * Pose of a tool at a time. Left and right are as seen by a viewer inside the tool who looks out of its opening. All
+ * points lie within 1e7 m of the world's origin.
+ */
 typedef struct wk_soil_pose {
     /** sizeof(wk_soil_pose) of your header. */
     uint32_t struct_size;
@@ -8153,19 +8367,26 @@ typedef struct wk_soil_pose {
     const void *next;
     /** Simulation time, s. Range [-1e10, 1e10], default 0. */
     double time_s;
-    /** Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. */
+    /**
+     * Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. Default 0,
+     * 0, 0.
+     */
     double edge_left_m[3];
-    /** Right end of it, 0.05 to 20 m away. */
+    /** Right end of this edge or line, 0.05 to 20 m from the left end. Default 0, 0, 0. */
     double edge_right_m[3];
-    /** Left end of the edge of the opening opposite to the cutting edge. Not used for wheels and tracks. */
+    /**
+     * Left end of the upper edge of the opening, opposite to the cutting edge and 0.02 to 20 m from it. Not used for
+     * wheels and tracks. Default 0, 0, 0.
+     */
     double upper_left_m[3];
-    /** Right end of it. */
+    /** Right end of the upper edge, 0.05 to 20 m from the left end. Default 0, 0, 0. */
     double upper_right_m[3];
     /**
-     * Direction out of the opening in the host's world; need not have unit length. Not used for wheels and tracks.
+     * Direction out of the opening in the host's world; any length in [1e-6, 1e6]. Not used for wheels and tracks.
+     * Default 0, 0, 0; must be given for other tools.
      */
     double facing[3];
-    /** Load of a wheel or track on the ground, N. Range [0, 1e7], default 0; 0 for other tools. */
+    /** Load of a wheel or track on the ground, N. Range [0, 1e7], default 0. Not used by other tools. */
     double load_n;
 } wk_soil_pose;
 
@@ -8183,7 +8404,7 @@ typedef struct wk_soil_pose {
     /* load_n */ 0.0 \
 }
 
-/** Content of a tool, and what it met in the last step of the soil (1/64 s). */
+/** Content of a tool, and the soil that it met in the last step of the soil (1/64 s). */
 typedef struct wk_soil_tool_report {
     /** sizeof(wk_soil_tool_report) of your header. */
     uint32_t struct_size;
@@ -8197,28 +8418,28 @@ typedef struct wk_soil_tool_report {
     double mass_kg;
     /** Bulk volume held, m^3. */
     double bulk_m3;
-    /** Share of the rated volume with its heap that is filled. */
+    /** Bulk volume held over the rated volume with its heap. */
     double fill;
-    /** Centre of what is held, in the host's world, m. */
+    /** Centre of the soil held, in the host's world, m. */
     double centre_m[3];
     /** Mass of each kind held, kg, by the kind's number. */
     double kinds_kg[16];
-    /** Share of the pores of the soil held that water fills; 0 when empty. */
+    /** Share of the pores of the held soil that water fills, 0 to 1; 0 when empty. */
     double saturation;
     /** Mean depth of the cut, m. */
     double cut_depth_m;
     /** Deepest sinkage of a wheel or track, m. */
     double sinkage_m;
-    /** Kind of most of the soil that was cut. */
+    /** Kind that makes up most of the soil that was cut. */
     wk_soil_kind_id cut_kind;
     /**
      * 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
-     * from a set of numbers that fits a small range only; else 0.
+     * from sinkage numbers that hold for a small range only; else 0.
      */
     uint32_t sinkage_is_beyond_range;
     /** 1 where the edge met frozen ground, which it cannot cut; else 0. */
     uint32_t is_stopped_by_frost;
-    /** 0. */
+    /** Always 0. */
     uint32_t reserved0;
 } wk_soil_tool_report;
 
@@ -8242,7 +8463,7 @@ typedef struct wk_soil_tool_report {
     /* reserved0 */ 0 \
 }
 
-/** Blade of a tool, as it meets the soil. */
+/** Blade of a tool, for the force of the soil on it. */
 typedef struct wk_soil_blade {
     /** sizeof(wk_soil_blade) of your header. */
     uint32_t struct_size;
@@ -8305,9 +8526,9 @@ typedef struct wk_cutting_force {
 
 /** Ground of a cell. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_soil_point {
-    /** Height of the surface above the terrain's origin, m: the host's height with the change. */
+    /** Height of the surface above the terrain's origin, m: the host's height plus change_m. */
     double surface_m;
-    /** Difference to the undug height, m; negative in a pit. */
+    /** Change of the height by soil, m: the surface minus the undug height; negative in a pit. */
     double change_m;
     /** Depth of loose soil, m. */
     double loose_m;
@@ -8347,15 +8568,18 @@ typedef struct wk_soil_balance {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Bank that was loosened. Each number is limited to the range of its type, 9.2 million tonnes. */
+    /**
+     * Bank that was loosened, micrograms. Each number of this struct is limited to the range of its type, 9.2 million
+     * tonnes.
+     */
     int64_t dug_ug;
-    /** Soil that the host brought. */
+    /** Soil that the host brought, micrograms. */
     int64_t brought_ug;
-    /** Loose soil on the ground. */
+    /** Loose soil on the ground, micrograms. */
     int64_t lying_ug;
-    /** Soil in buckets and beds. */
+    /** Soil in buckets and beds, micrograms. */
     int64_t held_ug;
-    /** Soil that left with tools that ended. */
+    /** Soil that left with tools that ended, micrograms. */
     int64_t taken_ug;
 } wk_soil_balance;
 
@@ -8372,18 +8596,20 @@ typedef struct wk_soil_balance {
 }
 
 /**
- * Sets the soil of the terrain's tiles, at first undug; NULL takes the soil, and everything dug, away. Equal settings
- * change nothing. Another lattice (wk_context_set_terrain) ends the soil. Part of the saved state. Unchanged after an
- * error.
+ * Sets the soil of the terrain's tiles, at first undug; NULL removes the soil with all changes by digging. Setting
+ * equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the soil. Part of the
+ * saved state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
  * WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
  */
-WK_API wk_status wk_context_set_soil(wk_context *context, const wk_soil *soil);
+WK_API
+wk_status wk_context_set_soil(wk_context *context,
+                              const wk_soil *soil);
 
 /**
- * Adds a tool at its first pose, at most 64 at a time. `out_tool` gets its number, which no other tool of the state
- * ever has. Unchanged after an error.
+ * Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which is never given to
+ * another tool of the state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
  * remain, and for a pose before the last update.
@@ -8396,8 +8622,8 @@ wk_status wk_context_add_soil_tool(wk_context *context,
 
 /**
  * Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
- * with each point at most 20 m from where it was. The tool moves evenly between its poses, and stands where the last
- * one ends. Its edge must stay over tiles. Unchanged after an error.
+ * with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
+ * after the last one. Its edge must stay over tiles. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
  * that has ended, without soil, and while steps of an update remain.
@@ -8408,7 +8634,8 @@ wk_status wk_context_move_soil_tool(wk_context *context,
                                     const wk_soil_pose *pose);
 
 /**
- * Ends a tool at its last pose. The soil that it then still holds leaves with it, and counts as taken.
+ * Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and counts as taken
+ * (wk_soil_balance).
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
  * and while steps of an update remain.
@@ -8416,7 +8643,7 @@ wk_status wk_context_move_soil_tool(wk_context *context,
 WK_API wk_status wk_context_end_soil_tool(wk_context *context, uint32_t tool);
 
 /**
- * Gets what a tool holds, and what it met in the last step, as of wk_context_get_state_time.
+ * Gets the content of a tool, and the soil that it met in the last step, as of wk_context_get_state_time.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER without soil.
  */
@@ -8426,9 +8653,10 @@ wk_status wk_context_get_soil_tool(const wk_context *context,
                                    wk_soil_tool_report *out_report);
 
 /**
- * Gets the force on the edge of a tool that cuts as deep as it did in the last step, in the soil that it met there:
- * P = w (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985). Closed form, for the physics of your
- * machine; 0 where it does not cut.
+ * Gets the force on the edge of a tool that cuts as deep as in the last step, in the soil that it met there: P = w
+ * (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
+ * depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
+ * the physics of your machine; 0 where the tool does not cut.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
  */
@@ -8439,8 +8667,9 @@ wk_status wk_context_get_soil_resistance(const wk_context *context,
                                          wk_cutting_force *out_force);
 
 /**
- * Drops loose soil that the host brings onto a place of the host's world, at once: `mass_kg`, in [0, 1e6], of a kind.
- * Its height does not matter. `out_lands`, which may be NULL, gets 1 if there is ground to take it, else 0.
+ * Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is its mass,
+ * in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if there is
+ * ground to land on, else 0.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
  * update remain.
@@ -8468,11 +8697,11 @@ wk_status wk_context_get_soil_points(const wk_context *context,
                                      uint32_t point_size);
 
 /**
- * Gets the rectangles in which soil has changed heights after a revision of the terrain
- * (wk_context_get_terrain_revision), by rows from the south; 0 gets all. `*out_count` gets their number in any case.
- * If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds. `change_size`
- * is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells has their heights and kinds. Do not hand these
- * heights to wk_context_update_terrain: the tiles are the undug ground.
+ * Gets the rectangles in which soil has changed heights since a revision of the terrain
+ * (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` gets their number
+ * in any case. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds.
+ * `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns their heights and kinds.
+ * Do not pass these heights to wk_context_update_terrain: the tiles are the undug ground.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
@@ -8486,11 +8715,11 @@ wk_status wk_context_get_soil_changes(const wk_context *context,
 
 /**
  * Gets the ground of a rectangle of a tile's cells, by rows from the south-west: `cells[0]` cells east and `cells[1]`
- * north from `first_cell` on, at most 2^20 in all, for which `points` must have room. `point_size` is
+ * north from `first_cell` on, at most 2^20 in all. `points` must have room for all of them. `point_size` is
  * sizeof(wk_soil_point) of your header.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for the key of no tile, a rectangle that leaves it, or a capacity that is too
- * small; WK_ERROR_WRONG_ORDER without soil.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that leaves the tile, or a capacity that
+ * is too small; WK_ERROR_WRONG_ORDER without soil.
  */
 WK_API
 wk_status wk_context_get_soil_cells(const wk_context *context,

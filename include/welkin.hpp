@@ -186,6 +186,10 @@ public:
     {
         return checked(wk_context_set_sea_regions(get(), regions, count, sizeof(wk_sea_region)));
     }
+    wk_status set_sea_hulls(const wk_sea_hull *hulls, uint32_t count)
+    {
+        return checked(wk_context_set_sea_hulls(get(), hulls, count, sizeof(wk_sea_hull)));
+    }
     /* `positions_m` has `count` positions of three numbers each, without gaps; `points` has room for as many. */
     wk_status get_sea_at(const double (*positions_m)[3], uint32_t count, double time_s, double shortest_wave_m,
                          wk_sea_point *points) const

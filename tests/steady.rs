@@ -29,7 +29,7 @@ use welkin::{
     gpu::{Device, DeviceOptions},
     rain::{Planes, Shelter},
     scene::{Camera, WorldKind},
-    sea::{SeaPoint, SeaRegion, SeaSettings},
+    sea::{SeaHull, SeaPoint, SeaRegion, SeaSettings},
     snowpack::LyingSnowModel,
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     weather::{CloudLayer, Fog, FogKind, Precipitation, PrecipitationKind, Surface, Weather, Wind},
@@ -513,6 +513,7 @@ fn sea_queries_allocate_nothing() {
     context.set_sea(Some(SeaSettings::default())).unwrap();
     let corners_m = vec![[-30.0, -30.0], [30.0, -30.0], [0.0, 40.0]];
     context.set_sea_regions(vec![SeaRegion { corners_m, velocity_m_s: [3.0, 0.0], ..SeaRegion::default() }]).unwrap();
+    context.set_sea_hulls(&[SeaHull { speed_m_s: 5.0, turn_deg_s: 3.0, ..SeaHull::default() }]).unwrap();
     let blowing = |speed| Weather { wind: Wind::of(speed, 250.0), ..Weather::default() };
     context.set_weather(&blowing(6.0), 0.0, 0.0).unwrap();
     context.set_weather(&blowing(12.0), 10.0, 3600.0).unwrap();

@@ -88,9 +88,11 @@ bool demo_sail(demo *d)
     d->at_sea = d->scene.at_sea = true;
     d->scene.extra = VESSEL;
     d->weather.station_altitude_m = 0.0;
-    d->boat = (vessel){0.0, 0.0, 210.0, 5.0};
+    /* It has sailed for a while, and turns slowly. */
+    d->boat = (vessel){0.0, 0.0, 210.0, 5.5, 0.5, 0.0};
+    vessel before = vessel_at(&d->boat, -240.0);
     return weather_check(wk_context_set_sea(d->weather.context, &sea)) &&
-           weather_check(vessel_keep_dry(&d->boat, d->weather.context)) && demo_next_report(d, 0);
+           weather_check(vessel_raise_wake(&before, d->weather.context)) && demo_next_report(d, 0);
 }
 
 void demo_close(demo *d)
@@ -140,7 +142,9 @@ bool demo_draw(demo *d)
     double start = demo_clock_ms();
     double time_s = d->moving ? (start - d->started_ms) * 1e-3 : d->time_s;
     if (d->at_sea) {
-        if (!weather_check(vessel_float(&d->boat, d->weather.context, time_s, &d->pose)))
+        vessel now = vessel_at(&d->boat, time_s);
+        if (!weather_check(vessel_keep_dry(&now, d->weather.context)) ||
+            !weather_check(vessel_float(&d->boat, d->weather.context, time_s, &d->pose)))
             return false;
         scene_place_vessel(&d->scene, d->pose);
     }

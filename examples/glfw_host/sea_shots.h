@@ -16,6 +16,8 @@ bool sea_swell(demo *d);
 bool moonlit_sea(demo *d);
 /* A vessel on the waves of a strong breeze. */
 bool sea_vessel(demo *d);
+/* The wake of a vessel that turns, from above. */
+bool sea_wake(demo *d);
 /* Fog over the water. */
 bool sea_fog(demo *d);
 

@@ -485,6 +485,7 @@ const shot SHOTS[] = {
     {"moonlit_sea", "The glitter of the moon", AFLOAT(10.0, SITE_VIEW_AZIMUTH_DEG, 3.0, 50.0), moonlit_sea, OPEN_SEA, NULL, true},
     {"sea_fog", "Fog over the water, visibility 400 m, with its fogbow", AFLOAT(5.0, SITE_VIEW_AZIMUTH_DEG, -3.0, 50.0), sea_fog, OPEN_SEA, NULL, true},
     {"sea_vessel", "A vessel on waves of 12 m/s, afloat by the queries", AFLOAT(7.0, SITE_VIEW_AZIMUTH_DEG, -5.0, 40.0), sea_vessel, WITH_VESSEL, NULL, true},
+    {"sea_wake", "The wake of a vessel that turns", AFLOAT(75.0, SITE_VIEW_AZIMUTH_DEG, -17.0, 50.0), sea_wake, WITH_VESSEL, NULL, true},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 

@@ -56,6 +56,30 @@ void vessel_mesh(mesh *m)
     crane(m);
 }
 
+vessel vessel_at(const vessel *v, double time_s)
+{
+    double past_s = time_s - v->at_s, half_turn = 0.5 * RAD(v->turn_deg_s) * past_s;
+    /* The way along an arc: its chord, in the direction of the middle of the turn. */
+    double chord = v->speed_m_s * past_s * (fabs(half_turn) > 1e-6 ? sin(half_turn) / half_turn : 1.0);
+    vec3 way = scale(direction(v->heading_deg + 0.5 * v->turn_deg_s * past_s, 0.0), chord);
+    vessel later = *v;
+    later.x += way.x, later.y += way.y, later.at_s = time_s;
+    later.heading_deg = fmod(v->heading_deg + v->turn_deg_s * past_s, 360.0);
+    return later;
+}
+
+wk_status vessel_raise_wake(const vessel *v, wk_context *context)
+{
+    wk_sea_hull hull = WK_SEA_HULL_INIT;
+    hull.length_m = 31.0, hull.beam_m = 8.4, hull.draught_m = DRAUGHT_M;
+    hull.position_m[0] = v->x, hull.position_m[1] = v->y;
+    hull.heading_deg = v->heading_deg;
+    hull.speed_m_s = v->speed_m_s;
+    hull.turn_deg_s = v->turn_deg_s;
+    hull.at_s = v->at_s;
+    return wk_context_set_sea_hulls(context, &hull, 1, sizeof hull);
+}
+
 wk_status vessel_keep_dry(const vessel *v, wk_context *context)
 {
     wk_sea_region hull = WK_SEA_REGION_INIT;
@@ -63,6 +87,8 @@ wk_status vessel_keep_dry(const vessel *v, wk_context *context)
     hull.corner_count = CORNERS;
     hull.center_m[0] = v->x, hull.center_m[1] = v->y;
     hull.heading_deg = v->heading_deg;
+    hull.turn_deg_s = v->turn_deg_s;
+    hull.at_s = v->at_s;
     vec3 way = scale(direction(v->heading_deg, 0.0), v->speed_m_s);
     hull.velocity_m_s[0] = way.x, hull.velocity_m_s[1] = way.y;
     return wk_context_set_sea_regions(context, &hull, 1, sizeof hull);
@@ -70,8 +96,8 @@ wk_status vessel_keep_dry(const vessel *v, wk_context *context)
 
 mat4 vessel_level(const vessel *v, double time_s)
 {
-    vec3 at = add(vec(v->x, v->y, 0), scale(direction(v->heading_deg, 0.0), v->speed_m_s * time_s));
-    return multiply(translation(at), rotation(2, RAD(-v->heading_deg)));
+    vessel now = vessel_at(v, time_s);
+    return multiply(translation(vec(now.x, now.y, 0)), rotation(2, RAD(-now.heading_deg)));
 }
 
 wk_status vessel_float(const vessel *v, const wk_context *context, double time_s, mat4 *pose)

@@ -148,7 +148,7 @@ fn airy_beyond(x: f32) -> f32 {
 // Share of a wave that a filter lets through.
 fn wake_share(turns: vec2f, turns_per_m: f32, pass_filter: WakeFilter) -> f32 {
     if pass_filter.per_cell > 0.0 {
-        return clamp(pass_filter.per_cell / (turns_per_m * 1.5) - 1.0, 0.0, 1.0);
+        return clamp(pass_filter.per_cell / (max(turns_per_m, 1e-5) * 1.5) - 1.0, 0.0, 1.0);
     }
     let a = dot(turns, pass_filter.along);
     let b = dot(turns, pass_filter.across);
@@ -159,21 +159,23 @@ fn wake_share(turns: vec2f, turns_per_m: f32, pass_filter: WakeFilter) -> f32 {
 
 // Adds a wave of a hull's end; `end` is 1 for the bow and -1 for the stern.
 fn add_wake_wave(wake: SeaWake, source: WakeSource, kind: u32, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
-    let u = source.age;
-    let speed2 = dot(source.velocity, source.velocity);
-    let speed = sqrt(speed2);
-    let distance = max(length(source.to_place), 1e-6);
-    if u <= 0.0 || speed <= WAKE_SPEEDS.x {
+    let moving = length(source.velocity);
+    if source.age <= 0.0 || moving <= WAKE_SPEEDS.x {
         return;
     }
+    let u = max(source.age, 1e-6);
+    let speed = max(moving, WAKE_SPEEDS.x);
+    let speed2 = speed * speed;
+    let distance = max(length(source.to_place), 1e-6);
     let is_beyond = kind == BEYOND;
     // What lies beyond a cusp has the waves of the cusp, which is as far away as it would be if S were 0.
     let far = max(select(distance, sqrt(max(distance * distance - source.s.x, 0.0)), is_beyond), 1e-6);
     let cosine = clamp(2.0 * far / (speed * u), 1e-3, 1.0);
-    let k_along = WAKE_GRAVITY / (speed2 * cosine);
+    // Hulls are no faster than 60 m/s.
+    let k_along = max(WAKE_GRAVITY / (speed2 * cosine), 1e-3);
     let k = k_along / cosine;
     let direction = source.to_place / distance;
-    let turns_per_m = k / WAKE_TAU;
+    let turns_per_m = max(k / WAKE_TAU, 1e-5);
     let passed = wake_share(direction * turns_per_m, turns_per_m, pass_filter);
     if passed <= 0.0 {
         return;
@@ -232,10 +234,10 @@ fn add_half_passage(wake: SeaWake, passage: Passage, start: f32, parabola: vec3f
     var times = vec3f(-1.0);
     if square <= 0.0 {
         if q > 0.0 {
-            times.z = -0.5 * d / q;
+            times.z = -0.5 * d / max(q, 1e-20);
         }
     } else {
-        let root = sqrt(square);
+        let root = sqrt(max(square, 0.0));
         // Each zero in the form that does not cancel.
         let twice = 2.0 * q;
         let not_flat = select(twice, select(-1e-20, 1e-20, twice >= 0.0), abs(twice) < 1e-20);

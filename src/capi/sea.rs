@@ -5,7 +5,7 @@
 //! that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else follows the weather:
 //! its wind raises waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
 //! repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
-//! places, sheltered harbours, and lakes with a level of their own.
+//! places, sheltered harbours, and lakes with a level of their own. Hulls (wk_context_set_sea_hulls) raise wakes.
 //!
 //! ```text
 //! wk_sea sea = WK_SEA_INIT;
@@ -29,7 +29,9 @@ use super::boundary::{
 };
 use crate::{
     error::{Error, Result, Status},
-    sea::{MAX_OUTLINE_CORNERS, MAX_SEA_REGIONS, MAX_SINGLE_WAVES, MAX_SWELLS, SeaSettings, SeaStatistics},
+    sea::{
+        MAX_OUTLINE_CORNERS, MAX_SEA_HULLS, MAX_SEA_REGIONS, MAX_SINGLE_WAVES, MAX_SWELLS, SeaSettings, SeaStatistics,
+    },
 };
 
 pub use super::sea_structs::*;
@@ -133,6 +135,35 @@ pub unsafe extern "C" fn wk_context_set_sea_regions(
         // SAFETY: the caller's promise about `regions`.
         unsafe { input::each(&List::parameters("regions", count, stride, MAX_SEA_REGIONS), regions, &mut take)? };
         object.write().set_sea_regions(list)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Replaces the list of hulls that raise wakes; count 0 removes all. At most 64. A hull goes on at its speed and rate
+/// of turn: set the list again when these change, in every frame if you like. A hull whose id was in the list before
+/// goes on with its track, unless it stands more than two of its lengths beside it. The waves of a hull that is no
+/// longer in the list stay until they have faded, after 240 s at most. Wakes are in the picture and in the answers of
+/// wk_context_get_sea_at; there, a hull inside a dry region does not feel its own. Keep water out of the hull by a dry
+/// region (wk_context_set_sea_regions). Part of the state that wk_context_save keeps. Unchanged after an error.
+/// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for two hulls with the same id.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn wk_context_set_sea_hulls(
+    context: *mut wk_context,
+    hulls: *const wk_sea_hull,
+    count: u32,
+    stride: u32,
+) -> wk_status {
+    guard("wk_context_set_sea_hulls", |call| {
+        let object = call.get::<ContextObject>("context", context)?;
+        let mut list = Vec::new();
+        let mut take = |_: usize, hull: wk_sea_hull| {
+            list.push(hull.hull());
+            Ok(())
+        };
+        // SAFETY: the caller's promise about `hulls`.
+        unsafe { input::each(&List::parameters("hulls", count, stride, MAX_SEA_HULLS), hulls, &mut take)? };
+        object.write().set_sea_hulls(&list)?;
         Ok(Status::Ok)
     })
 }

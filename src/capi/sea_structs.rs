@@ -6,8 +6,8 @@ use super::boundary::{layout::struct_size, numbers::*};
 use crate::{
     error::{Error, Result},
     sea::{
-        SeaIce, SeaPoint, SeaRegion, SeaRegionKind, SeaSettings, SeaSwell, SingleWave, Tide, WaterClarity, WaveScale,
-        WindSea, water::WaterType,
+        SeaHull, SeaIce, SeaPoint, SeaRegion, SeaRegionKind, SeaSettings, SeaSwell, SingleWave, Tide, WaterClarity,
+        WaveScale, WindSea, water::WaterType,
     },
 };
 
@@ -393,6 +393,72 @@ impl wk_sea_region {
             at_s: self.at_s,
             wave_share: self.wave_share,
             rim_m: self.rim_m,
+        }
+    }
+}
+
+/// A hull that moves through the water and raises a wake: waves of its bow and its stern by its length, beam, draught
+/// and speed (Michell 1898), and the foam of its wash. It goes on at its speed and rate of turn until it is set anew.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct wk_sea_hull {
+    /// sizeof(wk_sea_hull) of your header.
+    pub struct_size: u32,
+    /// WK_STRUCT_TYPE_SEA_HULL.
+    pub struct_type: wk_struct_type,
+    /// No extensions in this version: NULL.
+    pub next: *const c_void,
+    /// Your number for the hull; no two hulls of a list have the same. Default 0.
+    pub id: u32,
+    /// 0.
+    pub reserved0: u32,
+    /// Length of the waterline, m. Range [1, 500], default 30.
+    pub length_m: f64,
+    /// Beam of the waterline, m. Range [0.2, 100], default 8.
+    pub beam_m: f64,
+    /// Draught, m. Range [0.05, 30], default 2.5.
+    pub draught_m: f64,
+    /// Position of the middle of the waterline in the host's world at the time at_s, m, within 1e12 m of the origin.
+    /// Its height does not matter. Default 0, 0, 0.
+    pub position_m: [f64; 3],
+    /// Heading at at_s, degrees clockwise from true north. Range [-360, 360], default 0. The hull moves along it.
+    pub heading_deg: f64,
+    /// Speed through the water, m/s. Range [0, 60], default 0.
+    pub speed_m_s: f64,
+    /// Rate of turn, degrees clockwise a second. Range [-90, 90], default 0.
+    pub turn_deg_s: f64,
+    /// Simulation time of position and heading, s. Range [-1e10, 1e10], default 0.
+    pub at_s: f64,
+}
+
+impl wk_sea_hull {
+    pub(crate) const INIT: Self = Self {
+        struct_size: struct_size::<Self>(),
+        struct_type: WK_STRUCT_TYPE_SEA_HULL,
+        next: null(),
+        id: 0,
+        reserved0: 0,
+        length_m: 30.0,
+        beam_m: 8.0,
+        draught_m: 2.5,
+        position_m: [0.0, 0.0, 0.0],
+        heading_deg: 0.0,
+        speed_m_s: 0.0,
+        turn_deg_s: 0.0,
+        at_s: 0.0,
+    };
+
+    pub(super) fn hull(&self) -> SeaHull {
+        SeaHull {
+            id: self.id,
+            length_m: self.length_m,
+            beam_m: self.beam_m,
+            draught_m: self.draught_m,
+            position_m: self.position_m,
+            heading_deg: self.heading_deg,
+            speed_m_s: self.speed_m_s,
+            turn_deg_s: self.turn_deg_s,
+            at_s: self.at_s,
         }
     }
 }

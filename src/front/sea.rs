@@ -88,14 +88,14 @@ impl Context {
         self.held.sea.regions()
     }
 
-    /// Replaces the hulls that raise wakes; an empty list removes all. A hull goes on at its speed and rate of turn; set
-    /// the hulls again when these change, in every frame if you like. One whose number was in the list before goes on
-    /// with its track, unless it stands more than two of its lengths beside it. The waves of one that is no longer in
-    /// the list fade with time. Part of the saved state.
+    /// Replaces the hulls that raise wakes; an empty list removes all. A hull goes on at its speed and rate of turn;
+    /// set the hulls again when these change, in every frame if you like. One whose number was in the list before goes
+    /// on with its track, unless it stands more than two of its lengths beside it. The waves of one that is no longer
+    /// in the list fade with time. Part of the saved state.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_HULLS`](crate::sea::MAX_SEA_HULLS), for two of the same
-    /// number, or naming the hull and its field; nothing changes then.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_HULLS`](crate::sea::MAX_SEA_HULLS), for two of the
+    /// same number, or naming the hull and its field; nothing changes then.
     pub fn set_sea_hulls(&mut self, hulls: &[SeaHull]) -> Result<()> {
         self.held.sea.set_hulls(&self.world, hulls)
     }

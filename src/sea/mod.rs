@@ -19,7 +19,8 @@
 //!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
 //! * [`SingleWave`]s of the host are added to the surface, after the spectrum.
 //! * [`SeaIce`] dampens each wave by its frequency and length.
-//! * [`SeaHull`]s raise wakes along their tracks: bow and stern waves by length, beam, draught and speed (Michell 1898),
+//! * [`SeaHull`]s raise wakes along their tracks: bow and stern waves by length, beam, draught and speed (Michell
+//!   1898),
 //!   carried on as rays, so that they bend where the hull turned; and the foam of the hull's wash.
 //! * [`SeaRegion`]s are water with a level or a share of the waves of its own, or places without water.
 //! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is

@@ -170,6 +170,21 @@ fn tiles_texture(device: &wgpu::Device, label: &str) -> wgpu::Texture {
     })
 }
 
+/// Creates the table of the slopes that pixels show.
+fn seen_texture(device: &wgpu::Device) -> wgpu::Texture {
+    let [width, height] = SEEN_SIDES.map(|side| side as u32);
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("seen slopes"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 2 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
 /// Creates the texture of the pattern of foam.
 fn lace_texture(device: &Device) -> wgpu::Texture {
     let side = LACE_SIDE as u32;
@@ -214,17 +229,7 @@ impl SeaPasses {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let format = wgpu::TextureFormat::R16Float;
         let reflectance = flat_texture(made, "reflectance of the sea", (size[0], size[1]), format, usage);
-        let size = SEEN_SIDES.map(|side| side as u32);
-        let seen = made.create_texture(&wgpu::TextureDescriptor {
-            label: Some("seen slopes"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 2 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba16Float,
-            usage,
-            view_formats: &[],
-        });
+        let seen = seen_texture(made);
         let block = bind::block(made, "sea", size_of::<SeaUniform>());
         let waves = bind::block(made, "waves of the sea", MOST_WAVES * size_of::<WaveUniform>());
         let regions = bind::block(made, "regions of the sea", MAX_SEA_REGIONS * size_of::<RegionUniform>());

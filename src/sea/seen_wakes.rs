@@ -33,7 +33,8 @@ pub(super) const WAKE_TEXELS: usize = STATE_TEXELS * MOST_NODES;
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeenWakes {
     pub list: Vec<WakeUniform>,
-    /// States of each, from new to old, in rows of [`WAKE_TEXELS`]: place and velocity, then age, heading and rate of turn.
+    /// States of each, from new to old, in rows of [`WAKE_TEXELS`]: place and velocity, then age, heading and rate of
+    /// turn.
     pub states: Vec<[f32; 4]>,
 }
 

@@ -63,12 +63,12 @@ mod pair {
     use glam::DVec2;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub fn serialize<S: Serializer>(v: &DVec2, to: S) -> Result<S::Ok, S::Error> {
-        v.to_array().serialize(to)
+    pub fn serialize<S: Serializer>(v: &DVec2, serializer: S) -> Result<S::Ok, S::Error> {
+        v.to_array().serialize(serializer)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(of: D) -> Result<DVec2, D::Error> {
-        <[f64; 2]>::deserialize(of).map(DVec2::from_array)
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec2, D::Error> {
+        <[f64; 2]>::deserialize(deserializer).map(DVec2::from_array)
     }
 }
 

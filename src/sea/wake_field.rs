@@ -102,8 +102,16 @@ struct Passage {
     turning: [DVec2; 2],
 }
 
+/// Waves that a query asks for.
+#[derive(Clone, Copy)]
+struct AskedWaves {
+    end: HullEnd,
+    place_m: DVec2,
+    shortest_m: f64,
+}
+
 /// Bow or stern at an age, seen from a place.
-struct Source {
+struct WakeSource {
     age_s: f64,
     to_place: DVec2,
     velocity: DVec2,
@@ -147,7 +155,7 @@ impl Passage {
     }
 
     /// Returns the source some seconds of age after the newer state.
-    fn at(&self, place_m: DVec2, past_s: f64) -> Source {
+    fn at(&self, place_m: DVec2, past_s: f64) -> WakeSource {
         let h = self.length_s;
         let t = past_s / h;
         let [a, b, c, d] = self.cubic;
@@ -164,7 +172,7 @@ impl Passage {
             velocity.length_squared() - change.dot(to_place) + 1.5 * u * change.dot(velocity)
                 - 0.5 * u * jerk.dot(to_place),
         ];
-        Source { age_s: u, to_place, velocity, s, steady_slope }
+        WakeSource { age_s: u, to_place, velocity, s, steady_slope }
     }
 }
 
@@ -173,7 +181,7 @@ impl Passage {
 enum WakeWave {
     Diverging,
     Transverse,
-    /// What reaches beyond a cusp.
+    /// Part of the waves of a cusp that reaches beyond it.
     BeyondCusp,
 }
 
@@ -266,38 +274,39 @@ impl Wake {
         for end in [HullEnd::Bow, HullEnd::Stern] {
             for pair in self.states.windows(2) {
                 let passage = Passage::new([&pair[0], &pair[1]], self.time_s, 0.5 * end.sign() * self.hull.length_m);
-                self.add_passage(&passage, (end, place_m, shortest_m), sum);
+                self.add_passage(&passage, AskedWaves { end, place_m, shortest_m }, sum);
             }
         }
         sum.foam = (sum.foam + self.wash(place_m)).min(1.0);
     }
 
     /// Adds the waves of a passage. S is two parabolas with a common tangent in the middle.
-    fn add_passage(&self, passage: &Passage, (end, place_m, shortest_m): (HullEnd, DVec2, f64), sum: &mut WakePoint) {
+    fn add_passage(&self, passage: &Passage, asked: AskedWaves, sum: &mut WakePoint) {
         let h = passage.length_s;
-        let [first, last] = passage.ends(place_m);
+        let [first, last] = passage.ends(asked.place_m);
         let middle_slope = 2.0 * (last[0] - first[0]) / h - 0.5 * (first[1] + last[1]);
         let middle = first[0] + 0.25 * h * (first[1] + middle_slope);
         let halves = [
             (0.0, [first[0], first[1], (middle_slope - first[1]) / h]),
             (0.5 * h, [middle, middle_slope, (last[1] - middle_slope) / h]),
         ];
-        for (from_s, parabola) in halves {
+        for (start_s, parabola) in halves {
             let found = HalfPassage::new(parabola, 0.5 * h);
             let [falling, rising] = found.zeros;
             for (wave, t) in
                 [(WakeWave::Diverging, falling), (WakeWave::Transverse, rising), (WakeWave::BeyondCusp, found.least)]
             {
                 if let Some(t) = t {
-                    let source = passage.at(place_m, from_s + t);
-                    self.add_wave(&source, wave, (end, shortest_m), sum);
+                    let source = passage.at(asked.place_m, start_s + t);
+                    self.add_wave(&source, wave, asked, sum);
                 }
             }
         }
     }
 
     /// Adds a wave.
-    fn add_wave(&self, source: &Source, wave: WakeWave, (end, shortest_m): (HullEnd, f64), sum: &mut WakePoint) {
+    fn add_wave(&self, source: &WakeSource, wave: WakeWave, asked: AskedWaves, sum: &mut WakePoint) {
+        let AskedWaves { end, shortest_m, .. } = asked;
         let Some(shape) = self.shape(source, wave, end) else { return };
         let length_m = 2.0 * PI / shape.k;
         let share = if shortest_m > 0.0 { (length_m / shortest_m - 1.0).clamp(0.0, 1.0) } else { 1.0 };
@@ -315,7 +324,7 @@ impl Wake {
     }
 
     /// Returns a wave at a place; `None` for one that has no height.
-    fn shape(&self, source: &Source, wave: WakeWave, end: HullEnd) -> Option<WaveShape> {
+    fn shape(&self, source: &WakeSource, wave: WakeWave, end: HullEnd) -> Option<WaveShape> {
         let g = GRAVITY_M_S2;
         let (u, speed2) = (source.age_s, source.velocity.length_squared());
         let speed = speed2.sqrt();

@@ -179,6 +179,9 @@ fn cases(view: *mut wk_view) -> Vec<Case> {
             wk_context_get_flash_light(h.cast(), null(), 0.0, 0.0, null_mut())
         }),
         case("wk_context_set_sea", "context", false, |h| unsafe { wk_context_set_sea(h.cast(), null()) }),
+        case("wk_context_set_sea_hulls", "context", false, |h| unsafe {
+            wk_context_set_sea_hulls(h.cast(), null(), 0, 0)
+        }),
         case("wk_context_set_sea_regions", "context", false, |h| unsafe {
             wk_context_set_sea_regions(h.cast(), null(), 0, 0)
         }),

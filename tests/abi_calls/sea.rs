@@ -292,3 +292,53 @@ fn sea_settings_override_the_sea_of_the_weather() {
     let height_m = state(&world, 10.0).significant_height_m;
     assert!((height_m - 0.75_f64.hypot(2.0)).abs() < 1e-9, "{height_m}");
 }
+
+#[test]
+fn hulls_raise_wakes_that_a_hull_in_a_dry_region_does_not_feel() {
+    let world = World::new();
+    let calm = wk_sea { has: WK_SEA_HAS_SEA_STATE, sea_state: 0, ..init("wk_sea") };
+    assert_eq!(set(&world, &calm), WK_OK, "{}", message());
+    let stride = size_of::<wk_sea_hull>() as u32;
+    let set_hulls = |hulls: &[wk_sea_hull]| unsafe {
+        // SAFETY: the list is as long as it says.
+        wk_context_set_sea_hulls(world.context, hulls.as_ptr(), hulls.len() as u32, stride)
+    };
+    // Heads north from the origin; 100 s later it is 600 m away.
+    let hull = wk_sea_hull { speed_m_s: 6.0, ..init("wk_sea_hull") };
+    assert_eq!(set_hulls(&[hull]), WK_OK, "{}", message());
+    let places = [[0.0, 600.0, 0.0], [0.0, 612.0, 0.0], [0.0, 540.0, 0.0], [20.0, 540.0, 0.0], [0.0, 700.0, 0.0]];
+    let [_, bow, wash, beside, ahead] = points(&world, &places, 100.0);
+    assert!(wash.foam > 0.1 && beside.foam < 0.01 && beside.height_m.abs() > 0.02, "{} {}", wash.foam, beside.height_m);
+    assert!(bow.height_m != 0.0 && ahead.height_m == 0.0 && ahead.normal == [0.0, 0.0, 1.0], "{}", ahead.height_m);
+    let dry = wk_sea_region {
+        corners_m: SQUARE.as_ptr(),
+        corner_count: 4,
+        velocity_m_s: [0.0, 6.0],
+        ..init("wk_sea_region")
+    };
+    // SAFETY: live pointers.
+    assert_eq!(unsafe { wk_context_set_sea_regions(world.context, &dry, 1, STRIDE) }, WK_OK, "{}", message());
+    let [middle, bow, ..] = points(&world, &places, 100.0);
+    assert_eq!((middle.has_water, middle.height_m, bow.height_m), (0, 0.0, 0.0));
+    for (bad, wanted) in [
+        (wk_sea_hull { length_m: 0.5, ..hull }, "hulls[1].length_m must be in [1, 500] m, got 0.5"),
+        (wk_sea_hull { beam_m: f64::NAN, ..hull }, "hulls[1].beam_m must be finite and in [0.2, 100]"),
+        (wk_sea_hull { draught_m: 31.0, ..hull }, "hulls[1].draught_m must be in [0.05, 30] m"),
+        (wk_sea_hull { speed_m_s: 61.0, ..hull }, "hulls[1].speed_m_s must be in [0, 60] m/s, got 61"),
+        (wk_sea_hull { turn_deg_s: -91.0, ..hull }, "hulls[1].turn_deg_s must be in [-90, 90]"),
+        (wk_sea_hull { heading_deg: 361.0, ..hull }, "hulls[1].heading_deg must be in [-360, 360]"),
+        (wk_sea_hull { at_s: 1e11, ..hull }, "hulls[1].at_s must be in"),
+        (wk_sea_hull { position_m: [2e12, 0.0, 0.0], ..hull }, "hulls[1].position_m must be"),
+        (hull, "hulls[1].id must be unlike those of the hulls before it"),
+    ] {
+        let bad = wk_sea_hull { id: u32::from(!wanted.contains("unlike")), ..bad };
+        assert_eq!(set_hulls(&[hull, bad]), WK_ERROR_INVALID_ARGUMENT, "{wanted}");
+        assert!(message().contains(wanted), "{wanted}: {}", message());
+    }
+    assert_eq!(set_hulls(&[hull; 65]), WK_ERROR_INVALID_ARGUMENT);
+    assert!(message().contains("at most 64"), "{}", message());
+    assert_eq!(points(&world, &places, 100.0)[3].height_m, beside.height_m, "what stood goes on");
+    assert_eq!(set_hulls(&[]), WK_OK, "{}", message());
+    // The wake of what has left stays for a while.
+    assert!(points(&world, &places, 10.0)[0].height_m == 0.0);
+}

@@ -195,6 +195,18 @@ unsafe fn set_sea_regions(context: *mut wk_context) {
     ok(unsafe { wk_context_set_sea_regions(context, regions.as_ptr(), 2, size_of::<wk_sea_region>() as u32) });
 }
 
+unsafe fn set_sea_hulls(context: *mut wk_context) {
+    let hull = wk_sea_hull { speed_m_s: 6.0, turn_deg_s: 2.0, ..init("wk_sea_hull") };
+    let set = |hulls: &[wk_sea_hull]| {
+        let stride = size_of::<wk_sea_hull>() as u32;
+        // SAFETY: the list is as long as it says.
+        ok(unsafe { wk_context_set_sea_hulls(context, hulls.as_ptr(), hulls.len() as u32, stride) });
+    };
+    set(&[hull, wk_sea_hull { id: 9, length_m: 80.0, ..hull }]);
+    // One goes on with its track, the other leaves its waves.
+    set(&[wk_sea_hull { position_m: [50.0, 20.0, 0.0], heading_deg: 40.0, at_s: 20.0, ..hull }]);
+}
+
 unsafe fn set_stars(context: *mut wk_context) {
     let turn = [0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     let flags = WK_STARS_TURNED | WK_STARS_NO_PLANETS;
@@ -262,7 +274,7 @@ unsafe fn set_all(context: *mut wk_context) {
 }
 
 /// Every function that changes what a context shows.
-const SETTERS: [(&str, Set); 25] = [
+const SETTERS: [(&str, Set); 26] = [
     ("wk_context_set_clock", set_clock),
     ("wk_context_set_cloud_map", set_cloud_map),
     ("wk_context_set_cloud_model", set_cloud_model),
@@ -276,6 +288,7 @@ const SETTERS: [(&str, Set); 25] = [
     ("wk_context_set_planet", set_planet),
     ("wk_context_set_rain_areas", set_rain_areas),
     ("wk_context_set_sea", set_sea),
+    ("wk_context_set_sea_hulls", set_sea_hulls),
     ("wk_context_set_sea_regions", set_sea_regions),
     ("wk_context_set_shelters", set_shelters),
     ("wk_context_set_stars", set_stars),

@@ -184,6 +184,9 @@ fn cases(world: &World) -> Vec<Case> {
         case("wk_sea_region", "regions[0]", true, move |p| unsafe {
             wk_context_set_sea_regions(context, p.cast(), 1, 1 << 24)
         }),
+        case("wk_sea_hull", "hulls[0]", true, move |p| unsafe {
+            wk_context_set_sea_hulls(context, p.cast(), 1, 1 << 24)
+        }),
         case("wk_sea_state", "out_state", false, move |p| unsafe { wk_context_get_sea_state(context, 0.0, p.cast()) }),
         case("wk_stars", "stars", true, move |p| unsafe { wk_context_set_stars(context, p.cast()) }),
         case("wk_fog_law", "fog_law", true, move |p| unsafe { wk_context_set_fog_law(context, p.cast()) }),

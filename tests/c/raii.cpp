@@ -52,6 +52,9 @@ int main()
         sea.has = WK_SEA_HAS_SEA_STATE;
         sea.sea_state = 4;
         if (context.set_sea(&sea) != WK_OK || context.set_sea_regions(nullptr, 0) != WK_OK) return 7;
+        wk_sea_hull hull = WK_SEA_HULL_INIT;
+        hull.speed_m_s = 5.0;
+        if (context.set_sea_hulls(&hull, 1) != WK_OK) return 7;
         if (context.get_sea_state(2.0, state) != WK_OK || context.get_sea_at(corners_m, 2, 2.0, 0.0, points) != WK_OK) return 8;
         if (!points[1].has_water || points[0].height_m == points[1].height_m || !(state.significant_height_m > 1.8)) return 9;
     }

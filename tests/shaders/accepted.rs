@@ -48,6 +48,9 @@ pub const FIELDS: &[(&str, f64, f64, &str)] = &[
     ("CloudArea.extent", 1e-3, HUGE, "areas without extent have no clouds"),
     ("CloudsPicture.size", 1.0, 65536.0, "pictures without pixels are refused"),
     ("CloudsPicture.side", 1.0, 16.0, "side of a square of pixels"),
+    ("SeaWake.length", 1.0, 500.0, "ranges of a hull's fields"),
+    ("SeaWake.beam", 0.2, 100.0, "ranges of a hull's fields"),
+    ("SeaWake.draught", 0.05, 30.0, "ranges of a hull's fields"),
     ("CLOUD_FINENESS", 1e-2, 64.0, "of the steps, of a pipeline"),
     ("SHADOW_TEXELS", 1.0, 8192.0, "side of the map of shadows"),
     ("FACTOR", 1.0, 64.0, "by which a picture is made smaller"),
@@ -607,6 +610,8 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "pixels have an angle, and the eye is at least 0.1 m above the water",
     ),
     ("single_waves", "1.0 / last_turns(footprint)", "last_turns is above 0"),
+    ("wake_shown", "1.0 / last_turns(footprint)", "last_turns is above 0"),
+    ("wake_height", "SEA_CELLS_TO_DISTANCE / mesh_distance(rest)", "at least the camera's height"),
     ("single_waves", "SEA_CELLS_TO_DISTANCE / distance", "the mesh's distance is at least 0.1 m"),
     (
         "tile_shapes",

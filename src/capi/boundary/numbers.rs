@@ -182,6 +182,8 @@ pub const WK_STRUCT_TYPE_SEA_WAVE: wk_struct_type = 112;
 pub const WK_STRUCT_TYPE_SEA_REGION: wk_struct_type = 113;
 /// wk_sea_state
 pub const WK_STRUCT_TYPE_SEA_STATE: wk_struct_type = 114;
+/// wk_sea_hull
+pub const WK_STRUCT_TYPE_SEA_HULL: wk_struct_type = 115;
 /// wk_weather_region
 pub const WK_STRUCT_TYPE_WEATHER_REGION: wk_struct_type = 95;
 /// wk_air

@@ -517,6 +517,15 @@ pub const CALLS: &[(&str, Call)] = &[
         let sea = if d.one_in(8) { null() } else { sea.ptr().cast_const().cast() };
         unsafe { wk_context_set_sea(handle(d, &w.contexts), sea) }.into()
     }),
+    ("wk_context_set_sea_hulls", |d, w| {
+        let (mut hulls, count) = Struct::random_list(d, "wk_sea_hull", 20);
+        if d.one_in(2) {
+            hulls.set("speed_m_s", 20.0 * d.unit());
+            hulls.set("at_s", w.time(d));
+        }
+        let (context, stride) = (handle(d, &w.contexts), hulls.stride());
+        unsafe { wk_context_set_sea_hulls(context, hulls.ptr().cast(), count.min(1), stride) }.into()
+    }),
     ("wk_context_set_sea_regions", |d, w| {
         let corners: [[f64; 2]; 4] =
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| c.map(|v| 50.0 * v + 30.0 * d.unit()));
