@@ -59,13 +59,15 @@ bool sea_vessel(demo *d)
 {
     mat4 pose;
     vec3 at = add(d->still->position, scale(direction(SITE_VIEW_AZIMUTH_DEG + 1.0, 0.0), 58.0));
-    vessel v = {at.x, at.y, fmod(SITE_VIEW_AZIMUTH_DEG + 125.0, 360.0), 0.0, 0.0, d->time_s};
+    vessel v = {at.x, at.y, fmod(SITE_VIEW_AZIMUTH_DEG + 125.0, 360.0), 5.0, 0.0, d->time_s};
+    vessel before = vessel_at(&v, d->time_s - 240.0);
     wk_cloud_layer heaps = WK_CLOUD_LAYER_INIT;
     heaps.kind = WK_CLOUD_CUMULUS;
     heaps.cover = 0.3;
     heaps.base_m = 900.0;
     if (!sea_in(d, 30e3, 12.0, &heaps, NULL) || !sun_at(d, SITE_VIEW_AZIMUTH_DEG - 75.0, 32) ||
         !weather_check(wk_context_set_cloud_model(d->weather.context, WK_CLOUD_MODEL_VOLUME)) ||
+        !weather_check(vessel_raise_wake(&before, d->weather.context)) ||
         !weather_check(vessel_keep_dry(&v, d->weather.context)) ||
         !weather_check(vessel_float(&v, d->weather.context, d->time_s, &pose)))
         return false;
@@ -76,13 +78,13 @@ bool sea_vessel(demo *d)
 bool sea_wake(demo *d)
 {
     mat4 pose;
-    vec3 at = add(d->still->position, scale(direction(SITE_VIEW_AZIMUTH_DEG + 9.0, 0.0), 190.0));
+    vec3 at = add(d->still->position, scale(direction(SITE_VIEW_AZIMUTH_DEG + 8.0, 0.0), 150.0));
     /* The vessel turns for the last 50 s; before that it went straight on. */
-    vessel now = {at.x, at.y, fmod(SITE_VIEW_AZIMUTH_DEG + 75.0, 360.0), 6.0, 1.6, d->time_s};
+    vessel now = {at.x, at.y, fmod(SITE_VIEW_AZIMUTH_DEG + 40.0, 360.0), 6.0, 1.2, d->time_s};
     vessel turning = vessel_at(&now, d->time_s - 50.0), straight = turning;
     straight.turn_deg_s = 0.0;
     straight = vessel_at(&straight, d->time_s - 250.0);
-    if (!sea_in(d, 40e3, 3.0, NULL, NULL) || !sun_at(d, SITE_VIEW_AZIMUTH_DEG + 40.0, 24) ||
+    if (!sea_in(d, 40e3, 2.0, NULL, NULL) || !sun_at(d, SITE_VIEW_AZIMUTH_DEG - 60.0, 18) ||
         !weather_check(vessel_raise_wake(&straight, d->weather.context)) ||
         !weather_check(vessel_raise_wake(&turning, d->weather.context)) ||
         !weather_check(vessel_keep_dry(&now, d->weather.context)) ||

@@ -472,7 +472,7 @@ const shot SHOTS[] = {
     {"lee_of_a_barn", "Snowstorm in the lee of a barn, 3 mm/h, wind 13 m/s, after three hours of it", LEE, lee_of_a_barn, WITH_BARN, NULL, true},
     {"wind", "The wind of that storm 2 m over the ground: blue 4 m/s, green 8, yellow 12, red 16", LEE, wind_in_numbers, WITH_BARN, NULL, true},
     {"blowing_sand", "Blowing sand, visibility 500 m", ROADSIDE(1.0), blowing_sand, WORLD, NULL, false},
-    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL, false},
+    {"under_the_bridge", "Dry under the bridge, its windward edge wet", 67.5, 1.6, 1.9, SITE_VIEW_AZIMUTH_DEG + 10.0, -3.0, 50.0, under_the_bridge, WITH_BRIDGE, NULL, true},
     {"twelve_km", "12 km up", HIGH(12e3, 8.0, -2.0, 50.0), twelve_km, NO_WORLD, NULL, false},
     {"space", "200 km up: the limb", HIGH(200e3, 8.0, -14.0, 50.0), space, NO_WORLD, NULL, false},
     {"limb_with_clouds", "Clouds before the limb, 200 km up", HIGH(200e3, 8.0, -14.0, 30.0), limb_with_clouds, NO_WORLD, NULL, true},
@@ -485,7 +485,7 @@ const shot SHOTS[] = {
     {"moonlit_sea", "The glitter of the moon", AFLOAT(10.0, SITE_VIEW_AZIMUTH_DEG, 3.0, 50.0), moonlit_sea, OPEN_SEA, NULL, true},
     {"sea_fog", "Fog over the water, visibility 400 m, with its fogbow", AFLOAT(5.0, SITE_VIEW_AZIMUTH_DEG, -3.0, 50.0), sea_fog, OPEN_SEA, NULL, true},
     {"sea_vessel", "A vessel on waves of 12 m/s, afloat by the queries", AFLOAT(7.0, SITE_VIEW_AZIMUTH_DEG, -5.0, 40.0), sea_vessel, WITH_VESSEL, NULL, true},
-    {"sea_wake", "The wake of a vessel that turns", AFLOAT(75.0, SITE_VIEW_AZIMUTH_DEG, -17.0, 50.0), sea_wake, WITH_VESSEL, NULL, true},
+    {"sea_wake", "The wake of a vessel that turns", AFLOAT(60.0, SITE_VIEW_AZIMUTH_DEG, -21.0, 50.0), sea_wake, WITH_VESSEL, NULL, true},
 };
 const int SHOT_COUNT = sizeof SHOTS / sizeof SHOTS[0];
 
