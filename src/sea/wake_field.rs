@@ -211,7 +211,10 @@ impl HalfPassage {
 impl Wake {
     /// Sets the wake to that of a track at a time.
     pub(super) fn fill(&mut self, track: &HullTrack, time_s: f64) {
+        self.states.clear();
         self.states.reserve_exact(MOST_NODES);
+        // Nodes and a leg's own are joined before the oldest go.
+        self.nodes.clear();
         self.nodes.reserve_exact(2 * MOST_NODES);
         (self.hull, self.time_s) = (track.hull, time_s);
         track.states(time_s, &mut self.nodes);
@@ -223,7 +226,6 @@ impl Wake {
             angle / (new.time_s - old.time_s).max(1e-9)
         };
         let last = nodes.len().saturating_sub(1);
-        self.states.clear();
         self.states.extend(nodes.iter().enumerate().map(|(i, node)| {
             let turn_rad_s = match i {
                 _ if last == 0 => 0.0,
