@@ -9,7 +9,7 @@ use welkin::{
     frame::{DepthAccess, Frame, FrameFlags, Shared, Stages, View},
     gpu::{Device, DeviceOptions},
     scene::Camera,
-    sea::{SeaPoint, SeaSettings},
+    sea::{SeaHull, SeaPoint, SeaSettings},
     weather::{Weather, Wind},
 };
 use welkin_support::{processor::processor_ns, textures::texture};
@@ -107,6 +107,13 @@ impl SeaScene {
     }
 }
 
+/// A hull that goes on for 240 s, and is 60 m before the camera then if it does not turn.
+fn hull(turn_deg_s: f64) -> SeaHull {
+    let [speed_m_s, at_s] = [6.0, -240.0];
+    let position_m = if turn_deg_s > 0.0 { [0.0, 60.0, 0.0] } else { [speed_m_s * at_s + 30.0, 60.0, 0.0] };
+    SeaHull { position_m, heading_deg: 90.0, speed_m_s, turn_deg_s: -turn_deg_s, at_s, ..SeaHull::default() }
+}
+
 /// Prints the copies of each scene, and what the sea adds.
 pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
@@ -123,7 +130,11 @@ pub fn run() -> Fallible<()> {
         scene("wind 10 m/s, time at rest", Some(10.0), 0.0)?,
         scene("wind 10 m/s, each frame a new time", Some(10.0), STEP_S)?,
         scene("storm of 25 m/s, each frame a new time", Some(25.0), STEP_S)?,
+        scene("wind 10 m/s, time at rest, the wake of a straight way", Some(10.0), 0.0)?,
+        scene("wind 10 m/s, time at rest, the wake of a way that turns", Some(10.0), 0.0)?,
     ];
+    scenes[4].context.set_sea_hulls(&[hull(0.0)])?;
+    scenes[5].context.set_sea_hulls(&[hull(1.5)])?;
     let (mut queries, mut copies) = (Vec::new(), Vec::new());
     for scene in &mut scenes {
         for _ in 0..SETTLED {

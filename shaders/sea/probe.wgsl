@@ -25,8 +25,10 @@ fn probed_place(position: vec4f) -> vec2f {
 
 // Height of the wakes at a place, their slope, and their share under foam.
 @fragment fn wakes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
-    let found = wakes_at(probed_place(position), WakeFilter(1e9, vec2f(0.0), vec2f(0.0), 0.0));
-    return vec4f(found.height, found.slope, found.foam);
+    let at = probed_place(position);
+    let shapes = wakes_at(at, WakeFilter(1e9, vec2f(0.0), vec2f(0.0), 0.0));
+    let shown = wakes_at(at, WakeFilter(0.0, vec2f(0.0), vec2f(0.0), 0.0));
+    return vec4f(shapes.height, shapes.slope, shown.foam);
 }
 
 // Reflectance towards the eye, the share under foam, and how much of the light of dense foam there is.

@@ -164,9 +164,10 @@ struct SeaWake {
     // Ages of its newest and oldest waves, s.
     newest: f32,
     oldest: f32,
+    // Wave number of the longest waves, turns per metre.
+    least_turns: f32,
     pad_a: f32,
     pad_b: f32,
-    pad_c: f32,
 }
 
 // Wakes that the camera may see.

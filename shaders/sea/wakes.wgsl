@@ -20,6 +20,8 @@ const BROKEN_SHARE: f32 = 0.6;
 const WASH_SHARE: f32 = 0.75;
 const WASH_DECAY: f32 = 10.0;
 const WASH_WIDTH: f32 = 0.45;
+// Age from which on the wash counts as gone, s.
+const WASH_LASTS: f32 = 60.0;
 const WASH_SPEEDS: vec2f = vec2f(0.5, 5.0);
 const WAKE_FADES: vec2f = vec2f(0.2, 3.0);
 
@@ -63,6 +65,30 @@ fn hull_state(row: u32, index: u32) -> HullState {
     return HullState(a.xy, a.zw, b.x, b.yz, b.w);
 }
 
+// Bow or stern in a state.
+struct HullEnd {
+    place: vec2f,
+    velocity: vec2f,
+    // Acceleration by the rate of turn.
+    turning: vec2f,
+    age: f32,
+}
+
+// Bow or stern, which is so far ahead of the hull's middle.
+fn end_of(state: HullState, off_middle: f32) -> HullEnd {
+    let velocity = state.velocity + vec2f(-state.ahead.y, state.ahead.x) * (state.turn * off_middle);
+    let place = state.place + state.ahead * off_middle;
+    return HullEnd(place, velocity, vec2f(-velocity.y, velocity.x) * state.turn, state.age);
+}
+
+// S of a place for a state, and its slope by age; passages that meet in the state have the same.
+fn s_of(end: HullEnd, at: vec2f) -> vec2f {
+    let to_place = at - end.place;
+    let along = dot(end.velocity, to_place);
+    let turned = dot(end.turning, to_place) - dot(end.velocity, end.velocity);
+    return vec2f(dot(to_place, to_place) - 0.5 * end.age * along, 1.5 * along + 0.5 * end.age * turned);
+}
+
 // Motion of bow or stern between two states, by age.
 struct Passage {
     start: f32,
@@ -71,27 +97,14 @@ struct Passage {
     b: vec2f,
     c: vec2f,
     d: vec2f,
-    // Accelerations at its ends by the rates of turn there: passages that meet have the same.
-    newer_turning: vec2f,
-    older_turning: vec2f,
 }
 
-// Velocity of a place so far ahead of the hull's middle.
-fn end_velocity(state: HullState, off_middle: f32) -> vec2f {
-    return state.velocity + vec2f(-state.ahead.y, state.ahead.x) * (state.turn * off_middle);
-}
-
-fn passage_of(newer: HullState, older: HullState, off_middle: f32) -> Passage {
+fn passage_of(newer: HullEnd, older: HullEnd) -> Passage {
     let span = max(older.age - newer.age, 1e-6);
-    let p = newer.place + newer.ahead * off_middle;
-    let q = older.place + older.ahead * off_middle;
-    let newer_velocity = end_velocity(newer, off_middle);
-    let older_velocity = end_velocity(older, off_middle);
-    let v = -newer_velocity * span;
-    let w = -older_velocity * span;
-    let newer_turning = vec2f(-newer_velocity.y, newer_velocity.x) * newer.turn;
-    let older_turning = vec2f(-older_velocity.y, older_velocity.x) * older.turn;
-    return Passage(newer.age, span, p, v, (q - p) * 3.0 - v * 2.0 - w, (p - q) * 2.0 + v + w, newer_turning, older_turning);
+    let way = older.place - newer.place;
+    let v = -newer.velocity * span;
+    let w = -older.velocity * span;
+    return Passage(newer.age, span, newer.place, v, way * 3.0 - v * 2.0 - w, v + w - way * 2.0);
 }
 
 // Bow or stern at an age, seen from a place.
@@ -101,8 +114,6 @@ struct WakeSource {
     velocity: vec2f,
     // S and its derivatives by age.
     s: vec3f,
-    // The first derivative for a velocity that stays.
-    steady_slope: f32,
 }
 
 fn source_at(passage: Passage, at: vec2f, past: f32) -> WakeSource {
@@ -115,13 +126,12 @@ fn source_at(passage: Passage, at: vec2f, past: f32) -> WakeSource {
     let u = passage.start + past;
     let along = dot(velocity, to_place);
     let turned = dot(change, to_place);
-    let steady_slope = 1.5 * along - 0.5 * u * dot(velocity, velocity);
     let s = vec3f(
         dot(to_place, to_place) - 0.5 * u * along,
-        steady_slope + 0.5 * u * turned,
+        1.5 * along - 0.5 * u * dot(velocity, velocity) + 0.5 * u * turned,
         dot(velocity, velocity) - turned + 1.5 * u * dot(change, velocity) - 0.5 * u * dot(jerk, to_place),
     );
-    return WakeSource(u, to_place, velocity, s, steady_slope);
+    return WakeSource(u, to_place, velocity, s);
 }
 
 // Share of the waves of an age: those of a track begin and end gently.
@@ -252,35 +262,57 @@ fn add_half_passage(wake: SeaWake, passage: Passage, start: f32, parabola: vec3f
     }
 }
 
-// Adds the waves of a passage: S is two parabolas with a common tangent in the middle.
-fn add_passage(wake: SeaWake, passage: Passage, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the middle.
+fn add_passage(wake: SeaWake, passage: Passage, first: vec2f, last: vec2f, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
     let h = passage.span;
-    let newest = source_at(passage, at, 0.0);
-    let oldest = source_at(passage, at, h);
-    let first = vec2f(newest.s.x, newest.steady_slope + 0.5 * newest.age * dot(passage.newer_turning, newest.to_place));
-    let last = vec2f(oldest.s.x, oldest.steady_slope + 0.5 * oldest.age * dot(passage.older_turning, oldest.to_place));
-    // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value between.
-    if first.x > 0.0 && last.x > 0.0 && (first.y >= 0.0 || last.y <= 0.0) {
-        return;
-    }
     let middle_slope = 2.0 * (last.x - first.x) / h - 0.5 * (first.y + last.y);
     let middle = first.x + 0.25 * h * (first.y + middle_slope);
     add_half_passage(wake, passage, 0.0, vec3f(first, (middle_slope - first.y) / h), at, end, pass_filter, sum);
     add_half_passage(wake, passage, 0.5 * h, vec3f(middle, middle_slope, (last.y - middle_slope) / h), at, end, pass_filter, sum);
 }
 
-// Foam that a hull has churned up between two states.
-fn wash_between(wake: SeaWake, newer: HullState, older: HullState, at: vec2f) -> f32 {
-    let a = newer.place - newer.ahead * (0.5 * wake.length);
-    let b = older.place - older.ahead * (0.5 * wake.length);
-    let way = b - a;
-    let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
-    let age = mix(newer.age, older.age, part);
-    let speed = mix(length(newer.velocity), length(older.velocity), part);
-    let half_width = WASH_WIDTH * wake.beam * fourth_root(1.0 + speed * age / (2.0 * wake.length));
-    let off = at - a - way * part;
-    let inside = max(1.0 - dot(off, off) / max(half_width * half_width, 1e-9), 0.0);
-    return WASH_SHARE * smoothstep(WASH_SPEEDS.x, WASH_SPEEDS.y, speed) * exp(-max(age, 0.0) / WASH_DECAY) * inside;
+// Foam that a hull has churned up, at a place.
+fn wash_at(wake: SeaWake, row: u32, at: vec2f) -> f32 {
+    var wash = 0.0;
+    var newer = hull_state(row, 0u);
+    for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
+        let older = hull_state(row, i);
+        let a = newer.place - newer.ahead * (0.5 * wake.length);
+        let way = older.place - older.ahead * (0.5 * wake.length) - a;
+        let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
+        let off = at - a - way * part;
+        // Farther off there is none while there is any foam.
+        if dot(off, off) < wake.beam * wake.beam {
+            let age = max(mix(newer.age, older.age, part), 0.0);
+            let speed = mix(length(newer.velocity), length(older.velocity), part);
+            let half_width = WASH_WIDTH * wake.beam * fourth_root(1.0 + speed * age / (2.0 * wake.length));
+            let inside = max(1.0 - dot(off, off) / max(half_width * half_width, 1e-9), 0.0);
+            wash = max(wash, WASH_SHARE * smoothstep(WASH_SPEEDS.x, WASH_SPEEDS.y, speed) * exp(-age / WASH_DECAY) * inside);
+        }
+        newer = older;
+        if newer.age > WASH_LASTS {
+            break;
+        }
+    }
+    return wash;
+}
+
+// Adds the waves of bow or stern.
+fn add_wake_end(wake: SeaWake, row: u32, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+    let off_middle = 0.5 * end * wake.length;
+    var newer = end_of(hull_state(row, 0u), off_middle);
+    var first = s_of(newer, at);
+    for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
+        let older = end_of(hull_state(row, i), off_middle);
+        let last = s_of(older, at);
+        // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value
+        // between.
+        if first.x <= 0.0 || last.x <= 0.0 || (first.y < 0.0 && last.y > 0.0) {
+            add_passage(wake, passage_of(newer, older), first, last, at, end, pass_filter, sum);
+        }
+        newer = older;
+        first = last;
+    }
 }
 
 // Surface of the wakes at a place, m from the anchor.
@@ -292,18 +324,14 @@ fn wakes_at(at: vec2f, pass_filter: WakeFilter) -> WakeSurface {
         if dot(off, off) > wake.reach2 {
             continue;
         }
-        var wash = 0.0;
-        var newer = hull_state(row, 0u);
-        for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
-            let older = hull_state(row, i);
-            for (var side = 0u; side < 2u; side++) {
-                let end = 1.0 - 2.0 * f32(side);
-                add_passage(wake, passage_of(newer, older, 0.5 * end * wake.length), at, end, pass_filter, &sum);
-            }
-            wash = max(wash, wash_between(wake, newer, older, at));
-            newer = older;
+        // Waves that are longer than all others of the hull, along its track.
+        if wake_share(vec2f(0.0), wake.least_turns, pass_filter) > 0.0 {
+            add_wake_end(wake, row, at, 1.0, pass_filter, &sum);
+            add_wake_end(wake, row, at, -1.0, pass_filter, &sum);
         }
-        sum.foam = min(sum.foam + wash, 1.0);
+        if pass_filter.per_cell == 0.0 {
+            sum.foam = min(sum.foam + wash_at(wake, row, at), 1.0);
+        }
     }
     return sum;
 }

@@ -6,6 +6,7 @@ use super::{
     hull::MAX_SEA_HULLS,
     mesh::{MeshBlock, MeshEye, side_m},
     track::{MOST_AGE_S, MOST_NODES},
+    wake::transverse_length_m,
     wake_field::{Wake, WakeState},
 };
 
@@ -21,7 +22,8 @@ pub(super) struct WakeUniform {
     pub draught: f32,
     pub newest: f32,
     pub oldest: f32,
-    pub pad: [f32; 3],
+    pub least_turns: f32,
+    pub pad: [f32; 2],
 }
 
 /// Texels of a state.
@@ -50,6 +52,7 @@ impl SeenWakes {
                 continue;
             }
             let [newest, oldest] = [0, wake.states.len() - 1].map(|i| wake.time_s - wake.states[i].node.time_s);
+            let fastest = wake.states.iter().map(|state| state.node.speed_m_s).fold(0.1, f64::max);
             self.list.push(WakeUniform {
                 middle: (middle - anchor).as_vec2().to_array(),
                 reach2: (radius * radius) as f32,
@@ -59,7 +62,8 @@ impl SeenWakes {
                 draught: wake.hull.draught_m as f32,
                 newest: newest as f32,
                 oldest: oldest.min(MOST_AGE_S) as f32,
-                pad: [0.0; 3],
+                least_turns: (1.0 / transverse_length_m(fastest)) as f32,
+                pad: [0.0; 2],
             });
             for WakeState { node: state, turn_rad_s } in &wake.states {
                 let (p, v) = ((state.place_m - anchor).as_vec2(), state.velocity().as_vec2());

@@ -277,7 +277,7 @@ mod tests {
             "sea/uniform.wgsl",
             "SeaWake",
             WakeUniform,
-            [middle, reach2, states, length, beam, draught, newest, oldest]
+            [middle, reach2, states, length, beam, draught, newest, oldest, least_turns]
         );
         shader::assert_layout!(
             "sea/uniform.wgsl",

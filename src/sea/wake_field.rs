@@ -39,6 +39,9 @@ const LEAST_BEND: f64 = 0.1;
 const CUSP_BENDS: [f64; 2] = [0.05, 0.3];
 /// Steepness a k that waves of a hull approach and do not pass: steeper ones break.
 const MOST_STEEPNESS: f64 = 0.3;
+/// Distance from a line, m, and difference of velocities, m/s, up to which a track is straight.
+const STRAIGHT_M: f64 = 2e-3;
+const STRAIGHT_M_S: f64 = 1e-4;
 /// Lengths of the hull by which waves at their beginning count as farther away: the formulas hold far from the hull.
 const BEGINNING: f64 = 0.1;
 /// Speeds, m/s, between which a hull begins to raise waves.
@@ -93,13 +96,42 @@ pub(super) struct WakePoint {
     pub left_out_m: f64,
 }
 
+/// Bow or stern in a state.
+#[derive(Clone, Copy)]
+struct EndState {
+    place_m: DVec2,
+    velocity: DVec2,
+    /// Acceleration by the rate of turn.
+    turning: DVec2,
+    age_s: f64,
+}
+
+impl EndState {
+    fn new(state: &WakeState, time_s: f64, off_middle_m: f64) -> Self {
+        let node = &state.node;
+        let velocity = state.velocity(off_middle_m);
+        Self {
+            place_m: node.place_m + node.ahead * off_middle_m,
+            velocity,
+            turning: velocity.perp() * state.turn_rad_s,
+            age_s: time_s - node.time_s,
+        }
+    }
+
+    /// Returns S of a place and its slope by age; passages that meet in the state have the same.
+    fn s(&self, place_m: DVec2) -> [f64; 2] {
+        let to_place = place_m - self.place_m;
+        let along = self.velocity.dot(to_place);
+        let turned = self.turning.dot(to_place) - self.velocity.length_squared();
+        [to_place.length_squared() - 0.5 * self.age_s * along, 1.5 * along + 0.5 * self.age_s * turned]
+    }
+}
+
 /// Motion of the bow or stern between two states, by age: a cubic.
 struct Passage {
     start_s: f64,
     length_s: f64,
     cubic: [DVec2; 4],
-    /// Accelerations at its ends by the rates of turn there: passages that meet have the same.
-    turning: [DVec2; 2],
 }
 
 /// Waves that a query asks for.
@@ -117,8 +149,6 @@ struct WakeSource {
     velocity: DVec2,
     /// S and its derivatives by age.
     s: [f64; 3],
-    /// The first derivative for a velocity that stays.
-    steady_slope: f64,
 }
 
 /// End of a hull.
@@ -136,22 +166,13 @@ impl HullEnd {
 }
 
 impl Passage {
-    fn new([new, old]: [&WakeState; 2], time_s: f64, off_middle_m: f64) -> Self {
-        let length_s = new.node.time_s - old.node.time_s;
-        let [p, q] = [new, old].map(|state| state.node.place_m + state.node.ahead * off_middle_m);
+    fn new(newer: &EndState, older: &EndState) -> Self {
+        let length_s = older.age_s - newer.age_s;
+        let way = older.place_m - newer.place_m;
         // By age places run astern.
-        let [v, w] = [new, old].map(|state| -state.velocity(off_middle_m) * length_s);
-        let cubic = [p, v, (q - p) * 3.0 - v * 2.0 - w, (p - q) * 2.0 + v + w];
-        let turning = [new, old].map(|state| state.velocity(off_middle_m).perp() * state.turn_rad_s);
-        Self { start_s: time_s - new.node.time_s, length_s, cubic, turning }
-    }
-
-    /// Returns S and its slope at the ends.
-    fn ends(&self, place_m: DVec2) -> [[f64; 2]; 2] {
-        [(0.0, self.turning[0]), (self.length_s, self.turning[1])].map(|(past_s, turning)| {
-            let source = self.at(place_m, past_s);
-            [source.s[0], source.steady_slope + 0.5 * source.age_s * turning.dot(source.to_place)]
-        })
+        let [v, w] = [newer, older].map(|end| -end.velocity * length_s);
+        let cubic = [newer.place_m, v, way * 3.0 - v * 2.0 - w, v + w - way * 2.0];
+        Self { start_s: newer.age_s, length_s, cubic }
     }
 
     /// Returns the source some seconds of age after the newer state.
@@ -165,14 +186,13 @@ impl Passage {
         let jerk = d * (-6.0 / (h * h * h));
         let u = self.start_s + past_s;
         let along = velocity.dot(to_place);
-        let steady_slope = 1.5 * along - 0.5 * u * velocity.length_squared();
         let s = [
             to_place.length_squared() - 0.5 * u * along,
-            steady_slope + 0.5 * u * change.dot(to_place),
+            1.5 * along - 0.5 * u * velocity.length_squared() + 0.5 * u * change.dot(to_place),
             velocity.length_squared() - change.dot(to_place) + 1.5 * u * change.dot(velocity)
                 - 0.5 * u * jerk.dot(to_place),
         ];
-        WakeSource { age_s: u, to_place, velocity, s, steady_slope }
+        WakeSource { age_s: u, to_place, velocity, s }
     }
 }
 
@@ -218,6 +238,7 @@ impl Wake {
         self.nodes.reserve_exact(2 * MOST_NODES);
         (self.hull, self.time_s) = (track.hull, time_s);
         track.states(time_s, &mut self.nodes);
+        merge_straight(&mut self.nodes);
         let nodes = &self.nodes;
         // The rate at a node is the mean over the ways to its neighbours.
         let turned = |i: usize, j: usize| {
@@ -274,18 +295,28 @@ impl Wake {
     /// Adds the wake at a place to `sum`, without waves shorter than `shortest_m`.
     pub(super) fn add_at(&self, place_m: DVec2, shortest_m: f64, sum: &mut WakePoint) {
         for end in [HullEnd::Bow, HullEnd::Stern] {
-            for pair in self.states.windows(2) {
-                let passage = Passage::new([&pair[0], &pair[1]], self.time_s, 0.5 * end.sign() * self.hull.length_m);
-                self.add_passage(&passage, AskedWaves { end, place_m, shortest_m }, sum);
+            let asked = AskedWaves { end, place_m, shortest_m };
+            let off_middle_m = 0.5 * end.sign() * self.hull.length_m;
+            let mut ends = self.states.iter().map(|state| EndState::new(state, self.time_s, off_middle_m));
+            let Some(mut newer) = ends.next() else { continue };
+            let mut first = newer.s(place_m);
+            for older in ends {
+                let last = older.s(place_m);
+                // Where S is positive at both ends and does not fall towards the other, it has no zero and no least
+                // value between.
+                if first[0] <= 0.0 || last[0] <= 0.0 || (first[1] < 0.0 && last[1] > 0.0) {
+                    self.add_passage(&Passage::new(&newer, &older), [first, last], asked, sum);
+                }
+                (newer, first) = (older, last);
             }
         }
         sum.foam = (sum.foam + self.wash(place_m)).min(1.0);
     }
 
-    /// Adds the waves of a passage. S is two parabolas with a common tangent in the middle.
-    fn add_passage(&self, passage: &Passage, asked: AskedWaves, sum: &mut WakePoint) {
+    /// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the
+    /// middle.
+    fn add_passage(&self, passage: &Passage, [first, last]: [[f64; 2]; 2], asked: AskedWaves, sum: &mut WakePoint) {
         let h = passage.length_s;
-        let [first, last] = passage.ends(asked.place_m);
         let middle_slope = 2.0 * (last[0] - first[0]) / h - 0.5 * (first[1] + last[1]);
         let middle = first[0] + 0.25 * h * (first[1] + middle_slope);
         let halves = [
@@ -411,6 +442,27 @@ impl Wake {
         }
         most
     }
+}
+
+/// Takes out the states between which a track is straight and its speed the same: S is one parabola there.
+fn merge_straight(nodes: &mut Vec<TrackNode>) {
+    let is_between = |new: &TrackNode, node: &TrackNode, old: &TrackNode| {
+        let on_way = |other: &TrackNode| {
+            let expected = old.place_m + old.velocity() * (other.time_s - old.time_s);
+            (other.place_m - expected).length_squared() < STRAIGHT_M * STRAIGHT_M
+                && (other.velocity() - old.velocity()).length_squared() < STRAIGHT_M_S * STRAIGHT_M_S
+        };
+        on_way(new) && on_way(node)
+    };
+    let mut kept = 0;
+    for i in 0..nodes.len() {
+        let is_gone = kept > 0 && i + 1 < nodes.len() && is_between(&nodes[kept - 1], &nodes[i], &nodes[i + 1]);
+        if !is_gone {
+            nodes[kept] = nodes[i];
+            kept += 1;
+        }
+    }
+    nodes.truncate(kept);
 }
 
 /// Wave at a place.
