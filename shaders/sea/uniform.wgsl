@@ -9,6 +9,7 @@ const MOST_SEA_REGIONS: u32 = 64u;
 const MOST_OUTLINE_CORNERS: u32 = 64u;
 const MOST_SEA_HULLS: u32 = 64u;
 const MOST_WAKE_STATES: u32 = 64u;
+const MOST_TRACK_STATES: u32 = 512u;
 
 struct SeaTile {
     // Texture coordinates of the anchor.
@@ -166,15 +167,25 @@ struct SeaWake {
     oldest: f32,
     // Wave number of the longest waves, turns per metre.
     least_turns: f32,
-    pad_a: f32,
-    pad_b: f32,
+    // Index of the newest state.
+    first: u32,
+    pad: f32,
+}
+
+// State of a hull.
+struct HullState {
+    place: vec2f,
+    velocity: vec2f,
+    age: f32,
+    // Rate of turn, rad/s against the clock.
+    turn: f32,
+    ahead: vec2f,
 }
 
 // Wakes that the camera may see.
 @group(2) @binding(11) var<uniform> sea_wakes: array<SeaWake, 64>;
-// States of a hull in each row, from new to old, two texels each: place and velocity; age, heading and
-// rate of turn.
-@group(2) @binding(12) var sea_tracks: texture_2d<f32>;
+// States of the hulls, each from new to old.
+@group(2) @binding(12) var<uniform> sea_tracks: array<HullState, 512>;
 
 // Blocks of the mesh that are drawn together.
 struct SeaBand {

@@ -49,20 +49,8 @@ struct WakeSurface {
     foam: f32,
 }
 
-// State of a hull.
-struct HullState {
-    place: vec2f,
-    velocity: vec2f,
-    age: f32,
-    ahead: vec2f,
-    // Rate of turn, rad/s against the clock.
-    turn: f32,
-}
-
-fn hull_state(row: u32, index: u32) -> HullState {
-    let a = textureLoad(sea_tracks, vec2i(vec2u(2u * index, row)), 0);
-    let b = textureLoad(sea_tracks, vec2i(vec2u(2u * index + 1u, row)), 0);
-    return HullState(a.xy, a.zw, b.x, b.yz, b.w);
+fn hull_state(wake: SeaWake, index: u32) -> HullState {
+    return sea_tracks[min(wake.first + index, MOST_TRACK_STATES - 1u)];
 }
 
 // Bow or stern in a state.
@@ -272,11 +260,11 @@ fn add_passage(wake: SeaWake, passage: Passage, first: vec2f, last: vec2f, at: v
 }
 
 // Foam that a hull has churned up, at a place.
-fn wash_at(wake: SeaWake, row: u32, at: vec2f) -> f32 {
+fn wash_at(wake: SeaWake, at: vec2f) -> f32 {
     var wash = 0.0;
-    var newer = hull_state(row, 0u);
+    var newer = hull_state(wake, 0u);
     for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
-        let older = hull_state(row, i);
+        let older = hull_state(wake, i);
         let a = newer.place - newer.ahead * (0.5 * wake.length);
         let way = older.place - older.ahead * (0.5 * wake.length) - a;
         let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
@@ -298,12 +286,12 @@ fn wash_at(wake: SeaWake, row: u32, at: vec2f) -> f32 {
 }
 
 // Adds the waves of bow or stern.
-fn add_wake_end(wake: SeaWake, row: u32, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+fn add_wake_end(wake: SeaWake, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
     let off_middle = 0.5 * end * wake.length;
-    var newer = end_of(hull_state(row, 0u), off_middle);
+    var newer = end_of(hull_state(wake, 0u), off_middle);
     var first = s_of(newer, at);
     for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
-        let older = end_of(hull_state(row, i), off_middle);
+        let older = end_of(hull_state(wake, i), off_middle);
         let last = s_of(older, at);
         // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value
         // between.
@@ -326,11 +314,11 @@ fn wakes_at(at: vec2f, pass_filter: WakeFilter) -> WakeSurface {
         }
         // Waves that are longer than all others of the hull, along its track.
         if wake_share(vec2f(0.0), wake.least_turns, pass_filter) > 0.0 {
-            add_wake_end(wake, row, at, 1.0, pass_filter, &sum);
-            add_wake_end(wake, row, at, -1.0, pass_filter, &sum);
+            add_wake_end(wake, at, 1.0, pass_filter, &sum);
+            add_wake_end(wake, at, -1.0, pass_filter, &sum);
         }
         if pass_filter.per_cell == 0.0 {
-            sum.foam = min(sum.foam + wash_at(wake, row, at), 1.0);
+            sum.foam = min(sum.foam + wash_at(wake, at), 1.0);
         }
     }
     return sum;

@@ -14,7 +14,7 @@ use super::{
     regions::MAX_SEA_REGIONS,
     seen::{SEEN_SIDES, SeaBand, band_of, fill_seen},
     seen_regions::{RegionUniform, SeenRegions},
-    seen_wakes::{SeenWakes, WAKE_TEXELS, WakeUniform},
+    seen_wakes::{MOST_TRACK_STATES, SeenWakes, StateUniform, WakeUniform},
     tiles::TILES,
     uniform::SeaUniform,
     water::{TABLE_SIDES, reflectance_table},
@@ -53,7 +53,7 @@ pub(super) struct SeaPasses {
     outlines: wgpu::Texture,
     wakes: wgpu::Buffer,
     /// States of the hulls that raised the wakes.
-    tracks: wgpu::Texture,
+    tracks: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
     shapes: wgpu::Texture,
@@ -151,7 +151,7 @@ pub(super) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         (9, Slot::Uniform(MAX_SEA_REGIONS * size_of::<RegionUniform>())),
         (10, Slot::Texels),
         (11, Slot::Uniform(MAX_SEA_HULLS * size_of::<WakeUniform>())),
-        (12, Slot::Texels),
+        (12, Slot::Uniform(MOST_TRACK_STATES * size_of::<StateUniform>())),
     ];
     bind::layout(device, "sea", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots)
 }
@@ -236,8 +236,7 @@ impl SeaPasses {
         let size = (MAX_OUTLINE_CORNERS as u32, MAX_SEA_REGIONS as u32);
         let outlines = flat_texture(made, "outlines of regions", size, wgpu::TextureFormat::Rg32Float, usage);
         let wakes = bind::block(made, "wakes of the sea", MAX_SEA_HULLS * size_of::<WakeUniform>());
-        let size = (WAKE_TEXELS as u32, MAX_SEA_HULLS as u32);
-        let tracks = flat_texture(made, "tracks of hulls", size, wgpu::TextureFormat::Rgba32Float, usage);
+        let tracks = bind::block(made, "tracks of hulls", MOST_TRACK_STATES * size_of::<StateUniform>());
         let indices = mesh::indices();
         let buffer = |label, bytes: usize, usage| {
             made.create_buffer(&wgpu::BufferDescriptor {
@@ -266,7 +265,7 @@ impl SeaPasses {
                 bind::buffer(9, &regions),
                 bind::view(10, &outlines.create_view(&Default::default())),
                 bind::buffer(11, &wakes),
-                bind::view(12, &tracks.create_view(&Default::default())),
+                bind::buffer(12, &tracks),
             ],
         });
         let index_count = indices.len() as u32;
@@ -296,13 +295,13 @@ impl SeaPasses {
     /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
         let texels: usize = (0..MIPS).map(|mip| TILES * (SIDE >> mip) * (SIDE >> mip)).sum();
-        let buffers = [&self.block, &self.waves, &self.blocks, &self.regions, &self.wakes, &self.indices];
-        let buffers: u64 = buffers.iter().map(|buffer| buffer.size()).sum();
+        let wakes = self.wakes.size() + self.tracks.size();
+        let buffers = [&self.block, &self.waves, &self.blocks, &self.regions, &self.indices].map(wgpu::Buffer::size);
+        let buffers = buffers.iter().sum::<u64>() + wakes;
         let tables = 2 * TABLE_SIDES[0] * TABLE_SIDES[1] + 2 * 8 * SEEN_SIDES[0] * SEEN_SIDES[1];
         let lace: usize = (0..LACE_MIPS).map(|mip| (LACE_SIDE >> mip) * (LACE_SIDE >> mip)).sum();
         let outlines = 8 * MAX_OUTLINE_CORNERS * MAX_SEA_REGIONS;
-        let tracks = 16 * WAKE_TEXELS * MAX_SEA_HULLS;
-        (2 * 8 * texels + tables + lace + outlines + tracks) as u64 + buffers + self.bands.buffer.size()
+        (2 * 8 * texels + tables + lace + outlines) as u64 + buffers + self.bands.buffer.size()
     }
 
     /// Uploads the tiles of another time.
@@ -364,10 +363,7 @@ impl SeaPasses {
             return;
         }
         device.write_buffer(&self.wakes, 0, bytemuck::cast_slice(&wakes.list));
-        let row = WAKE_TEXELS as u32;
-        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * row), rows_per_image: None };
-        let size = wgpu::Extent3d { width: row, height: wakes.list.len() as u32, depth_or_array_layers: 1 };
-        device.write_texture(self.tracks.as_image_copy(), bytemuck::cast_slice(&wakes.states), rows, size);
+        device.write_buffer(&self.tracks, 0, bytemuck::cast_slice(&wakes.states));
     }
 
     /// Draws the sea.

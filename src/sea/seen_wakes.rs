@@ -23,21 +23,31 @@ pub(super) struct WakeUniform {
     pub newest: f32,
     pub oldest: f32,
     pub least_turns: f32,
-    pub pad: [f32; 2],
+    pub first: u32,
+    pub pad: f32,
 }
 
-/// Texels of a state.
-const STATE_TEXELS: usize = 2;
-/// Texels of a wake: a row of the texture.
-pub(super) const WAKE_TEXELS: usize = STATE_TEXELS * MOST_NODES;
+/// A state of a hull (`HullState` of `shaders/sea/uniform.wgsl`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct StateUniform {
+    pub place: [f32; 2],
+    pub velocity: [f32; 2],
+    pub age: f32,
+    pub turn: f32,
+    pub ahead: [f32; 2],
+}
+
+/// Most states of all hulls: a block of 16 kB, which every device has. Hulls that turn all the time have up to
+/// [`MOST_NODES`] states, others few.
+pub(super) const MOST_TRACK_STATES: usize = 8 * MOST_NODES;
 
 /// Wakes that a camera may see.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeenWakes {
     pub list: Vec<WakeUniform>,
-    /// States of each, from new to old, in rows of [`WAKE_TEXELS`]: place and velocity, then age, heading and rate of
-    /// turn.
-    pub states: Vec<[f32; 4]>,
+    /// States of each, from new to old.
+    pub states: Vec<StateUniform>,
 }
 
 impl SeenWakes {
@@ -48,7 +58,8 @@ impl SeenWakes {
         let anchor = eye.anchor_m();
         for wake in wakes.iter().take(MAX_SEA_HULLS) {
             let Some((middle, radius)) = wake.circle() else { continue };
-            if (middle - eye.place_m).length() > radius + eye.reach_m {
+            let is_far = (middle - eye.place_m).length() > radius + eye.reach_m;
+            if is_far || self.states.len() + wake.states.len() > MOST_TRACK_STATES {
                 continue;
             }
             let [newest, oldest] = [0, wake.states.len() - 1].map(|i| wake.time_s - wake.states[i].node.time_s);
@@ -63,15 +74,16 @@ impl SeenWakes {
                 newest: newest as f32,
                 oldest: oldest.min(MOST_AGE_S) as f32,
                 least_turns: (1.0 / transverse_length_m(fastest)) as f32,
-                pad: [0.0; 2],
+                first: self.states.len() as u32,
+                pad: 0.0,
             });
-            for WakeState { node: state, turn_rad_s } in &wake.states {
-                let (p, v) = ((state.place_m - anchor).as_vec2(), state.velocity().as_vec2());
-                let age = (wake.time_s - state.time_s) as f32;
-                self.states.push([p.x, p.y, v.x, v.y]);
-                self.states.push([age, state.ahead.x as f32, state.ahead.y as f32, *turn_rad_s as f32]);
-            }
-            self.states.resize(self.list.len() * WAKE_TEXELS, [0.0; 4]);
+            self.states.extend(wake.states.iter().map(|WakeState { node, turn_rad_s }| StateUniform {
+                place: (node.place_m - anchor).as_vec2().to_array(),
+                velocity: node.velocity().as_vec2().to_array(),
+                age: (wake.time_s - node.time_s) as f32,
+                turn: *turn_rad_s as f32,
+                ahead: node.ahead.as_vec2().to_array(),
+            }));
         }
     }
 

@@ -216,7 +216,7 @@ mod tests {
             regions::MAX_SEA_REGIONS,
             seen::{FLAT_MIP, LEAST_CELLS, MOST_LENGTHENED, PIXEL_DEVIATION, SEEN_SIDES, SMOOTH_CELLS, SeaBand},
             seen_regions::{RegionUniform, SHELTERED_REGION},
-            seen_wakes::WakeUniform,
+            seen_wakes::{MOST_TRACK_STATES, StateUniform, WakeUniform},
             track::MOST_NODES,
         },
         *,
@@ -273,11 +273,12 @@ mod tests {
         );
         shader::assert_layout!("sea/uniform.wgsl", "SeaFoam", FoamUniform, [kept, lace, streaks, second, gathered]);
         shader::assert_layout!("sea/uniform.wgsl", "SeaBand", SeaBand, [first, last, regions, is_open, wakes]);
+        shader::assert_layout!("sea/uniform.wgsl", "HullState", StateUniform, [place, velocity, age, turn, ahead]);
         shader::assert_layout!(
             "sea/uniform.wgsl",
             "SeaWake",
             WakeUniform,
-            [middle, reach2, states, length, beam, draught, newest, oldest, least_turns]
+            [middle, reach2, states, length, beam, draught, newest, oldest, least_turns, first]
         );
         shader::assert_layout!(
             "sea/uniform.wgsl",
@@ -297,6 +298,7 @@ mod tests {
             ("MOST_SEA_REGIONS: u32", format!("{MAX_SEA_REGIONS}u")),
             ("MOST_OUTLINE_CORNERS: u32", format!("{MAX_OUTLINE_CORNERS}u")),
             ("MOST_SEA_HULLS: u32", format!("{MAX_SEA_HULLS}u")),
+            ("MOST_TRACK_STATES: u32", format!("{MOST_TRACK_STATES}u")),
             ("MOST_WAKE_STATES: u32", format!("{MOST_NODES}u")),
             ("SHELTERED_REGION: u32", format!("{SHELTERED_REGION}u")),
             ("SEA_FINEST: f32", FINEST_M.to_string()),
