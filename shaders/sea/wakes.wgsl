@@ -222,32 +222,21 @@ fn add_wake_wave(wake: SeaWake, source: WakeSource, kind: u32, end: f32, pass_fi
     (*sum).foam += passed * BROKEN_SHARE * smoothstep(WAKE_BREAKS.x, WAKE_BREAKS.y, steepness) * max(turn.y, 0.0);
 }
 
-// Adds the waves where S = s + d t + q t^2 is 0, or least, for t from 0 to `span`.
-fn add_half_passage(wake: SeaWake, passage: Passage, start: f32, parabola: vec3f, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
-    let span = 0.5 * passage.span;
+// Times of a half passage at which S = s + d t + q t^2 falls through 0, rises through 0, and is least above 0; -1 for
+// none.
+fn wave_times(parabola: vec3f) -> vec3f {
     let s = parabola.x;
     let d = parabola.y;
     let q = parabola.z;
     let square = d * d - 4.0 * q * s;
-    var times = vec3f(-1.0);
-    if square <= 0.0 {
-        if q > 0.0 {
-            times.z = -0.5 * d / max(q, 1e-20);
-        }
-    } else {
-        let root = sqrt(max(square, 0.0));
-        // Each zero in the form that does not cancel.
-        let twice = 2.0 * q;
-        let not_flat = select(twice, select(-1e-20, 1e-20, twice >= 0.0), abs(twice) < 1e-20);
-        times.x = select(-(d + root) / not_flat, 2.0 * s / max(root - d, 1e-20), d < 0.0);
-        times.y = select((root - d) / not_flat, -2.0 * s / max(d + root, 1e-20), d > 0.0);
-    }
-    for (var kind = DIVERGING; kind <= BEYOND; kind++) {
-        let t = times[kind];
-        if t >= 0.0 && t < span {
-            add_wake_wave(wake, source_at(passage, at, start + t), kind, end, pass_filter, sum);
-        }
-    }
+    let root = sqrt(max(square, 0.0));
+    let twice = 2.0 * q;
+    let not_flat = select(twice, select(-1e-20, 1e-20, twice >= 0.0), abs(twice) < 1e-20);
+    // Each zero in the form that does not cancel.
+    let falling = select(-(d + root) / not_flat, 2.0 * s / max(root - d, 1e-20), d < 0.0);
+    let rising = select((root - d) / not_flat, -2.0 * s / max(d + root, 1e-20), d > 0.0);
+    let least = select(-1.0, -d / not_flat, q > 0.0);
+    return select(vec3f(-1.0, -1.0, least), vec3f(falling, rising, -1.0), square > 0.0);
 }
 
 // Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the middle.
@@ -255,8 +244,18 @@ fn add_passage(wake: SeaWake, passage: Passage, first: vec2f, last: vec2f, at: v
     let h = passage.span;
     let middle_slope = 2.0 * (last.x - first.x) / h - 0.5 * (first.y + last.y);
     let middle = first.x + 0.25 * h * (first.y + middle_slope);
-    add_half_passage(wake, passage, 0.0, vec3f(first, (middle_slope - first.y) / h), at, end, pass_filter, sum);
-    add_half_passage(wake, passage, 0.5 * h, vec3f(middle, middle_slope, (last.y - middle_slope) / h), at, end, pass_filter, sum);
+    let newer = wave_times(vec3f(first, (middle_slope - first.y) / h));
+    let older = wave_times(vec3f(middle, middle_slope, (last.y - middle_slope) / h));
+    for (var i = 0u; i < 6u; i++) {
+        let is_older = i >= 3u;
+        let kind = select(i, i - 3u, is_older);
+        let times = select(newer, older, is_older);
+        let t = select(select(times.z, times.y, kind == TRANSVERSE), times.x, kind == DIVERGING);
+        if t >= 0.0 && t < 0.5 * h {
+            let source = source_at(passage, at, t + select(0.0, 0.5 * h, is_older));
+            add_wake_wave(wake, source, kind, end, pass_filter, sum);
+        }
+    }
 }
 
 // Foam that a hull has churned up, at a place.
@@ -270,7 +269,7 @@ fn wash_at(wake: SeaWake, at: vec2f) -> f32 {
         let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
         let off = at - a - way * part;
         // Farther off there is none while there is any foam.
-        if dot(off, off) < wake.beam * wake.beam {
+        if newer.age < WASH_LASTS && dot(off, off) < wake.beam * wake.beam {
             let age = max(mix(newer.age, older.age, part), 0.0);
             let speed = mix(length(newer.velocity), length(older.velocity), part);
             let half_width = WASH_WIDTH * wake.beam * fourth_root(1.0 + speed * age / (2.0 * wake.length));
@@ -278,24 +277,24 @@ fn wash_at(wake: SeaWake, at: vec2f) -> f32 {
             wash = max(wash, WASH_SHARE * smoothstep(WASH_SPEEDS.x, WASH_SPEEDS.y, speed) * exp(-age / WASH_DECAY) * inside);
         }
         newer = older;
-        if newer.age > WASH_LASTS {
-            break;
-        }
     }
     return wash;
 }
 
-// Adds the waves of bow or stern.
-fn add_wake_end(wake: SeaWake, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
-    let off_middle = 0.5 * end * wake.length;
-    var newer = end_of(hull_state(wake, 0u), off_middle);
-    var first = s_of(newer, at);
-    for (var i = 1u; i < min(wake.states, MOST_WAKE_STATES); i++) {
-        let older = end_of(hull_state(wake, i), off_middle);
+// Adds the waves of bow and stern. There is one call of all that follows: drivers copy what is called to each call.
+fn add_wake(wake: SeaWake, at: vec2f, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
+    let states = clamp(wake.states, 1u, MOST_WAKE_STATES);
+    var newer = end_of(hull_state(wake, 0u), 0.0);
+    var first = vec2f(0.0);
+    for (var i = 0u; i < 2u * states; i++) {
+        let is_bow = i < states;
+        let end = select(-1.0, 1.0, is_bow);
+        let index = select(i - states, i, is_bow);
+        let older = end_of(hull_state(wake, index), 0.5 * end * wake.length);
         let last = s_of(older, at);
         // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value
         // between.
-        if first.x <= 0.0 || last.x <= 0.0 || (first.y < 0.0 && last.y > 0.0) {
+        if index > 0u && (first.x <= 0.0 || last.x <= 0.0 || (first.y < 0.0 && last.y > 0.0)) {
             add_passage(wake, passage_of(newer, older), first, last, at, end, pass_filter, sum);
         }
         newer = older;
@@ -303,22 +302,21 @@ fn add_wake_end(wake: SeaWake, at: vec2f, end: f32, pass_filter: WakeFilter, sum
     }
 }
 
-// Surface of the wakes at a place, m from the anchor.
+// Surface of the wakes at a place, m from the anchor. No turn of the loop is left early by some pixels alone: the row
+// stays the same for all of a driver's lanes, which then read one place of a block.
 fn wakes_at(at: vec2f, pass_filter: WakeFilter) -> WakeSurface {
     var sum: WakeSurface;
     for (var row = 0u; row < min(sea_band.wakes, MOST_SEA_HULLS); row++) {
         let wake = sea_wakes[row];
         let off = at - wake.middle;
-        if dot(off, off) > wake.reach2 {
-            continue;
-        }
-        // Waves that are longer than all others of the hull, along its track.
-        if wake_share(vec2f(0.0), wake.least_turns, pass_filter) > 0.0 {
-            add_wake_end(wake, at, 1.0, pass_filter, &sum);
-            add_wake_end(wake, at, -1.0, pass_filter, &sum);
-        }
-        if pass_filter.per_cell == 0.0 {
-            sum.foam = min(sum.foam + wash_at(wake, at), 1.0);
+        if dot(off, off) <= wake.reach2 {
+            // None of the hull's waves are longer than those along its track.
+            if wake_share(vec2f(0.0), wake.least_turns, pass_filter) > 0.0 {
+                add_wake(wake, at, pass_filter, &sum);
+            }
+            if pass_filter.per_cell == 0.0 {
+                sum.foam = min(sum.foam + wash_at(wake, at), 1.0);
+            }
         }
     }
     return sum;
