@@ -149,13 +149,17 @@ pub unsafe extern "C" fn wk_context_get_lying_snow(
         let places = input::Places::new("positions_m", "position_size", positions_m, count, position_size, MAX_BATCH)?;
         let room = input::Room::new("snow", "snow_size", snow, count, snow_size)?;
         let context = object.read();
-        for i in 0..count as usize {
+        let answer = |i: usize| {
             let name = format!("positions_m[{i}]");
-            // SAFETY: the caller's promise about the list.
+            // SAFETY: `i` is below the count that the caller promises.
             let at = unsafe { position(&name, places.at(i))? };
             let found = context.snow_at(DVec3::from_array(at)).map_err(|e| e.renamed("position", &name))?;
+            Ok(wk_lying_snow::of(&found))
+        };
+        let answers = (0..count as usize).map(answer).collect::<Result<Vec<_>>>()?;
+        for (i, snow) in answers.iter().enumerate() {
             // SAFETY: the caller's promise about the room, which has as many elements.
-            unsafe { room.write(i, &wk_lying_snow::of(&found)) };
+            unsafe { room.write(i, snow) };
         }
         Ok(Status::Ok)
     })

@@ -4,8 +4,8 @@ use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use welkin::capi::{
-    conditions::*, context::*, fog_law::*, frame::*, query::*, radiance::*, stars::*, status::*, timeline::*, view::*,
-    weather::*, weather_kinds::*,
+    conditions::*, context::*, fog_law::*, frame::*, query::*, radiance::*, snowpack::*, stars::*, status::*,
+    timeline::*, view::*, weather::*, weather_kinds::*,
 };
 
 use super::world::{World, init, message, update};
@@ -227,6 +227,36 @@ fn batches_answer_all_or_nothing() {
         refused(none, "lights must not be NULL");
         assert_eq!(wk_context_get_light(world.context, null(), 0, 0, null_mut(), 0), WK_OK);
     }
+}
+
+#[test]
+fn lying_snow_is_answered_at_all_places_or_none() {
+    let world = World::new();
+    let weather = wk_weather { surface_snow_depth_m: 0.2, temperature_c: -5.0, ..init("wk_weather") };
+    let untouched = wk_lying_snow {
+        depth_m: 9.0,
+        mass_kg_m2: 9.0,
+        density_kg_m3: 9.0,
+        wetness: 9.0,
+        albedo: 9.0,
+        cover: 9.0,
+        surface_m: [9.0; 3],
+        friction: 9,
+        reserved0: 9,
+    };
+    let mut snow = [untouched; 3];
+    // SAFETY: live pointers with the sizes given.
+    unsafe {
+        assert_eq!(wk_context_set_weather(world.context, &weather, 0.0, 0.0), WK_OK, "{}", message());
+        let get = |places: &[[f64; 3]; 3], snow: &mut [wk_lying_snow; 3]| {
+            let size = size_of::<wk_lying_snow>() as u32;
+            wk_context_get_lying_snow(world.context, places.as_ptr(), 3, 24, snow.as_mut_ptr(), size)
+        };
+        refused(get(&[EYE, EYE, [0.0, f64::NAN, 0.0]], &mut snow), "positions_m[2] must be finite");
+        assert!(snow.iter().all(|s| s.depth_m == 9.0 && s.friction == 9), "nothing is written");
+        assert_eq!(get(&[EYE; 3], &mut snow), WK_OK, "{}", message());
+    }
+    assert!(snow.iter().all(|s| (s.depth_m - 0.2).abs() < 1e-3), "{:?}", snow.map(|s| s.depth_m));
 }
 
 #[test]
