@@ -27,7 +27,7 @@ const MOST_CUT: i64 = 1 << 28;
 const MOST_LOOSE: i64 = 1 << 40;
 const MOST_MASS: i64 = 1 << 58;
 /// Largest number of steps: those of the latest time.
-const MOST_STEPS: i64 = 1 << 46;
+const MOST_STEPS: i64 = 1 << 40;
 /// Largest freezing index, K s: that of a century of the hardest winters.
 const MOST_FREEZING_K_S: f64 = 1e12;
 

@@ -290,9 +290,9 @@ impl SoilSite {
     /// a tool that stands still needs poses too. Returns the time that was reached, s.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for a time outside \[-1e12, 1e12\] s.
+    /// [`Status::InvalidArgument`] for a time outside \[-1e10, 1e10\] s.
     pub fn advance(&mut self, until_s: f64, ground: &dyn UndugGround) -> Result<f64> {
-        check_range("until_s", until_s, -1e12, 1e12, "s")?;
+        check_range("until_s", until_s, -1e10, 1e10, "s")?;
         let last_s = |tool: &SoilTool| tool.poses.back().unwrap_or(&tool.pose).time_s;
         let posed_s = self.tools.iter().filter(|tool| !tool.is_ended).map(last_s).fold(until_s, f64::min);
         let due = steps_until(posed_s);

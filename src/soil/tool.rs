@@ -52,7 +52,7 @@ pub enum SoilToolShape {
 /// host's world. They lie within 1e7 m of the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolPose {
-    /// Simulation time, s.
+    /// Simulation time, s, \[-1e10, 1e10\].
     pub time_s: f64,
     /// Cutting edge, or the line of contact of a wheel or track: its left and its right end for a viewer inside the
     /// tool who looks out of the opening, 0.05 to 20 m apart.
@@ -130,7 +130,7 @@ impl SoilToolPose {
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field.
     pub fn validate(&self, shape: &SoilToolShape) -> Result<()> {
-        check_range("pose.time_s", self.time_s, -1e12, 1e12, "s")?;
+        check_range("pose.time_s", self.time_s, -1e10, 1e10, "s")?;
         check_range("pose.load_n", self.load_n, 0.0, 1e7, "N")?;
         let is_wheel = shape.presses();
         for (name, edge) in

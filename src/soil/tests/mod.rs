@@ -409,7 +409,8 @@ fn wrong_input_is_named_and_changes_nothing() {
         (SoilToolPose { edge: [DVec3::NAN, good.edge[1]], ..next }, "pose.edge[0] must be finite"),
         (SoilToolPose { upper: good.edge, ..next }, "pose.upper[0] must be in [0.02, 20] m"),
         (SoilToolPose { load_n: -1.0, ..next }, "pose.load_n must be in [0, 10000000] N"),
-        (SoilToolPose { time_s: f64::NAN, ..next }, "pose.time_s must be in [-1000000000000, "),
+        (SoilToolPose { time_s: f64::NAN, ..next }, "pose.time_s must be in [-10000000000, 10000000000] s"),
+        (SoilToolPose { time_s: 1.1e10, ..next }, "pose.time_s must be in [-10000000000, 10000000000] s"),
         (far, "pose.edge[0] must be within 20 m of the pose before"),
         (good, "pose.time_s must be more than 1 s"),
         (SoilToolPose { time_s: 1e9, ..next }, "pose.time_s must be at most 600 s after the pose before"),
@@ -429,7 +430,10 @@ fn wrong_input_is_named_and_changes_nothing() {
         assert!(e.to_string().starts_with(wanted), "{e}");
     }
     assert!(site.bring(DVec3::splat(f64::NAN), SoilKindId(0), 1.0, &WIDE_PLAIN).is_err());
-    assert!(site.advance(f64::INFINITY, &WIDE_PLAIN).unwrap_err().to_string().starts_with("until_s must be in"));
+    for until_s in [f64::INFINITY, 1.1e10, -1.1e10] {
+        let e = site.advance(until_s, &WIDE_PLAIN).unwrap_err();
+        assert!(e.to_string().starts_with("until_s must be in [-10000000000, 10000000000] s"), "{e}");
+    }
     assert_eq!(site.encode().unwrap(), before, "nothing has changed");
     site.advance(1.0, &WIDE_PLAIN).unwrap();
     let late = site.add_tool(bucket(1.0), &SoilToolPose { time_s: 0.5, ..good }).unwrap_err();
