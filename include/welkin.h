@@ -5837,8 +5837,8 @@ typedef struct wk_light {
     /** Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10. */
     double inner_deg;
     /**
-     * Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; with 180 the beam has
-     * no end.
+     * Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30. If both angles are
+     * 180, the lamp shines to all sides.
      */
     double outer_deg;
 } wk_light;

@@ -40,8 +40,8 @@ pub struct wk_light {
     pub intensity_cd: [f64; 3],
     /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.
     pub inner_deg: f64,
-    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30; with 180 the beam has
-    /// no end.
+    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30. If both angles are
+    /// 180, the lamp shines to all sides.
     pub outer_deg: f64,
 }
 

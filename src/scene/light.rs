@@ -19,8 +19,8 @@ pub struct HostLight {
     pub intensity_cd: [f64; 3],
     /// Angle from the middle up to which the beam has its full intensity, degrees, \[0, 180\].
     pub inner_deg: f64,
-    /// Angle from the middle at which the beam ends, degrees, from `inner_deg` to 180. If both are 180, the lamp shines
-    /// to all sides.
+    /// Angle from the middle at which the beam ends, degrees, from `inner_deg` to 180. Between the two angles the
+    /// intensity falls by a smooth step of the cosine. If both are 180, the lamp shines to all sides.
     pub outer_deg: f64,
 }
 
@@ -106,16 +106,23 @@ impl HostLight {
     /// applied.
     pub(crate) fn uniform(&self, eye: DVec3, to_enu: DMat3, exposure: f64) -> LightUniform {
         let v = |d: DVec3| d.as_vec3().to_array();
-        let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
+        let [end, steepness] = self.beam();
         LightUniform {
             position: v(to_enu * (self.position_m - eye)),
-            // -2 is below every cosine: the beam of a lamp that shines to all sides does not end.
-            end: if self.outer_deg >= 180.0 { -2.0 } else { outer as f32 },
+            end: end as f32,
             direction: v((to_enu * self.direction).normalize()),
-            steepness: (1.0 / (inner - if self.outer_deg >= 180.0 { -2.0 } else { outer }).max(1e-4)) as f32,
+            steepness: steepness as f32,
             intensity: self.intensity_cd.map(|c| (c * exposure) as f32),
             pad: 0.0,
         }
+    }
+
+    /// Returns the end and the steepness of the beam as [`LightUniform`] has them.
+    fn beam(&self) -> [f64; 2] {
+        let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
+        // -2 is below every cosine: the beam of a lamp that shines to all sides does not end.
+        let end = if self.inner_deg >= 180.0 { -2.0 } else { outer };
+        [end, 1.0 / (inner - end).max(1e-4)]
     }
 
     /// Returns the illuminance on a surface at `p` in the host's world that faces the lamp, lux per channel. Distances
@@ -124,8 +131,8 @@ impl HostLight {
         let to = p - self.position_m;
         let d2 = to.length_squared().max(0.01);
         let c = to.normalize_or_zero().dot(self.direction.normalize());
-        let [inner, outer] = [self.inner_deg, self.outer_deg].map(|a| a.to_radians().cos());
-        let x = if self.outer_deg >= 180.0 { 1.0 } else { ((c - outer) / (inner - outer).max(1e-4)).clamp(0.0, 1.0) };
+        let [end, steepness] = self.beam();
+        let x = ((c - end) * steepness).clamp(0.0, 1.0);
         self.intensity_cd.map(|i| i * x * x * (3.0 - 2.0 * x) / d2)
     }
 }
@@ -151,6 +158,32 @@ mod tests {
         assert!(at(0.5, 10.0) > 0.99 * 100.0 / 1.0025 && at(4.0, 10.0) == 0.0 && at(0.0, -10.0) == 0.0);
         let bulb = HostLight { inner_deg: 180.0, outer_deg: 180.0, ..lamp() };
         assert!(bulb.illuminance_lux(DVec3::new(0.0, -10.0, 3.0))[1] > 99.0);
+    }
+
+    /// The law of `light_beam` in `shaders/common/light.wgsl`, for the numbers that shaders read.
+    #[test]
+    fn shaders_and_queries_have_the_same_beam_at_every_angle() {
+        let share = |lamp: &HostLight, degrees: f64| {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let lux = lamp.illuminance_lux(lamp.position_m + 10.0 * DVec3::new(sine, cosine, 0.0))[1];
+            (100.0 * lux / lamp.intensity_cd[1], cosine)
+        };
+        for angles in
+            [[10.0, 20.0], [30.0, 30.0], [0.0, 180.0], [10.0, 180.0], [90.0, 180.0], [170.0, 180.0], [180.0; 2]]
+        {
+            let lamp = HostLight { inner_deg: angles[0], outer_deg: angles[1], ..lamp() };
+            let read = lamp.uniform(DVec3::ZERO, DMat3::IDENTITY, 1.0);
+            for degrees in [0.0, 5.0, 14.0, 45.0, 89.0, 120.0, 175.0, 180.0] {
+                let (queried, cosine) = share(&lamp, degrees);
+                let x = ((cosine - f64::from(read.end)) * f64::from(read.steepness)).clamp(0.0, 1.0);
+                let drawn = x * x * (3.0 - 2.0 * x);
+                assert!((queried - drawn).abs() < 1e-4, "{angles:?}, {degrees} degrees: {queried} and {drawn}");
+            }
+        }
+        let wide = |outer_deg| HostLight { inner_deg: 90.0, outer_deg, ..lamp() };
+        assert!(share(&wide(180.0), 180.0).0 < 1e-9 && share(&wide(180.0), 90.0).0 > 1.0 - 1e-9);
+        let apart = share(&wide(180.0), 120.0).0 - share(&wide(179.9), 120.0).0;
+        assert!(apart.abs() < 1e-4, "a beam up to 180 degrees is like one that ends just before: {apart}");
     }
 
     #[test]

@@ -169,7 +169,7 @@ mod tests {
             outer_deg,
         };
         assert_eq!(even_share(&lamp(180.0, 180.0)), 1.0);
-        for (inner, outer) in [(10.0, 20.0), (30.0, 30.0), (60.0, 150.0)] {
+        for (inner, outer) in [(10.0, 20.0), (30.0, 30.0), (60.0, 150.0), (60.0, 180.0), (170.0, 180.0)] {
             let lamp = lamp(inner, outer);
             let n = 20_000;
             let at = |i: i32| {
