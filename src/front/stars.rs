@@ -20,7 +20,7 @@ impl Context {
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
     pub fn set_stars(&mut self, settings: StarSettings) -> Result<()> {
         settings.validate()?;
-        self.held.stars = HeldStars { settings };
+        self.held.stars = HeldStars::new(settings);
         self.world.night = self.held.stars.night();
         Ok(())
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DMat3;
 use serde::{Deserialize, Serialize};
 
-use super::{NightSky, Star, StarSettings, places::to_world_and_sun};
+use super::{NightSky, Star, StarSettings, catalogue, places::to_world_and_sun};
 use crate::{
     almanac::Utc,
     error::{Error, Result, Status},
@@ -18,6 +18,8 @@ use crate::{
 #[derive(Clone, Default)]
 pub(crate) struct HeldStars {
     pub settings: StarSettings,
+    /// Magnitude of the brightest of the host's own stars, infinite for an empty list; `None` with the catalogue.
+    own_magnitude: Option<f64>,
 }
 
 /// Settings in the form of a saved state.
@@ -35,6 +37,19 @@ const TABLE: &str = "settings";
 const KEY: &str = "stars";
 
 impl HeldStars {
+    /// Holds these settings.
+    pub fn new(settings: StarSettings) -> Self {
+        // A host's list has any order, and up to a million stars: too many to search in every frame.
+        let brightest = |stars: &Arc<[Star]>| stars.iter().map(|s| s.magnitude).fold(f64::INFINITY, f64::min);
+        let own_magnitude = settings.stars.as_ref().map(brightest);
+        Self { settings, own_magnitude }
+    }
+
+    /// Returns the magnitude of the brightest star, infinite without stars.
+    pub fn brightest_magnitude(&self) -> f64 {
+        self.own_magnitude.unwrap_or_else(|| catalogue()[0].magnitude)
+    }
+
     /// Removes the settings from a saved state and reads them; `stars` are the host's own stars.
     ///
     /// # Errors
@@ -43,13 +58,13 @@ impl HeldStars {
     pub fn read(state: &mut toml::Table, stars: Option<Arc<[Star]>>) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else {
-            return Ok(Self { settings: StarSettings { stars, ..StarSettings::default() } });
+            return Ok(Self::new(StarSettings { stars, ..StarSettings::default() }));
         };
         let saved: SavedStars = value.try_into().map_err(|e| parse_error(format_args!("{KEY}: {e}")))?;
         let celestial_to_world = saved.celestial_to_world.map(|m| DMat3::from_cols_array_2d(&m));
         let settings = StarSettings { stars, planets: saved.planets, celestial_to_world, airglow: saved.airglow };
         settings.validate().map_err(|e| e.found_in("saved state"))?;
-        Ok(Self { settings })
+        Ok(Self::new(settings))
     }
 
     /// Returns the settings that affect the night's light on the ground.

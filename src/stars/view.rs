@@ -114,10 +114,9 @@ impl NightOverCamera {
     }
 
     /// Upper bound of the illuminance of the brightest point at the eye, lux.
-    fn brightest_lux(&self, settings: &StarSettings) -> f64 {
-        let star = settings.stars().iter().take(1).map(|s| s.magnitude);
-        let planets = self.heavens.planets.iter().filter(|_| settings.planets).map(|p| p.magnitude);
-        self.through * illuminance_lux(star.chain(planets).fold(f64::INFINITY, f64::min))
+    fn brightest_lux(&self, held: &HeldStars) -> f64 {
+        let planets = self.heavens.planets.iter().filter(|_| held.settings.planets).map(|p| p.magnitude);
+        self.through * illuminance_lux(planets.fold(held.brightest_magnitude(), f64::min))
     }
 
     /// Inputs for the picture on a display whose smallest step in the dark is `step`, a share of white. With a step of
@@ -168,10 +167,10 @@ impl DrawnEffect for StarsView {
         if elevation >= POINTS_BEGIN_DEG.0 || open < LEAST_THROUGH || context.frame.camera.is_orthographic() {
             return Ok(());
         }
-        let (settings, utc) = (&context.held.of::<HeldStars>()?.settings, context.world.utc_at(context.now.time_s));
-        let night = NightOverCamera::new(scene, utc, settings, elevation)?;
-        if night.dusk.share > 0.0 || night.brightest_lux(settings) > night.threshold_lux {
-            self.settings = settings.clone();
+        let (held, utc) = (context.held.of::<HeldStars>()?, context.world.utc_at(context.now.time_s));
+        let night = NightOverCamera::new(scene, utc, &held.settings, elevation)?;
+        if night.dusk.share > 0.0 || night.brightest_lux(held) > night.threshold_lux {
+            self.settings = held.settings.clone();
             self.night = Some(night);
         }
         Ok(())

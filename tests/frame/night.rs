@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use welkin::{
     almanac::{Utc, celestial::direction},
     clouds::CloudModel,
@@ -11,7 +11,7 @@ use welkin::{
     gpu::{Device, DeviceOptions, flat_texture, readback},
     light::luminance,
     scene::{Camera, DepthMapping, ViewRays},
-    stars::{Heavens, StarSettings, StarView, light::star_lux, reference},
+    stars::{Heavens, Star, StarSettings, StarView, light::star_lux, reference},
     weather::Weather,
 };
 use welkin_support::frame_host::coarse;
@@ -218,6 +218,31 @@ fn by_day_in_fog_and_under_a_deck_there_are_no_stars() {
     same(&mut night, "clear again", false);
     night.context.set_sun(Some(GivenDirection { azimuth_deg: 140.0, elevation_deg: 2.0 })).unwrap();
     same(&mut night, "by day", true);
+}
+
+#[test]
+fn a_hosts_own_stars_show_in_twilight_in_any_order() {
+    let mut night = Night::new((160, 90));
+    // Before the glow begins, the layer is drawn only for stars that are visible in the sky's light.
+    night.context.set_sun(Some(GivenDirection { azimuth_deg: 330.0, elevation_deg: -3.5 })).unwrap();
+    let star = |azimuth_deg, magnitude| Star {
+        direction: direction(azimuth_deg, 40.0),
+        motion: DVec3::ZERO,
+        magnitude,
+        temperature_k: 6000.0,
+    };
+    let (faint, bright) = (star(145.0, 6.0), star(155.0, -6.0));
+    let mut picture = |stars: &[Star]| {
+        let celestial_to_world = Some(DMat3::IDENTITY);
+        let own =
+            StarSettings { stars: Some(stars.into()), planets: false, celestial_to_world, ..StarSettings::default() };
+        night.context.set_stars(own).unwrap();
+        night.picture(&camera(150.0, 40.0))
+    };
+    let none = picture(&[]);
+    let [first, last] = [picture(&[bright, faint]), picture(&[faint, bright])];
+    assert!(first != none, "the bright star shows");
+    assert!(first == last, "and it shows wherever it stands in the list");
 }
 
 #[test]
