@@ -99,7 +99,8 @@ pub(super) struct VisibilityGroup {
 }
 
 /// Reads `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000
-/// means below 50 m and becomes 25 m. 9999 and 10KM are lower bounds; larger numbers of kilometres are exact.
+/// means below 50 m and becomes 25 m. 9999, also in a direction, and 10KM are lower bounds; larger numbers of
+/// kilometres are exact.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
     if text == "////NDV" {
         return Some(None);
@@ -107,12 +108,11 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
     if let Some(km) = text.strip_suffix("KM").and_then(digits).filter(|km| (1..=999).contains(km)) {
         return Some(Some(VisibilityGroup { metres: f64::from(km) * 1000.0, at_least: km == 10 }));
     }
-    if let Some(metres) = directional_visibility(text) {
-        return Some(Some(VisibilityGroup { metres, at_least: metres > 9998.0 }));
-    }
-    let figures = text.strip_suffix("NDV").or(text.strip_suffix('M')).unwrap_or(text);
-    let metres = if figures.len() == 4 { digits(figures)? } else { return None };
-    let group = match metres {
+    let overall = || {
+        let figures = text.strip_suffix("NDV").or(text.strip_suffix('M')).unwrap_or(text);
+        if figures.len() == 4 { digits(figures) } else { None }
+    };
+    let group = match directional_visibility(text).or_else(overall)? {
         9999 => VisibilityGroup { metres: 10_000.0, at_least: true },
         0 => VisibilityGroup { metres: 25.0, at_least: false },
         m => VisibilityGroup { metres: f64::from(m), at_least: false },
@@ -151,11 +151,11 @@ pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Readin
 }
 
 /// Reads `1000SW`, `100NW`: visibility in a direction, metres. The direction is not kept.
-fn directional_visibility(text: &str) -> Option<f64> {
+fn directional_visibility(text: &str) -> Option<u32> {
     let figures = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let direction = &text[figures.len()..];
     let known = matches!(direction, "N" | "NE" | "E" | "SE" | "S" | "SW" | "W" | "NW");
-    if known && (3..=4).contains(&figures.len()) { digits(figures).map(|m| f64::from(m).max(25.0)) } else { None }
+    if known && (3..=4).contains(&figures.len()) { digits(figures) } else { None }
 }
 
 /// Reads `R18R/0350N`, `R04R/2600V5000FT`, `R27L/P1500U`, `R25/1800FT/D`; the inner `None` is missing (`R18R/////`).
@@ -361,6 +361,7 @@ mod tests {
         assert_eq!(metres("0150"), Some(Some((150.0, false))));
         assert_eq!(metres("9999"), Some(Some((10_000.0, true))));
         assert_eq!(metres("9999NDV"), Some(Some((10_000.0, true))));
+        assert_eq!((metres("9999NE"), metres("0000SW")), (Some(Some((10_000.0, true))), Some(Some((25.0, false)))));
         assert_eq!((metres("////NDV"), metres("0000")), (Some(None), Some(Some((25.0, false)))));
         assert_eq!(metres("10KM"), Some(Some((10_000.0, true))));
         assert_eq!((metres("20KM"), metres("30KM")), (Some(Some((20_000.0, false))), Some(Some((30_000.0, false)))));
