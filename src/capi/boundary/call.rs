@@ -75,6 +75,9 @@ pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call
     DEPTH.set(DEPTH.get() - 1);
     let error = match outcome {
         Ok(Ok(status)) => return status as wk_status,
+        // A window that shows nothing now is an error for Rust hosts; for C hosts it is a success, and successes keep
+        // the last failure's message.
+        Ok(Err(error)) if error.status == Status::Pending => return error.status as wk_status,
         Ok(Err(error)) => error,
         Err(payload) => {
             if let Some(device) = &call.device {
@@ -156,4 +159,19 @@ fn hush_panics() {
             }
         }));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pending_call_keeps_the_last_failures_message() {
+        let last = || LAST.with_borrow(|last| (last.status, last.message.clone(), last.field.clone()));
+        let failed = guard("wk_first", |_| Err(Error::range("time_s", "in [0, 1] s", 2.0)));
+        let kept = (failed, c"wk_first: time_s must be in [0, 1] s, got 2".to_owned(), c"time_s".to_owned());
+        assert_eq!((failed, last()), (Status::InvalidArgument as wk_status, kept.clone()));
+        let pending = guard("wk_second", |_| Err(Error::new(Status::Pending, "the window is hidden")));
+        assert_eq!((pending, last()), (Status::Pending as wk_status, kept));
+    }
 }
