@@ -14,7 +14,6 @@ bool weather_check(wk_status status)
 
 bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
 {
-    w->diagnostic = WK_DIAGNOSTIC_NONE;
     wk_opengl_host_desc host = WK_OPENGL_HOST_DESC_INIT;
     host.get_proc = p->get_proc;
     host.make_current = p->make_current;
@@ -31,7 +30,7 @@ bool weather_open(weather_link *w, const platform *p, const char *planet_toml)
     wk_rain rain = WK_RAIN_INIT;
     rain.contrast_gain = WK_RAIN_GAIN_TRAINER;
 
-    *w = (weather_link){.caps = WK_CAPS_INIT, .station_altitude_m = SITE_ALTITUDE_M};
+    *w = (weather_link){.caps = WK_CAPS_INIT, .station_altitude_m = SITE_ALTITUDE_M, .diagnostic = WK_DIAGNOSTIC_NONE};
     return weather_check(wk_device_create_opengl(&host, &w->device)) &&
            weather_check(wk_context_create(w->device, &place, &w->context)) &&
            weather_check(wk_view_create(w->context, NULL, &w->view)) &&
