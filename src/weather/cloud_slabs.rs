@@ -130,16 +130,17 @@ fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f
     [-own.speed_m_s * sine, -own.speed_m_s * cosine]
 }
 
-/// Returns the index of the layer from which rain falls: the first that the host names as cumulonimbus, towering
+/// Returns the index of the layer from which rain falls: the lowest that the host names as cumulonimbus, towering
 /// cumulus or nimbostratus; else the lowest that covers at least half the sky; else the one that covers most.
 fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
-    let low = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.base_m.total_cmp(&b.1.base_m);
     let most = |a: &&(usize, &CloudLayer), b: &&(usize, &CloudLayer)| a.1.cover.total_cmp(&b.1.cover);
-    let all: Vec<(usize, &CloudLayer)> = layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0).collect();
+    let mut all: Vec<(usize, &CloudLayer)> = layers.iter().enumerate().filter(|(_, l)| l.cover > 0.0).collect();
+    // Hosts list their layers in any order.
+    all.sort_by(|a, b| a.1.base_m.total_cmp(&b.1.base_m));
     let tower = |k| matches!(k, CloudKind::Cumulonimbus | CloudKind::ToweringCumulus | CloudKind::Nimbostratus);
     all.iter()
         .find(|(_, l)| tower(l.kind))
-        .or_else(|| all.iter().filter(|(_, l)| l.cover >= 0.5).min_by(low))
+        .or_else(|| all.iter().find(|(_, l)| l.cover >= 0.5))
         .or_else(|| all.iter().max_by(most))
         .map(|(i, _)| *i)
 }
@@ -220,6 +221,25 @@ mod tests {
         assert!(paths.windows(2).all(|p| p[1] > p[0]), "{paths:?}");
         assert!((0.1..0.3).contains(&paths[1]) && (0.7..1.5).contains(&paths[3]) && paths[4] < 3.0, "{paths:?}");
         assert_eq!(water_path_for_rate_kg_m2(0.0), 0.0);
+    }
+
+    #[test]
+    fn rain_falls_from_the_same_layer_in_any_order_of_the_list() {
+        use CloudKind::{Cumulonimbus, Cumulus, Nimbostratus, ToweringCumulus, Unknown};
+        let layer = CloudLayer::of;
+        for (from_low_to_high, wanted_m) in [
+            ([layer(Cumulus, 0.4, 500.0), layer(Nimbostratus, 0.8, 900.0), layer(Cumulonimbus, 0.3, 1500.0)], 900.0),
+            ([layer(ToweringCumulus, 0.0, 300.0), layer(Cumulonimbus, 0.2, 700.0), layer(Unknown, 1.0, 800.0)], 700.0),
+            ([layer(Unknown, 0.3, 400.0), layer(Unknown, 0.6, 900.0), layer(Unknown, 1.0, 3000.0)], 900.0),
+            ([layer(Unknown, 0.2, 400.0), layer(Unknown, 0.4, 900.0), layer(Unknown, 0.4, 3000.0)], 3000.0),
+        ] {
+            for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+                let layers = order.map(|i: usize| from_low_to_high[i]);
+                let source = rain_layer(&layers).map(|i| layers[i].base_m);
+                assert_eq!(source, Some(wanted_m), "{order:?} of {from_low_to_high:?}");
+            }
+        }
+        assert_eq!(rain_layer(&[layer(Cumulonimbus, 0.0, 700.0)]), None);
     }
 
     #[test]
