@@ -89,9 +89,12 @@ pub(crate) fn check_written(depth: &wgpu::Texture, color: &wgpu::Texture) -> Res
 /// The errors of [`check_depth`].
 pub(crate) fn check_mask(texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     use wgpu::TextureFormat as F;
-    if !matches!(texture.format(), F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
-        return Err(Error::unsupported(format!("{:?}; supported: R8Unorm, Rgba8Unorm, Bgra8Unorm", texture.format()))
-            .within("mask.format"));
+    let format = texture.format();
+    if !matches!(format, F::R8Unorm | F::Rgba8Unorm | F::Rgba8UnormSrgb | F::Bgra8Unorm) {
+        return Err(Error::unsupported(format!(
+            "{format:?}; supported: R8Unorm, Rgba8Unorm (with or without Srgb), Bgra8Unorm"
+        ))
+        .within("mask.format"));
     }
     check_of_one_sample("mask", texture, color)
 }

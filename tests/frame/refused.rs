@@ -21,6 +21,8 @@ fn refused_frames_are_named_and_neither_submit_nor_change_anything() {
     let many = texture(&device, wgpu::TextureFormat::Rgba16Float, 4);
     // In 8 bits, so that it can be a mask.
     let plain = texture(&device, wgpu::TextureFormat::Rgba8Unorm, 1);
+    let half = texture(&device, wgpu::TextureFormat::Rgba16Float, 1);
+    let masks = "mask.format: Rgba16Float; supported: R8Unorm, Rgba8Unorm (with or without Srgb), Bgra8Unorm";
     let good = || Frame::new(5, camera(), &color, Some(&depth));
     let mut flat = camera();
     flat.projection = DMat4::ZERO;
@@ -33,6 +35,7 @@ fn refused_frames_are_named_and_neither_submit_nor_change_anything() {
         ("color.format: Depth32Float", Frame { color: Some(&depth), ..good() }, all),
         ("depth.format", Frame { depth: Some(&color), ..good() }, all),
         ("mask must be another texture than color", Frame { color: Some(&plain), mask: Some(&plain), ..good() }, all),
+        (masks, Frame { mask: Some(&half), ..good() }, all),
         ("depth.samples", Frame { color: Some(&many), ..good() }, all),
         ("cd_m2_per_unit", Frame { cd_m2_per_unit: 0.0, ..good() }, all),
         ("exposure.factor", Frame { exposure: Some(Exposure::Factor(-1.0)), ..good() }, all),
