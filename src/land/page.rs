@@ -208,6 +208,11 @@ fn position(page: NodeKey, [i, j]: [i32; 2]) -> [i32; 2] {
     [x + i * step, y + j * step]
 }
 
+/// Whether a texel of a page has no ground.
+pub(super) fn has_holes(cells: &mut CellReader<'_>, page: NodeKey) -> bool {
+    PageRect::texels(page.level).places().any(|at| cells.class(position(page, at)).is_none())
+}
+
 /// Shares of the classes in the square of a texel around a lattice position.
 fn classes(cells: &mut CellReader<'_>, [x, y]: [i32; 2], side: i32, default: u8) -> ClassTexel {
     let mut texel = [0; 8];

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{
     cells::{CellReader, FARTHEST_RING},
-    page::{PageRect, PageWriter, TEXELS, VERTICES},
+    page::{PageRect, PageWriter, TEXELS, VERTICES, has_holes},
     relief::NodeKey,
 };
 use crate::{
@@ -140,6 +140,13 @@ impl Pages {
         self.slots[slot as usize].has_holes
     }
 
+    /// Number of pages that have a texel without ground, and of those that have a vertex without.
+    #[cfg(test)]
+    pub fn pages_with_holes(&self) -> [usize; 2] {
+        let count = |is: fn(&PageSlot) -> bool| self.slots.iter().filter(|s| s.page.is_some() && is(s)).count();
+        [count(|slot| slot.has_holes), count(|slot| slot.is_torn)]
+    }
+
     /// GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         let [vertices, texels] = [VERTICES, TEXELS].map(|side| u64::from(side.unsigned_abs().pow(2)));
@@ -149,14 +156,20 @@ impl Pages {
     fn write_vertices(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
         let Some(textures) = &self.textures else { return };
         let is_torn = self.writer.write_vertices(&mut CellReader::new(terrain), page, part);
-        self.slots[slot as usize].is_torn |= is_torn;
+        // An update of a torn page writes all of its vertices, and so finds out whether its holes are filled.
+        let was_torn = self.slots[slot as usize].is_torn && part != PageRect::vertices();
+        self.slots[slot as usize].is_torn = is_torn || was_torn;
         write(device, &textures.vertices, (slot, VERTICES), part, bytemuck::cast_slice(&self.writer.vertices));
     }
 
     fn write_texels(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
         let Some(textures) = &self.textures else { return };
-        self.writer.write_texels(&mut CellReader::new(terrain), page, part, self.default_class);
-        self.slots[slot as usize].has_holes |= self.writer.classes.iter().any(|texel| texel[7] == 0);
+        let mut cells = CellReader::new(terrain);
+        self.writer.write_texels(&mut cells, page, part, self.default_class);
+        let is_holed = self.writer.classes.iter().any(|texel| texel[7] == 0);
+        // A page that had holes may still have some outside the part.
+        let was_holed = self.slots[slot as usize].has_holes;
+        self.slots[slot as usize].has_holes = is_holed || (was_holed && has_holes(&mut cells, page));
         #[cfg(test)]
         {
             self.texels_written += self.writer.slopes.len() as u64;

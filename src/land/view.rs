@@ -57,6 +57,12 @@ impl LandView {
         self.pages.texels_written
     }
 
+    /// Number of pages that have a texel without ground, and of those that have a vertex without.
+    #[cfg(test)]
+    pub fn pages_with_holes(&self) -> [usize; 2] {
+        self.pages.pages_with_holes()
+    }
+
     /// Selects the patches of a picture and fills their pages.
     fn prepare_picture(&mut self, context: &FrameContext<'_>, terrain: &Terrain, held: &HeldLand) -> Result<()> {
         let (frame, now) = (context.frame, context.now);

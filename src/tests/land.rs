@@ -248,6 +248,26 @@ fn a_hole_is_not_drawn_and_what_lies_behind_it_is_seen() {
 }
 
 #[test]
+fn pages_whose_holes_are_filled_are_whole_again() {
+    let mut host = host();
+    let ground = host.terrain().height_at(DVec2::new(201.0, 182.0)).unwrap();
+    let case = looking(ORIGIN + DVec3::new(201.0, 182.0, ground + 12.0), DVec3::new(0.0, 0.35, -1.0));
+    let mut pages_after = |rows: u32, class: Option<SurfaceClass>| {
+        let classes = vec![class; 7 * rows as usize];
+        let cells = TerrainCells { key: TileKey::new(1, 1), first: [70, 58], size: [7, rows], ..Default::default() };
+        host.context.update_terrain(&TerrainCells { classes: Rows::of(&classes), ..cells }).unwrap();
+        host.draw(&case);
+        host.view.effects.land.pages_with_holes()
+    };
+    let whole = pages_after(5, Some(SurfaceClass::Soil));
+    let holed = pages_after(5, None);
+    assert!(holed[0] > whole[0] && holed[1] > whole[1], "{whole:?}, {holed:?}");
+    let half = pages_after(2, Some(SurfaceClass::Soil));
+    assert!(half[0] > whole[0] && half[1] > whole[1], "{whole:?}, {half:?}");
+    assert_eq!(pages_after(5, Some(SurfaceClass::Soil)), whole);
+}
+
+#[test]
 fn the_horizon_of_a_planet_is_where_a_sphere_has_it() {
     const RADIUS_M: f64 = 6_371_000.0;
     let cell_m = 500.0;
