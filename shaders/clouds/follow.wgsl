@@ -8,7 +8,8 @@
 @group(0) @binding(1) var<uniform> picture: CloudsPicture;
 // Radiance and transmittance of the marched pixels, one for each square.
 @group(0) @binding(2) var marched: texture_2d<f32>;
-// Reach of the marched pixels (MarchedPixel of march_view.wgsl).
+// Logarithms (base 2) of the distances, m, between which the marched pixels have their clouds, each times 1 -
+// transmittance (MarchedPixel of march_view.wgsl).
 @group(0) @binding(3) var marched_reach: texture_2d<f32>;
 
 // Values for one square of pixels.
@@ -69,7 +70,7 @@ fn follow(in: FullscreenVarying) -> FollowedSquare {
         return out;
     }
     let size = vec2i(textureDimensions(marched)) - 1;
-    // At an edge of the picture, a missing neighbour is replaced by the centre square.
+    // At an edge of the picture the 3 x 3 squares are moved inward, so that all of them exist.
     let about = clamp(vec2i(square), min(vec2i(1), size), max(size - 1, vec2i(0)));
     let center = textureLoad(marched, about, 0);
     var least = min(own, center);

@@ -11,8 +11,8 @@ struct CloudsPicture {
     side: u32,
     // Index of the pixel in the square that this frame marches.
     place: u32,
-    // Matrix from a place relative to the camera (east, north, up), m, to the last frame's clip space, before clouds
-    // and camera moved.
+    // The last frame's clip matrix, for a place relative to the last frame's camera (east, north, up), m. `moved` leads
+    // from a place relative to this frame's camera to it.
     before: mat4x4f,
     // Movement of a cloud relative to the camera since the last frame, m.
     moved: vec3f,

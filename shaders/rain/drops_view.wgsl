@@ -23,7 +23,8 @@ fn ground_below(landing: Landing, z: f32) -> vec4f {
     return look.surface;
 }
 
-// Returns the crown of a slot; an empty one if no surface is found below the landing.
+// Returns the splash (crown) of the drop that lands in a slot, one of the fixed places of splash.wgsl in which drops
+// land one after another. It is empty if no surface is seen there.
 fn splashed(slot: u32) -> Crown {
     let arrival = arrival_of(slot);
     let surface = ground_below(arrival.landing, splash.ground);

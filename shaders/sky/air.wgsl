@@ -28,8 +28,9 @@ struct SkyAir {
     ground_albedo: vec3f,
     // Negated cosine of the zenith angle of the planet's edge, seen from the top of the air.
     top_dip: f32,
-    // For one triple of wavelengths of a set: the columns of the matrix that converts the triple's light to the three
-    // values that tables keep (`parts` in src/planet/spectral.rs), the index of the triple, and the number of triples.
+    // Light can be computed for more than three wavelengths, three at a time. Tables keep the sum of all triples,
+    // converted to light at the planet's own three wavelengths; the part of a triple may be negative. The columns of
+    // this triple's matrix (`parts` in src/planet/spectral.rs), its index, and the number of triples.
     part_a: vec3f,
     layer: f32,
     part_b: vec3f,

@@ -2,8 +2,8 @@
 // Parametrisations of the tables. Each map stands beside its inverse; a test checks every pair.
 
 struct SkyDims {
-    // Numbers of nodes in the tables over the planet: sun angles, altitudes, and directions (zenith angle, azimuth) of
-    // a source.
+    // Numbers of nodes in the tables over the planet: sun angles, altitudes, and directions (zenith angle; azimuth from
+    // the sun's) into which the air scatters light: those of its source function.
     suns: u32,
     altitudes: u32,
     zeniths: u32,
@@ -25,8 +25,8 @@ struct SkyDims {
     air_above: u32,
     air_below: u32,
     air_slices: u32,
-    // Both lie in one texture: the sky's first texel in it, and the size of the texture. The sky is transposed (rows
-    // along x, azimuths along y), so that it is as high as the volume.
+    // The sky's table and the volume lie in one texture: the sky's first texel in it, and the size of the texture. The
+    // sky is stored transposed (rows along x, azimuths along y), which brings its height near the volume's.
     sky_x: u32,
     sky_y: u32,
     tables_width: u32,
@@ -40,7 +40,7 @@ const MOST_RULE_AZIMUTHS: u32 = 24u;
 const MOST_BUILD_PANELS: u32 = 16u;
 const MOST_SKY_PANELS: u32 = 32u;
 const MOST_AIR_PANELS: u32 = 16u;
-// Largest number of panels in a pixel's march; the settings limit its cells to 4096.
+// Largest number of panels in a pixel's march: the settings allow 4096 nodes (`march_cells`), four to a panel.
 const MOST_MARCH_PANELS: u32 = 1024u;
 
 fn rule_zeniths(dims: SkyDims) -> u32 {
@@ -51,9 +51,9 @@ fn rule_azimuths(dims: SkyDims) -> u32 {
     return min(dims.rule_azimuths, MOST_RULE_AZIMUTHS);
 }
 
-// Sun angle. Steps are even where the sun is below the middle of the terminator (between its positions for the bottom
-// and the top of the air), and grow with the sun's height above it. The range ends where the shadow reaches twice as
-// high as the air, so that nothing is lit.
+// Sun angle, by its cosine. Let c lie midway between 0, where the sun sets at the ground, and -top_dip, where it sets at
+// the top of the air. Below c steps are even in the cosine, above c they grow. The range ends SUN_BELOW below -top_dip,
+// where nothing is lit.
 const SUN_SPREAD: f32 = 0.3;
 const SUN_BELOW: f32 = 0.22;
 

@@ -40,10 +40,10 @@ impl Context {
 
     /// Returns the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to
     /// `position` at simulation time `time_s`, 0 to 1. It is low in the shadow of a cloud that [`CloudModel::Volume`]
-    /// draws, high between two. The light of [`Context::light_at`] is the mean over places. With this share s, the
-    /// direct sunlight at `position` is `sun_lux * s / direct_share`
-    /// ([`Light::direct_share`](crate::moment::Light::direct_share)). With [`CloudModel::Deck`] the share is the mean
-    /// itself.
+    /// draws, high between two. The light of [`Context::light_at`] contains the
+    /// mean of this share over all places, [`Light::direct_share`](crate::moment::Light::direct_share). To get the
+    /// direct sunlight at `position`, replace the mean: `sun_lux / direct_share * share`. With [`CloudModel::Deck`] the
+    /// share is the mean itself.
     ///
     /// The first call builds the noise field from which clouds are cut, which takes some tenths of a second.
     ///

@@ -102,8 +102,8 @@ impl NoiseImage {
     }
 
     /// Returns the cutoff that gives `cover`, 0 to 1, as closely as bytes allow: [`NoiseImage::cover`] differs by at
-    /// most the share of the texels at one of the 255 levels. Between levels the cutoff is interpolated as if filtered
-    /// texels filled them evenly.
+    /// most the share of the texels with one of the 256 byte values. Within a byte value the cutoff is interpolated as
+    /// if its texels lay evenly between the numbers that round to it, as those of a filtered texture do.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a cover outside \[0, 1\].

@@ -21,7 +21,8 @@ pub fn wave_number(w_rad_s: f64, depth_m: f64) -> f64 {
     if squared <= 0.0 {
         return 0.0;
     }
-    // Eckart (1952) is within 5 % for gravity waves; capillary waves are shorter than w^(2/3) / t^(1/3).
+    // Eckart (1952) is within 5 % for gravity waves. Surface tension alone would give the wave number (w^2 /
+    // tension)^(1/3), which is close for capillary waves: the smaller of the two is the start.
     let deep = squared / GRAVITY_M_S2;
     let gravity = deep / libm::sqrt(libm::tanh(deep * depth_m));
     let mut k = gravity.min(libm::cbrt(squared / TENSION_M3_S2));

@@ -1,11 +1,11 @@
-//! The waves that the weather's timeline has raised by a time: the growth law, led along the timeline from change to
+//! The waves that the weather's timeline has raised until a given time: the growth law, integrated from change to
 //! change.
 //!
 //! Between changes the law is in closed form. During a change the weather is taken at 64 moments of the change, which
 //! follow from the change alone; so the state at a time depends neither on the calls that were made before nor on
 //! changes that begin later.
 //!
-//! The weather before all changes counts as having lasted for ever. If the first change of all is a cut, so does the
+//! The weather before all changes counts as having lasted for ever. If the first change of all takes no time, so does the
 //! weather that it brings: it is the one with which a host begins.
 
 use super::growth::{GrowthState, WaveForcing};
@@ -87,7 +87,7 @@ impl GrowthHistory {
         }
     }
 
-    /// Returns the state at a time. Before the first known time it is that of this time.
+    /// Returns the state at a time; for a time before the first known one, the state at the first known time.
     pub fn at(&self, timeline: &Timeline, fetch_m: Option<f64>, time_s: f64) -> GrowthState {
         let after = self.dated.partition_point(|dated| dated.time_s <= time_s);
         match after.checked_sub(1) {
@@ -137,7 +137,7 @@ mod tests {
             assert!((b.m0_m2 - a.m0_m2).abs() < 0.01 * a.m0_m2 && (b.toward - a.toward).length() < 0.01, "{a:?} {b:?}");
             assert!((b.peak_rad_s / a.peak_rad_s - 1.0).abs() < 0.02, "{a:?} {b:?}");
         }
-        // A change inside the second one's transition leaves all times before it as they were, to the last bit.
+        // A later change leaves all times before it as they were, to the last bit.
         timeline.change(blowing(2.0, 10.0), 23_700.0, 600.0).unwrap();
         for (i, state) in before.iter().enumerate().take_while(|(i, _)| 400.0 * (*i as f64) < 23_700.0) {
             assert_eq!(at(&timeline, &[], 400.0 * i as f64), *state, "{i}");

@@ -267,7 +267,8 @@ impl Column {
         taken
     }
 
-    /// Removes ice of this mass by wind erosion; the density of the rest stays the same. Returns the amount removed.
+    /// Removes ice of this mass by wind erosion, with its share of the depth but none of the water. Returns the amount
+    /// removed.
     pub fn erode(&mut self, wanted: i64) -> i64 {
         let lost = self.lose(wanted);
         self.tidy();

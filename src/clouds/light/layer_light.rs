@@ -48,8 +48,9 @@ pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposu
 
 impl CloudLayers {
     /// Returns the mean radiance of the drawn clouds seen from the place, cd/m^2, with their cover, and the height of
-    /// the lowest of them above the place, m. From below, half of the visible cloud is lit from above and half through
-    /// the cloud. From above, all of it is lit.
+    /// the lowest of them above the place, m. With a transmittance T, the lit
+    /// side reflects 1 - T and the shaded side passes T. From above only the lit side is seen; from below half of what
+    /// is seen is lit and half shaded: ((1 - T) + T) / 2.
     pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {

@@ -16,12 +16,13 @@ use crate::{
     stage::flag,
 };
 
-/// Rows refreshed in a frame, once as many are old.
+/// Number of rows that a frame refreshes. While inputs change, a frame waits until as many are old.
 const ROWS: u32 = 12;
-/// Changes that make the whole panorama old: distance that the camera or the clouds move, m, which turns a cloud 500 m
-/// up by one texel; factor by which the panorama ages faster than the shadow map; change of the exposure (logarithm).
+/// Aging. A share of one of these changes makes that share of the rows old, to be refreshed a few at a time: distance
+/// that the camera or the clouds move, m, which turns a cloud 500 m up by one texel; and change of the exposure
+/// (logarithm). The number between them multiplies the aging of the shadow map.
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
-/// Changes after which the whole panorama is out of date: distance that the camera moves between two frames, m; change
+/// Jumps. A larger change between two frames redraws the panorama at once: distance that the camera moves between two frames, m; change
 /// of the exposure (logarithm).
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
