@@ -51,9 +51,9 @@ fn rule_azimuths(dims: SkyDims) -> u32 {
     return min(dims.rule_azimuths, MOST_RULE_AZIMUTHS);
 }
 
-// Sun angle, by its cosine. Let c lie midway between 0, where the sun sets at the ground, and -top_dip, where it sets at
-// the top of the air. Below c steps are even in the cosine, above c they grow. The range ends SUN_BELOW below -top_dip,
-// where nothing is lit.
+// Sun angle, by its cosine. Let c lie midway between 0, where the sun sets at the ground, and -top_dip, where it sets
+// at the top of the air. Below c steps are even in the cosine, above c they grow. The range ends SUN_BELOW below
+// -top_dip, where nothing is lit.
 const SUN_SPREAD: f32 = 0.3;
 const SUN_BELOW: f32 = 0.22;
 

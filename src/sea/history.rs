@@ -5,8 +5,8 @@
 //! follow from the change alone; so the state at a time depends neither on the calls that were made before nor on
 //! changes that begin later.
 //!
-//! The weather before all changes counts as having lasted for ever. If the first change of all takes no time, so does the
-//! weather that it brings: it is the one with which a host begins.
+//! The weather before all changes counts as having lasted for ever. If the first change of all takes no time, so does
+//! the weather that it brings: it is the one with which a host begins.
 
 use super::growth::{GrowthState, WaveForcing};
 use crate::weather::Timeline;

@@ -22,8 +22,8 @@ const ROWS: u32 = 12;
 /// that the camera or the clouds move, m, which turns a cloud 500 m up by one texel; and change of the exposure
 /// (logarithm). The number between them multiplies the aging of the shadow map.
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
-/// Jumps. A larger change between two frames redraws the panorama at once: distance that the camera moves between two frames, m; change
-/// of the exposure (logarithm).
+/// Jumps between two frames beyond which the panorama is redrawn at once: distance that the camera moves, m; change of
+/// the exposure (logarithm).
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
 /// Inputs of the panorama, to detect changes.
