@@ -170,7 +170,7 @@ impl Planet {
     ///   1.2 km.
     /// - Ozone: 300 Dobson units in a tent from 10 to 40 km, cross-sections of Serdyuchenko et al. 2014 at 233 K.
     /// - Sun: spectral irradiance of ASTM G173 (extraterrestrial), W m^-2 nm^-1, and angular radius of the disc, both
-    /// at 1 au.
+    ///   at 1 au.
     /// - Ground: grey, albedo 0.15 (land without snow). Radius: IUGG mean, 6371.0 km; the air is cut at 100 km.
     pub fn earth() -> Self {
         Self::earth_at(EARTH_WAVELENGTHS_NM)
