@@ -239,7 +239,8 @@ fn wave_times(parabola: vec3f) -> vec3f {
     return select(vec3f(-1.0, -1.0, least), vec3f(falling, rising, -1.0), square > 0.0);
 }
 
-// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the middle.
+// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the
+// middle.
 fn add_passage(wake: SeaWake, passage: Passage, first: vec2f, last: vec2f, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
     let h = passage.span;
     let middle_slope = 2.0 * (last.x - first.x) / h - 0.5 * (first.y + last.y);
