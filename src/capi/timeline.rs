@@ -221,10 +221,11 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 /// Writes everything that decides what the context shows from now on, as UTF-8 text, the same on every machine:
 /// weather, weather regions, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve,
 /// fog law, cloud map and model, lightning, night sky, shelters, lamps, rain areas, wind grid and wind field, the
-/// terrain with its water, snow and soil, the default surface class, the sea with its regions, and the world, place,
-/// seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow and
-/// soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans, wk_terrain_drawing),
-/// the host's own list of stars, and the images of wk_context_set_occluder_maps, because each channel may have its own.
+/// terrain with its water, snow and soil, the default surface class, the sea with its regions and hulls, and the world,
+/// place, seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow
+/// and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
+/// wk_terrain_drawing), the host's own list of stars, and the images of wk_context_set_occluder_maps, because each
+/// channel may have its own.
 /// `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
 /// fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: concurrent.
