@@ -188,6 +188,9 @@ impl DrawnEffect for SeaView {
         let statistics = held.statistics(world, now.time_s)?;
         self.crest_m = CREST_SHARE * statistics.highest_in_hour_m;
         self.find_blocks(context, &eye, &chart);
+        if self.blocks.is_empty() {
+            return Ok(());
+        }
         let above = RegionsEye { scene: &now.scene, position: now.eye, chart: &chart, eye: &eye, time_s: now.time_s };
         self.regions.fill(held.placed_regions(), &above);
         self.wakes.fill(&held.wakes(now.time_s), &eye);
