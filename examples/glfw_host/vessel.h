@@ -25,8 +25,8 @@ void vessel_mesh(mesh *m);
 /* Returns the vessel as it is at a time, on its course. */
 vessel vessel_at(const vessel *v, double time_s);
 
-/* Sets a dry region of the sea with the hull's outline, which moves with the vessel's heading and speed. Called in every
-   frame for a vessel that turns: regions move along lines. */
+/* Sets a dry region of the sea with the hull's outline, which moves with the vessel's heading and speed. Called in
+   every frame for a vessel that turns: regions move along lines. */
 wk_status vessel_keep_dry(const vessel *v, wk_context *context);
 
 /* Sets the hull that raises the vessel's wake. Called when speed or rate of turn change, or in every frame. */

@@ -56,6 +56,13 @@ impl MeshBlock {
         let side = side_m(self.level as u32) as f32;
         [low, low.map(|v| v + side)]
     }
+
+    /// Returns the middle, m from the anchor, and the radius, m, of the circle through the corners.
+    pub fn circle(&self) -> (DVec2, f64) {
+        let [low, high] = self.bounds_m();
+        let middle = DVec2::new(f64::from(low[0] + high[0]), f64::from(low[1] + high[1])) * 0.5;
+        (middle, std::f64::consts::FRAC_1_SQRT_2 * side_m(self.level as u32))
+    }
 }
 
 /// Camera over the lattice.

@@ -3,7 +3,7 @@
 use glam::{DMat2, DVec2, DVec3};
 
 use super::{
-    mesh::{MeshBlock, MeshEye, side_m},
+    mesh::{MeshBlock, MeshEye},
     outline::MAX_OUTLINE_CORNERS,
     regions::{MAX_SEA_REGIONS, PlacedRegion, SeaRegionKind},
     uniform::SeaChart,
@@ -85,9 +85,8 @@ impl SeenRegions {
 
     /// Whether water that moves `displaced_m` at most may reach a region from a block of the mesh.
     pub fn touch(&self, block: &MeshBlock, displaced_m: f64) -> bool {
-        let [low, high] = block.bounds_m();
-        let middle = DVec2::new(f64::from(low[0] + high[0]), f64::from(low[1] + high[1])) * 0.5;
-        let around = std::f64::consts::FRAC_1_SQRT_2 * side_m(block.level as u32) + displaced_m;
+        let (middle, radius_m) = block.circle();
+        let around = radius_m + displaced_m;
         self.list.iter().any(|region| {
             let turn = DMat2::from_cols_array(&region.turn.map(f64::from));
             let place = DVec2::from(region.anchor.map(f64::from)) + turn * middle;

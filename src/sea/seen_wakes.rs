@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::{
     hull::MAX_SEA_HULLS,
-    mesh::{MeshBlock, MeshEye, side_m},
+    mesh::{MeshBlock, MeshEye},
     track::{MOST_AGE_S, MOST_NODES},
     wake::transverse_length_m,
     wake_field::{Wake, WakeState},
@@ -89,9 +89,8 @@ impl SeenWakes {
 
     /// Whether water that moves `displaced_m` at most may be in a wake, from a block of the mesh.
     pub fn touch(&self, block: &MeshBlock, displaced_m: f64) -> bool {
-        let [low, high] = block.bounds_m();
-        let middle = DVec2::new(f64::from(low[0] + high[0]), f64::from(low[1] + high[1])) * 0.5;
-        let around = std::f64::consts::FRAC_1_SQRT_2 * side_m(block.level as u32) + displaced_m;
+        let (middle, radius_m) = block.circle();
+        let around = radius_m + displaced_m;
         self.list.iter().any(|wake| {
             let off = middle - DVec2::from(wake.middle.map(f64::from));
             off.length() <= f64::from(wake.reach2).sqrt() + around
