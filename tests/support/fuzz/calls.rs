@@ -548,6 +548,12 @@ pub const CALLS: &[(&str, Call)] = &[
     }),
     ("wk_context_get_sea_state", |d, w| {
         let (context, time) = (handle(d, &w.contexts), w.time(d));
+        // Few sequences set a sea in this very context before.
+        let mut sea = unsafe { std::mem::zeroed::<wk_sea>() };
+        if d.one_in(2) {
+            unsafe { wk_sea_init(&mut sea, size_of::<wk_sea>() as u32) };
+            unsafe { wk_context_set_sea(context, &sea) };
+        }
         get("wk_sea_state", |p| unsafe { wk_context_get_sea_state(context, time, p.cast()) })
     }),
     ("wk_context_set_stars", |d, w| {
