@@ -160,6 +160,10 @@ pub(crate) struct Situation {
     pub conditions: Conditions,
 }
 
+/// Largest change of what a picture shows of the weather, relative to its value, over which a gauge stays valid. A part
+/// that the weather did not have is drawn in any case.
+const NEAR: f64 = 0.05;
+
 impl Situation {
     /// Whether a gauge made in this situation is still valid in `other`.
     fn is_near(&self, other: &Self) -> bool {
@@ -167,7 +171,7 @@ impl Situation {
         self.position.distance(other.position) <= reach
             && self.forward.dot(other.forward) >= 0.97
             && self.sun.dot(other.sun) >= 0.9998
-            && self.conditions == other.conditions
+            && self.conditions.is_near(&other.conditions, NEAR)
     }
 
     /// Whether the next frame is a cut to a very different picture. Parts then change without a fade.

@@ -91,7 +91,7 @@ struct SavedSea {
 }
 
 /// Most tracks: those of the hulls that the host lists, and as many that have ended.
-const MOST_TRACKS: usize = 2 * MAX_SEA_HULLS;
+pub(super) const MOST_TRACKS: usize = 2 * MAX_SEA_HULLS;
 /// Keys of the sea, of its regions and of its hulls in a saved state.
 const KEY: &str = "sea";
 const REGIONS_KEY: &str = "sea_regions";

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::{
+    held::MOST_TRACKS,
     hull::MAX_SEA_HULLS,
     mesh::{MeshBlock, MeshEye},
     track::{MOST_AGE_S, MOST_NODES},
@@ -42,6 +43,31 @@ pub(super) struct StateUniform {
 /// [`MOST_NODES`] states, others few.
 pub(super) const MOST_TRACK_STATES: usize = 8 * MOST_NODES;
 
+/// Returns the indices, in rising order, of the wakes that a camera may see, and their number.
+fn nearest(wakes: &[Wake], eye: &MeshEye) -> ([usize; MAX_SEA_HULLS], usize) {
+    // Each with its distance from the camera, from near to far.
+    let (mut near, mut count) = ([(f64::INFINITY, 0); MOST_TRACKS], 0);
+    for (index, wake) in wakes.iter().enumerate().take(MOST_TRACKS) {
+        let Some((middle, radius)) = wake.circle() else { continue };
+        let distance = (middle - eye.place_m).length() - radius;
+        if distance <= eye.reach_m {
+            near[count] = (distance, index);
+            count += 1;
+        }
+    }
+    near[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let (mut chosen, mut taken, mut states) = ([0; MAX_SEA_HULLS], 0, 0);
+    for (_, index) in &near[..count] {
+        let more = wakes[*index].states.len();
+        if taken < MAX_SEA_HULLS && states + more <= MOST_TRACK_STATES {
+            chosen[taken] = *index;
+            (taken, states) = (taken + 1, states + more);
+        }
+    }
+    chosen[..taken].sort_unstable();
+    (chosen, taken)
+}
+
 /// Wakes that a camera may see.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeenWakes {
@@ -51,17 +77,15 @@ pub(super) struct SeenWakes {
 }
 
 impl SeenWakes {
-    /// Takes over the wakes within the camera's reach.
+    /// Takes over the wakes within the camera's reach: all of them, or the nearest [`MAX_SEA_HULLS`] with no more than
+    /// [`MOST_TRACK_STATES`] states, in the order of `wakes`.
     pub fn fill(&mut self, wakes: &[Wake], eye: &MeshEye) {
         self.list.clear();
         self.states.clear();
         let anchor = eye.anchor_m();
-        for wake in wakes.iter().take(MAX_SEA_HULLS) {
+        let (chosen, count) = nearest(wakes, eye);
+        for wake in chosen[..count].iter().map(|index| &wakes[*index]) {
             let Some((middle, radius)) = wake.circle() else { continue };
-            let is_far = (middle - eye.place_m).length() > radius + eye.reach_m;
-            if is_far || self.states.len() + wake.states.len() > MOST_TRACK_STATES {
-                continue;
-            }
             let [newest, oldest] = [0, wake.states.len() - 1].map(|i| wake.time_s - wake.states[i].node.time_s);
             let fastest = wake.states.iter().map(|state| state.node.speed_m_s).fold(0.1, f64::max);
             self.list.push(WakeUniform {
@@ -95,5 +119,34 @@ impl SeenWakes {
             let off = middle - DVec2::from(wake.middle.map(f64::from));
             off.length() <= f64::from(wake.reach2).sqrt() + around
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sea::{hull::SeaHull, track::tests::track};
+
+    /// Eight hulls that circle take all states of a block; the ninth, last in the list, passes the camera.
+    #[test]
+    fn the_nearest_wakes_are_seen_where_there_are_too_many() {
+        let circling = SeaHull { speed_m_s: 6.0, turn_deg_s: 5.0, ..SeaHull::default() };
+        let passing = SeaHull { heading_deg: 90.0, speed_m_s: 20.0, ..SeaHull::default() };
+        let wakes: Vec<Wake> = std::iter::repeat_n(circling, 8)
+            .chain([passing])
+            .map(|hull| {
+                let mut wake = Wake::default();
+                wake.fill(&track(hull), 400.0);
+                wake
+            })
+            .collect();
+        assert!(wakes.iter().map(|wake| wake.states.len()).sum::<usize>() > MOST_TRACK_STATES);
+        let eye = MeshEye { place_m: DVec2::new(8000.0, 0.0), height_m: 10.0, reach_m: 2e4 };
+        let mut seen = SeenWakes::default();
+        seen.fill(&wakes, &eye);
+        assert!(seen.states.len() <= MOST_TRACK_STATES);
+        let lengths: Vec<u32> = seen.list.iter().map(|wake| wake.states).collect();
+        assert_eq!(lengths.last().copied(), Some(wakes[8].states.len() as u32), "{lengths:?}");
+        assert_eq!(seen.list.len(), 8, "seven circles and the one that passes");
     }
 }

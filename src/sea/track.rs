@@ -1,8 +1,9 @@
-//! Tracks of hulls: where each was, and where it goes on if nothing is said anew.
+//! Tracks of hulls: where each was, and where it will be if the host does not set it again.
 //!
-//! A leg goes on from the host's last word at a constant speed and rate of turn: along a line or an arc. What lies
-//! behind is kept as nodes at whole multiples of a step of time, and only where course or speed have changed, so that
-//! hosts may set their hulls in every frame. A straight track has a node each [`MOST_STRAIGHT_S`].
+//! The leg is the last part of a track. It begins where the host last set the hull and goes on at a constant speed and
+//! rate of turn, along a line or an arc. The track before it is kept as nodes at whole multiples of a step of time, and
+//! only where course or speed have changed, so that hosts may set their hulls in every frame. A straight track has a
+//! node each [`MOST_STRAIGHT_S`].
 
 use std::f64::consts::PI;
 
@@ -24,11 +25,11 @@ pub(super) const MOST_NODES: usize = 64;
 const STEP_S: f64 = 1.5;
 /// Longest time between two nodes, s.
 const MOST_STRAIGHT_S: f64 = 24.0;
-/// Changes from one node to the next from which on a node is kept: of the course, rad, and of the speed as a share of
-/// it with an addition, m/s.
+/// Smallest change of course between two nodes, rad, unless the speed changes or [`MOST_STRAIGHT_S`] passes.
 const NODE_TURN: f64 = 7.0 * PI / 180.0;
+/// Smallest change of speed between two nodes: a share of the speed, and an amount in m/s that is added to it.
 const NODE_SPEED: [f64; 2] = [0.08, 0.1];
-/// Lengths of a hull by which it may be set beside its track: farther away a new track begins.
+/// Largest distance from its track at which a hull may be set, in lengths of the hull. Farther away a new track begins.
 const JUMP_LENGTHS: f64 = 2.0;
 
 /// State of a hull at a time.
@@ -48,13 +49,13 @@ pub(super) struct TrackNode {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct HullTrack {
-    /// The host's last word.
+    /// Hull as the host last set it.
     pub hull: SeaHull,
-    /// State at its time.
+    /// State of the hull at the time for which the host set it: the beginning of the leg.
     leg: TrackNode,
-    /// Time from which on the hull raises no waves; none for one that the host still lists.
+    /// Time from which on the hull raises no waves; `None` for a hull that the host still lists.
     pub ended_s: Option<f64>,
-    /// States before the leg, from old to new; the first is the beginning of the track.
+    /// States before the leg, from old to new. The first is the beginning of the track.
     nodes: Vec<TrackNode>,
 }
 
@@ -78,7 +79,7 @@ impl TrackNode {
         self.ahead * self.speed_m_s
     }
 
-    /// Returns the state some seconds later, for a rate of turn, rad/s clockwise.
+    /// Returns the state `past_s` seconds later, at a rate of turn of `turn` rad/s clockwise.
     fn later(&self, turn: f64, past_s: f64) -> Self {
         let angle = turn * past_s;
         let (sin, cos) = libm::sincos(angle);
@@ -93,7 +94,7 @@ impl TrackNode {
         }
     }
 
-    /// Whether another state, which is later, is kept as a node of its own.
+    /// Whether a later state differs so much that it is kept as the next node.
     fn differs(&self, other: &Self) -> bool {
         let [share, least] = NODE_SPEED;
         let turned = libm::atan2(self.ahead.perp_dot(other.ahead).abs(), self.ahead.dot(other.ahead));
@@ -107,7 +108,8 @@ impl TrackNode {
     }
 }
 
-/// Adds the states of a leg up to a time to the nodes where they are needed. The leg's own state begins a track.
+/// Adds states of a leg, up to a time, to the nodes before it, where course or speed change. The first node of a track
+/// is the beginning of its first leg.
 fn add_nodes(leg: &TrackNode, turn: f64, until_s: f64, nodes: &mut Vec<TrackNode>) {
     let is_first = nodes.is_empty();
     let mut add = |state: TrackNode| {
@@ -121,7 +123,7 @@ fn add_nodes(leg: &TrackNode, turn: f64, until_s: f64, nodes: &mut Vec<TrackNode
     if leg.time_s < until_s && is_first {
         add(*leg);
     }
-    // What is older than all waves needs no nodes.
+    // States that are older than all waves need no nodes.
     let since_s = leg.time_s.max(until_s - MOST_AGE_S - MOST_STRAIGHT_S);
     let first = (since_s / STEP_S).ceil();
     for i in 0..(((MOST_AGE_S + MOST_STRAIGHT_S) / STEP_S) as u32 + 2) {
@@ -166,8 +168,8 @@ impl HullTrack {
         self.hull.turn_deg_s.to_radians()
     }
 
-    /// Goes on with the host's next word of the same hull. A word of an earlier time than the last one replaces what
-    /// was said from that time on; one far from the track begins a new one.
+    /// Begins the next leg, where the host sets the same hull again. A leg that begins before the present one replaces
+    /// the track from its own time on. A leg that begins far from the track begins a new track.
     ///
     /// # Errors
     /// As [`HullTrack::new`]; nothing changes then.
@@ -176,7 +178,7 @@ impl HullTrack {
         Ok(())
     }
 
-    /// Goes on with a track that has no nodes yet.
+    /// Takes the leg of a track that has no nodes yet as the next leg.
     fn go_on(&mut self, next: Self) {
         let time_s = next.leg.time_s;
         let began_s = self.nodes.first().map_or(self.leg.time_s, |node| node.time_s);
@@ -244,7 +246,7 @@ fn between(a: &TrackNode, b: &TrackNode, time_s: f64) -> TrackNode {
 /// Distance over which a heading is found on the map, m.
 const HEADING_STEP_M: f64 = 10.0;
 
-/// Returns the state that a hull says.
+/// Returns the state in which the host sets a hull.
 fn leg_of(hull: &SeaHull, world: &World) -> Result<TrackNode> {
     let position = glam::DVec3::from(hull.position_m);
     let local = world.frame.place_at("position_m", position)?;
@@ -262,8 +264,8 @@ fn leg_of(hull: &SeaHull, world: &World) -> Result<TrackNode> {
     Ok(TrackNode { time_s: hull.at_s, place_m, ahead, speed_m_s: hull.speed_m_s })
 }
 
-/// Returns the share of the waves of an age that are left where the oldest and newest waves of a track have these ages:
-/// waves of a track begin and end gently.
+/// Returns the share of the waves of an age that is drawn, where the newest and the oldest waves of the track have the
+/// ages `newest_s` and `oldest_s`. At both ends of a track waves fade.
 pub(super) fn age_share(age_s: f64, newest_s: f64, oldest_s: f64) -> f64 {
     let oldest_s = oldest_s.min(MOST_AGE_S);
     let fading = 0.2 * (oldest_s - newest_s).max(1e-6);

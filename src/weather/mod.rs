@@ -20,6 +20,7 @@ pub mod lifting;
 mod metar;
 mod mix;
 mod model;
+mod nearness;
 mod overrides;
 mod particles;
 mod parts;

@@ -1,6 +1,7 @@
 //! The plan against pictures: the parts that it leaves out change the picture within the tolerance, and the parts that
 //! it keeps are needed.
 
+mod change;
 mod devices;
 mod kept;
 mod rain;

@@ -204,6 +204,12 @@ impl Bench {
         self.draw(shot, false, FrameFlags::NO_HISTORY)
     }
 
+    /// Begins a change to the weather of a preset that takes `seconds`.
+    pub fn change_to(&mut self, preset: &str, seconds: f64) {
+        let weather = Weather::preset(preset).unwrap();
+        self.context.set_weather(&weather, self.time_s, seconds).unwrap();
+    }
+
     /// Advances the host's time.
     pub fn pass(&mut self, seconds: f64) {
         self.time_s += seconds;

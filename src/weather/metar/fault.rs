@@ -1,6 +1,6 @@
 //! Words of a report with their positions, and the error for a word in the wrong place.
 
-use crate::error::{Error, Status};
+use crate::error::{Error, Status, beginning};
 
 /// One word of the report and the byte at which it begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,10 +32,10 @@ pub(super) fn fault(report: &str, byte: usize, expected: &str, found: Option<&st
     let before = &report[..byte.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    // Limits a long or binary word to 24 characters, and to 48 once it is escaped (an escape has up to ten bytes), so
-    // that the message stays legible.
-    let short = |w: &str| format!("{:?}", w.chars().take(24).collect::<String>()).chars().take(48).collect::<String>();
-    let found = found.map_or_else(|| "the end".into(), short);
+    // A long or binary word is cut after 24 characters, and after 48 once it is escaped (an escape has up to ten bytes),
+    // so that the message stays legible.
+    let quoted = |word| beginning(&format!("{:?}", beginning(word, 24)), 48).into_owned();
+    let found = found.map_or_else(|| "the end".into(), quoted);
     Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))
 }
 
@@ -60,5 +60,10 @@ mod tests {
         assert!(fault(text, 999, "a", None).to_string().contains("found the end"));
         let binary = "\u{10ffff}".repeat(1000);
         assert!(fault(&binary, 0, "a", Some(&binary)).to_string().len() < 120);
+        let said = |word: &str| fault(word, 0, "a", Some(word)).to_string();
+        let words = ["A".repeat(24), "A".repeat(25)];
+        assert!(said(&words[0]).ends_with(&format!("found \"{}\"", words[0])), "{}", said(&words[0]));
+        assert!(said(&words[1]).ends_with(&format!("found \"{}...\"", words[0])), "{}", said(&words[1]));
+        assert!(said(&binary).ends_with("..."), "{}", said(&binary));
     }
 }
