@@ -1,7 +1,8 @@
 //! Benchmarks that print ratios measured within one run: `make bench`. `cargo bench -- record` runs only the named ones
-//! (clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain, run,
-//! sea, sky, wind).
+//! (banks, clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain,
+//! run, sea, sky, wind).
 
+mod banks;
 mod clouds;
 mod copies;
 mod copying;
@@ -27,6 +28,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wanted = |name: &str| named.is_empty() || named.iter().any(|n| n == name);
     if wanted("copies") {
         copies::run()?;
+    }
+    if wanted("banks") {
+        banks::run()?;
     }
     if wanted("clouds") {
         clouds::run()?;

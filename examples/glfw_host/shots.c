@@ -196,6 +196,26 @@ static bool shallow_fog(demo *d)
     return sun_at(d, 298, 12) && set(d, &w, NULL);
 }
 
+/* Clear air, and a region of fog over the valley ahead. */
+static bool fog_bank(demo *d)
+{
+    wk_weather w = weather_here(40e3, 0.7), fog = weather_here(250, 1.0);
+    wk_weather_region bank = WK_WEATHER_REGION_INIT;
+    fog.fog_kind = WK_FOG_FOG;
+    fog.has = WK_WEATHER_HAS_FOG_TOP;
+    fog.fog_top_m = 45.0;
+    bank.has = WK_WEATHER_PART_FOG;
+    bank.weather = &fog;
+    bank.center_m[0] = 3200.0 * sin(RAD(SITE_VIEW_AZIMUTH_DEG));
+    bank.center_m[1] = 3200.0 * cos(RAD(SITE_VIEW_AZIMUTH_DEG));
+    bank.heading_deg = SITE_VIEW_AZIMUTH_DEG + 20.0;
+    bank.half_size_m[0] = 2600.0;
+    bank.half_size_m[1] = 1300.0;
+    bank.perimeter_m = 700.0;
+    return sun_at(d, 298, 12) && set(d, &w, NULL) &&
+           weather_check(wk_context_set_weather_regions(d->weather.context, &bank, 1, sizeof bank));
+}
+
 static bool fog_in_numbers(demo *d)
 {
     d->weather.diagnostic = WK_DIAGNOSTIC_OPTICAL_DEPTH;
@@ -457,6 +477,7 @@ const shot SHOTS[] = {
     {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers, true},
     {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers, true},
     {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL, false},
+    {"fog_bank", "A fog bank over the valley, a weather region in clear air", HILLSIDE, fog_bank, WORLD, NULL, true},
     {"optical_depth", "Optical depth of that fog: black 0, blue 1, green 2, yellow 3, red 4, white 5", HILLSIDE, fog_in_numbers, WORLD, NULL, false},
     {"wet_road", "Wet road after a shower, low sun", ROADSIDE(-3.0), wet_road, WORLD, NULL, false},
     {"rain_shaft", "Showers 6 km away", 0.0, -4.8, 60.0, SITE_VIEW_AZIMUTH_DEG + 4.0, 3.0, 30.0, rain_shaft, WORLD, NULL, false},

@@ -1,30 +1,59 @@
 // Fog between the eye and a place. fog_clear.wgsl replaces this file in pipelines without fog.
 //!include "between/air.wgsl"
 //!include "between/bow.wgsl"
-//!include "fog/lookup.wgsl"
+//!include "fog/banks.wgsl"
 
 // Whether there is any fog.
 override FOG: bool = true;
 
-// Lays the fog over `behind`, which is the air along the whole ray (sky: its light, transmittance 0). A fog bank far
-// away has air in front of it; fog around the camera is in front of the air (fog/lookup.wgsl).
-fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
-    if !FOG || drawn.y == 0.0 {
-        return behind;
-    }
+// Lays one layer of fog over `behind`, as far as it is drawn. `before` is the air, and other fog, up to its distance.
+fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
+    let through = mix(vec3f(1.0), layer.transmittance, drawn.y);
+    let beyond = mix(1.0, layer.shade, drawn.y) * behind.light - before.light;
+    let light = before.light + before.transmittance * (layer.radiance * drawn.y * air_lit) + through * beyond;
+    return Veil(light, behind.transmittance * through);
+}
+
+// Lays the fog outside all banks over `behind`; the ray may meet the banks `banks` (banks_met). A fog far away has air
+// in front of it; fog around the camera is in front of the air (fog/lookup.wgsl).
+fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) -> Veil {
     // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
+    replaced_fog = fog_of_banks(banks, ray.origin, ray.direction, range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
         f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, low_air.fog.to_sun), vec3f(0.0));
     }
-    f.radiance *= drawn.y * air_lit;
-    f.transmittance = mix(vec3f(1.0), f.transmittance, drawn.y);
     var before = Veil(vec3f(0.0), vec3f(1.0));
     if f.distance > 50.0 {
         before = air_between(ray.direction, f.distance);
     }
-    let beyond = mix(1.0, f.shade, drawn.y) * behind.light - before.light;
-    let light = before.light + before.transmittance * f.radiance + f.transmittance * beyond;
-    return Veil(light, behind.transmittance * f.transmittance);
+    return with_layer(f, before, behind);
+}
+
+// Lays fog and fog banks over `behind`, which is the air along the whole ray (sky: its light, transmittance 0).
+fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
+    if !FOG || drawn.y == 0.0 {
+        return behind;
+    }
+    var met = 0u;
+    if FOG_BANKS {
+        met = banks_met(ray.origin, ray.direction, range);
+    }
+    let all = met;
+    var veil = with_low_air(ray, range, plane, all, behind);
+    // Software drivers draw as many rounds as the pixel of a group that meets most banks.
+    for (var i = 0u; FOG_BANKS && i < MOST_BANKS && met != 0u; i++) {
+        let bank = bank_along(first_bank(met), ray.origin, ray.direction, range);
+        met &= met - 1u;
+        if bank.transmittance.y < 1.0 {
+            var before = Veil(vec3f(0.0), vec3f(1.0));
+            if bank.distance > 50.0 {
+                before = air_between(ray.direction, bank.distance);
+                before = with_low_air(ray, bank.distance, bank.distance, all, before);
+            }
+            veil = with_layer(bank, before, veil);
+        }
+    }
+    return veil;
 }

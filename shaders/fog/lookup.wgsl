@@ -43,6 +43,9 @@ const FOG_EXPONENTIAL_LAW: u32 = 4u;
 // Height of the sky band, rad, from which on it covers all of the sky.
 const FOG_WHOLE_SKY: f32 = 3.13845;
 
+// Optical depth at 550 nm of the fog outside all banks that banks replace along the ray (fog/banks.wgsl).
+var<private> replaced_fog: f32 = 0.0;
+
 // Whether this pipeline can draw a kind of fog.
 fn fog_can(kind: u32) -> bool {
     return (FOG_KINDS & (1u << kind)) != 0u;
@@ -474,8 +477,8 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return LayerLight(max(l + aureole, vec3f(0.0)), u.first * share_unscattered(u.scattering.z, sunlight) * met);
 }
 
-// Returns the effect of the layer and the precipitation, which are lit as one medium.
-fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden: f32) -> Fog {
+// Returns the altitude at which a ray starts, m, and its length in fog, m. A ray without an object ends at the ground.
+fn fog_reach(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> vec2f {
     let mu = clamp(direction.z, -1.0, 1.0);
     let lift = origin.z;
     let h0 = u.altitude + lift + 0.5 * u.curvature * (dot(origin, origin) - lift * lift);
@@ -483,11 +486,20 @@ fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden:
     let c = d * (2.0 - u.curvature * d);
     let disc = mu * mu - u.curvature * c;
     let meets_ground = range >= RANGE_SKY && mu < 0.0 && d > 0.0 && disc > 0.0;
-    let t = select(range, c / (sqrt(max(disc, 0.0)) - mu), meets_ground);
+    return vec2f(h0, select(range, c / (sqrt(max(disc, 0.0)) - mu), meets_ground));
+}
+
+// Returns the effect of the layer and the precipitation, which are lit as one medium.
+fn fog_layer(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, hidden: f32) -> Fog {
+    let mu = clamp(direction.z, -1.0, 1.0);
+    let reach = fog_reach(u, origin, direction, range);
+    let h0 = reach.x;
+    let t = reach.y;
     let course = ray_course(u, h0, mu, t);
     var path = LayerPath(0.0, 0.0, 0.0);
     if has_own_layer() {
         path = layer_path(u, course, h0, mu, t);
+        path.depth = max(path.depth - replaced_fog, 0.0);
         if FOG_PATCHES && u.patch_amount > 0.0 {
             path.depth *= patch_mean(origin, direction, path.first, path.last);
         }

@@ -79,9 +79,43 @@ struct FogUniform {
 // Nodes along a side of the map of detours.
 const DETOUR_SIDE: u32 = 24u;
 
-// Fog and the detours of its patches round obstacles (src/wind/detour.rs): LowAirUniform of src/fog/uniforms.rs.
+// Largest number of fog banks in a picture.
+const MOST_BANKS: u32 = 8u;
+
+// Fog bank: the low layer of a weather region, and the region's plan.
+struct FogBank {
+    // Layer, and its light.
+    fog: FogUniform,
+    // Right and ahead on the plan, (east, north) each.
+    axes: vec4f,
+    // Position of the camera on the plan, m (right, ahead).
+    camera: vec2f,
+    // Half extents of the shape, m.
+    half: vec2f,
+    // Radius of a rectangle's corners, m.
+    corner: f32,
+    // Width of the band outside the shape in which the bank fades, m.
+    perimeter: f32,
+    // Weight of the region inside its shape.
+    strength: f32,
+    // Distance of the shape's farthest point from its centre, m.
+    radius: f32,
+    // Kind of the shape (BANK_RECTANGLE and the following).
+    kind: u32,
+    // Number of a polygon's corners.
+    count: u32,
+    // Bit j: the region may overlap that of bank j.
+    overlaps: u32,
+    // 1 if the region is averaged with earlier regions, 0 if it covers them.
+    merges: u32,
+    // Corners of a polygon, two to a vector, against the clock where it is convex.
+    corners: array<vec4f, 8>,
+}
+
+// Fog, its banks and the detours of its patches round obstacles (src/wind/detour.rs): LowAirUniform of
+// src/fog/uniforms.rs.
 struct LowAir {
-    // Fog of the frame.
+    // Fog of the frame outside all banks.
     fog: FogUniform,
     // Nodes of the map of detours per metre, east and north, 1/m.
     detour_scale: vec2f,
@@ -91,7 +125,13 @@ struct LowAir {
     detour_floor: f32,
     // 1/height above the floor at which detours end, 1/m.
     detour_fade: f32,
+    // Numbers of all banks, and of those that the camera may see.
+    bank_count: vec2u,
     // Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south to
     // north.
     lags: array<vec4f, 288>,
+    // Indices of the banks that the camera may see, from far to near: four bits each, the farthest lowest.
+    bank_order: u32,
+    // Banks in the order of the world's regions.
+    banks: array<FogBank, MOST_BANKS>,
 }

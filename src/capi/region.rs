@@ -9,7 +9,7 @@
 //!
 //! Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
 //! them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
-//! weights. A camera's picture shows the weather at the camera, so a region is not visible from outside.
+//! weights. A camera's picture shows the fog of all regions; the rest of its weather is that at the camera.
 //! docs/regions.md has the rules, and a table of what differs by place and what does not yet.
 
 use std::{ffi::c_void, ptr::null};

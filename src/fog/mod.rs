@@ -55,6 +55,7 @@
 //! # What is not here
 //! There is no `passes.rs`: the composition draws the layer, which has no pass of its own.
 
+mod banks;
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;
 #[cfg(feature = "lab")]
@@ -98,6 +99,7 @@ pub use uniforms::{FogUniform, LowAirUniform};
 pub use viewpoint::{FogLight, Viewpoint};
 pub use visibility::{CONTRAST_THRESHOLD, koschmieder_extinction_per_m, koschmieder_visibility_m};
 
+pub(crate) use banks::SkyBanks;
 pub(crate) use held::HeldFog;
 pub(crate) use of_weather::{LowAir, LowMedia, dim};
 pub(crate) use view::FogView;

@@ -19,7 +19,7 @@ use crate::{
     moment::{GroundLight, Light, MAX_EXTINCTION_PER_M, Scene},
     numerics::smoothstep,
     scene::Place,
-    weather::{Conditions, lifting},
+    weather::{Conditions, GroundLayer, lifting},
     wind::Detour,
 };
 
@@ -164,6 +164,15 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     })
 }
 
+/// Returns the weather's low layer alone and without patches, as shaders and queries draw it.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming the parameter.
+pub(super) fn layer_alone(c: &Conditions, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
+    let layer = ground_layer(c, 0, [0.0; 2]).map(|layer| FogLayer { patches: None, ..layer });
+    FogModel::of_weather(layer.as_ref(), &FallingLayer::NONE, light, view)
+}
+
 /// Returns the viewpoint of a place. Its ground lies at the station's altitude, or at the place if that is lower.
 fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f64) -> Viewpoint {
     let ground_m = c.air.station_altitude_m.min(place.altitude_m);
@@ -213,20 +222,34 @@ fn through_fog(
 }
 
 impl Scene {
+    /// Returns the light on top of the fog: that of the sky, and of the brighter of sun and moon.
+    pub(super) fn fog_light(&self) -> FogLight {
+        let light = self.brighter();
+        let lux = if light == &self.sun { self.above_fog.sun_lux } else { self.above_fog.moon_lux };
+        FogLight {
+            to_sun: light.direction,
+            sun_irradiance: lux,
+            sky_irradiance: self.above_fog.sky_lux,
+            ground_albedo: self.ground_albedo,
+        }
+    }
+
+    /// Returns the scene with another low layer.
+    pub(super) fn with_fog(&self, fog: GroundLayer) -> Self {
+        Self { conditions: Conditions { fog, ..self.conditions }, ..*self }
+    }
+
+    /// Returns the viewpoint of the camera in the fog.
+    pub(super) fn fog_viewpoint(&self, planet_radius_m: f64) -> Viewpoint {
+        viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m)
+    }
+
     /// Returns the fog that the frame draws, lit by the brighter of sun and moon.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn fog_model(&self, law: Option<&Law>, seed: u64, planet_radius_m: f64) -> Result<FogModel> {
-        let light = self.brighter();
-        let lux = if light == &self.sun { self.above_fog.sun_lux } else { self.above_fog.moon_lux };
-        let light = FogLight {
-            to_sun: light.direction,
-            sun_irradiance: lux,
-            sky_irradiance: self.above_fog.sky_lux,
-            ground_albedo: self.ground_albedo,
-        };
-        let view = viewpoint(&self.place, &self.conditions, self.map_m, planet_radius_m);
+        let (light, view) = (self.fog_light(), self.fog_viewpoint(planet_radius_m));
         if let Some(law) = law {
             return FogModel::new(law, &light, &view);
         }

@@ -216,27 +216,67 @@ pub fn fog_beside_drops(
         FogKind::Clear if m.falling.extinction <= 0.0 => {
             FogSample { transmittance: DVec3::ONE, shade: 1.0, ..FogSample::default() }
         }
-        FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, hidden),
+        FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, [hidden, 0.0]),
         _ => fog_compatible(m, direction, range, plane),
     }
 }
 
-/// Returns the effect of the layer and the precipitation. Each has its own optical depth; both are lit as one medium.
-fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, hidden: f64) -> FogSample {
+/// Returns the effect of a layer from the camera as [`fog_along`] does, where fog banks replace the optical depth
+/// `replaced` of the layer.
+pub(super) fn fog_beside_banks(m: &FogModel, direction: DVec3, range: f64, replaced: f64) -> FogSample {
+    match m.kind {
+        FogKind::Clear | FogKind::Slab if m.kind == FogKind::Slab || m.falling.extinction > 0.0 => {
+            fog_layer(m, DVec3::ZERO, direction, range, [0.0, replaced])
+        }
+        _ => fog_along(m, DVec3::ZERO, direction, range, range),
+    }
+}
+
+/// Returns the effect of a fog bank along a ray from the camera that meets it between the distances `ends`, m, with the
+/// optical depth `depth`.
+pub(super) fn bank_light(m: &FogModel, direction: DVec3, range: f64, ends: [f64; 2], depth: f64) -> FogSample {
+    let mu = direction.z.clamp(-1.0, 1.0);
+    let [h0, _] = fog_reach(m, DVec3::ZERO, direction, range);
+    let [first, last] = ends;
+    let cosine = |s: f64| (mu + m.curvature * s).clamp(-1.0, 1.0);
+    let above = layer_depth_above(m, h0 + layer_rise(m.curvature, mu, first));
+    let below = (above - cosine(0.5 * (first + last)) * depth).max(0.0);
+    let versine = 0.5 * (direction - m.to_sun).length_squared();
+    let [radiance, once] = layer_radiance(m, mu, cosine(first), versine, [above, below], depth);
+    let inside = if range >= RANGE_SKY_M { 0.0 } else { ((last - first) / range.max(1e-3)).min(1.0) };
+    FogSample {
+        radiance,
+        transmittance: exp3(-m.ratio * depth),
+        distance: first + (last - first) * mean_place(depth) * m.lit,
+        shade: 1.0 - (1.0 - m.lit) * inside,
+        once,
+    }
+}
+
+/// Returns the altitude at which a ray starts, m, and its length in fog, m. A ray without an object ends at the ground
+/// if it meets the ground.
+pub(super) fn fog_reach(m: &FogModel, origin: DVec3, direction: DVec3, range: f64) -> [f64; 2] {
     let mu = direction.z.clamp(-1.0, 1.0);
     let lift = origin.z;
     let h0 = m.altitude + lift + 0.5 * m.curvature * (origin.length_squared() - lift * lift);
-    let mut t = range;
     if range >= RANGE_SKY_M && mu < 0.0 && h0 > m.ground {
-        // A ray without an object ends at the ground if it meets the ground.
         let d = h0 - m.ground;
         let c = d * (2.0 - m.curvature * d);
         let disc = mu * mu - m.curvature * c;
         if disc > 0.0 {
-            t = c / (disc.sqrt() - mu);
+            return [h0, c / (disc.sqrt() - mu)];
         }
     }
+    [h0, range]
+}
+
+/// Returns the effect of the layer and the precipitation. Each has its own optical depth; both are lit as one medium.
+/// Fog banks replace the optical depth `replaced` of the layer.
+fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, [hidden, replaced]: [f64; 2]) -> FogSample {
+    let mu = direction.z.clamp(-1.0, 1.0);
+    let [h0, t] = fog_reach(m, origin, direction, range);
     let mut path = layer_path(m, h0, mu, t);
+    path.depth = (path.depth - replaced).max(0.0);
     if m.patch_amount > 0.0 {
         path.depth *= patch_mean(m, origin, direction, path.first, path.last);
     }

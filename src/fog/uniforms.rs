@@ -8,7 +8,10 @@ use super::{
     model::{FogKind, FogModel, PATCH_WAVES, Term},
     reference::FORWARD_SPREAD,
 };
-use crate::wind::DETOUR_SIDE;
+use crate::{regions::MAX_REGION_CORNERS, wind::DETOUR_SIDE};
+
+/// Largest number of banks in a picture: `MOST_BANKS` of `shaders/fog/uniform.wgsl`.
+pub(super) const MOST_BANKS: usize = 8;
 
 /// Depth below the ground, m, from which on a slab's lower edge is left out. Hosts draw valleys and pits.
 const MARGIN_M: f64 = 2000.0;
@@ -26,6 +29,8 @@ impl FogModel {
             neutral: even(self.ratio) && even(self.scaling) && even(self.k),
             detour: self.detour.is_some(),
             lifted: self.kind == FogKind::Slab && self.knots[1] > self.ground.min(self.altitude) - MARGIN_M,
+            bank_shapes: 0,
+            banks_overlap: false,
         }
     }
 
@@ -100,6 +105,10 @@ pub struct FogVariant {
     pub neutral: bool,
     /// Whether slabs may have a lower edge.
     pub lifted: bool,
+    /// Shapes of the fog banks: bit k stands for kind k of the shaders' `FogBank`; 0 without banks.
+    pub bank_shapes: u32,
+    /// Whether regions of banks may overlap.
+    pub banks_overlap: bool,
 }
 
 impl FogVariant {
@@ -113,6 +122,8 @@ impl FogVariant {
         curtains: true,
         neutral: false,
         lifted: true,
+        bank_shapes: 0,
+        banks_overlap: false,
     };
 
     /// Returns all features, with detours only if the model has any.
@@ -121,7 +132,7 @@ impl FogVariant {
     }
 
     /// Returns the values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 8] {
+    pub fn constants(&self) -> [(&'static str, f64); 11] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
             ("FOG_KINDS", f64::from(self.kinds)),
@@ -132,6 +143,9 @@ impl FogVariant {
             ("FOG_CURTAINS", flag(self.curtains)),
             ("FOG_NEUTRAL", flag(self.neutral)),
             ("FOG_LIFTED", flag(self.lifted)),
+            ("FOG_BANKS", flag(self.bank_shapes != 0)),
+            ("BANK_SHAPES", f64::from(self.bank_shapes)),
+            ("BANKS_OVERLAP", flag(self.banks_overlap)),
         ]
     }
 }
@@ -225,7 +239,39 @@ pub struct FogUniform {
     pub waves: [u32; 2],
 }
 
-/// `LowAir` of `shaders/fog/uniform.wgsl`: the fog of a frame and the detours of its patches.
+/// `FogBank` of `shaders/fog/uniform.wgsl`: the low layer of a weather region, and the region's plan.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct FogBankUniform {
+    /// Layer, and its light.
+    pub fog: FogUniform,
+    /// Right and ahead on the plan, (east, north) each.
+    pub axes: [f32; 4],
+    /// Position of the camera on the plan, m (right, ahead).
+    pub camera: [f32; 2],
+    /// Half extents of the shape, m.
+    pub half: [f32; 2],
+    /// Radius of a rectangle's corners, m.
+    pub corner: f32,
+    /// Width of the band outside the shape in which the bank fades, m.
+    pub perimeter: f32,
+    /// Weight of the region inside its shape.
+    pub strength: f32,
+    /// Distance of the shape's farthest point from its centre, m.
+    pub radius: f32,
+    /// Kind of the shape: 0 a rectangle, 1 an ellipse, 2 a convex polygon, 3 another polygon.
+    pub kind: u32,
+    /// Number of a polygon's corners.
+    pub count: u32,
+    /// Bit j: the region may overlap that of bank j.
+    pub overlaps: u32,
+    /// 1 if the region is averaged with earlier regions, 0 if it covers them.
+    pub merges: u32,
+    /// Corners of a polygon, two to a vector, against the clock where it is convex.
+    pub corners: [[f32; 4]; MAX_REGION_CORNERS / 2],
+}
+
+/// `LowAir` of `shaders/fog/uniform.wgsl`: the fog of a frame, its banks and the detours of its patches.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
@@ -240,11 +286,17 @@ pub struct LowAirUniform {
     pub detour_floor: f32,
     /// 1/height above the floor at which detours end, 1/m.
     pub detour_fade: f32,
-    /// Padding.
-    pub pad: [f32; 2],
+    /// Numbers of all banks, and of those that the camera may see.
+    pub bank_count: [u32; 2],
     /// Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south
     /// to north.
     pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
+    /// Indices of the banks that the camera may see, from far to near: four bits each, the farthest lowest.
+    pub bank_order: u32,
+    /// Padding.
+    pub pad: [u32; 3],
+    /// Banks in the order of the world's regions.
+    pub banks: [FogBankUniform; MOST_BANKS],
 }
 
 impl Default for LowAirUniform {
@@ -254,9 +306,10 @@ impl Default for LowAirUniform {
 }
 
 impl LowAirUniform {
-    /// Sets a frame's fog. Without detours those of an earlier frame remain, and no shader reads them.
+    /// Sets a frame's fog without banks. Without detours those of an earlier frame remain, and no shader reads them.
     pub fn set(&mut self, model: &FogModel) {
         self.fog = model.uniform();
+        (self.bank_count, self.bank_order) = ([0; 2], 0);
         let Some(detour) = &model.detour else { return };
         self.detour_scale = detour.scale.as_vec2().to_array();
         self.detour_camera = detour.camera.as_vec2().to_array();

@@ -1,6 +1,7 @@
 //! Fog in a view: its uniform block, and its constants of the composition.
 
 use super::{
+    banks::FogBanks,
     candidates,
     held::HeldFog,
     model::{FogKind, FogModel},
@@ -24,8 +25,10 @@ pub(crate) struct FogView {
     block: UniformBlock,
     /// Content of the block.
     uniform: Box<LowAirUniform>,
-    /// Fog of the frame.
+    /// Fog of the frame outside all banks.
     model: Option<FogModel>,
+    /// Fog banks of the frame.
+    banks: FogBanks,
     /// Features that shaders need to draw the fog; `None` if there is no fog.
     variant: Option<FogVariant>,
     /// Whether the driver is a software driver, which executes both sides of every branch.
@@ -36,7 +39,14 @@ impl FogView {
     /// Creates the fog of a view, without fog at first.
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let block = blocks.block(device, size_of::<LowAirUniform>());
-        Self { block, uniform: Box::default(), model: None, variant: None, software: device.caps().software }
+        Self {
+            block,
+            uniform: Box::default(),
+            model: None,
+            banks: FogBanks::new(),
+            variant: None,
+            software: device.caps().software,
+        }
     }
 }
 
@@ -47,12 +57,21 @@ impl DrawnEffect for FogView {
 
     fn gather(&mut self, context: &FrameContext<'_>, given: &mut Outputs) -> Result<()> {
         let (now, law) = (context.now, context.held.of::<HeldFog>()?.law.as_ref());
-        let model = now.scene.fog_model(law, now.seed, now.planet_radius_m)?.led_by(now.detour.clone());
+        let here = now.scene.fog_model(law, now.seed, now.planet_radius_m)?;
+        given.fog_depth = here.depth_above(now.scene.place.altitude_m);
+        // A law of the host's is one fog for all places.
+        self.banks.gather(context, law.is_some())?;
+        let model = if self.banks.list().is_empty() {
+            here
+        } else {
+            now.scene.with_fog(now.outer_fog).fog_model(law, now.seed, now.planet_radius_m)?
+        };
+        let model = model.led_by(now.detour.clone());
         // A GPU keeps one pipeline for all fogs, because exchanging it would cost a hitch when the weather changes.
-        // Detours are an exception: few scenes have them, and they would cost registers in all others.
-        self.variant = (model.kind != FogKind::Clear || model.falling.extinction > 0.0)
-            .then(|| if self.software { model.variant() } else { FogVariant::all_of(&model) });
-        given.fog_depth = model.depth_above(now.scene.place.altitude_m);
+        // Detours and banks are exceptions: few scenes have them, and they would cost registers in all others.
+        let is_there = model.kind != FogKind::Clear || model.falling.extinction > 0.0 || self.banks.any_seen();
+        let least = if self.software { model.variant() } else { FogVariant::all_of(&model) };
+        self.variant = is_there.then(|| least.with_banks(&self.banks, self.software));
         self.model = Some(model);
         Ok(())
     }
@@ -81,6 +100,7 @@ impl DrawnEffect for FogView {
         to.set_block(Block::Between, &self.block);
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
             self.uniform.set(model);
+            self.uniform.set_banks(&self.banks);
             self.block.write(bytemuck::bytes_of(&*self.uniform));
         }
         Ok(to)

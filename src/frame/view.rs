@@ -237,7 +237,6 @@ impl View {
     ) -> Result<()> {
         let now = context.moment("frame.camera.position", frame.camera.position, &mut self.history.scene)?;
         let rays = stages.draw().then(|| rays(frame, &now.scene)).transpose()?;
-        // Stages without anything to draw are left out.
         let asked = stages;
         let frame_context = FrameContext {
             device: &self.device.clone(),
@@ -248,11 +247,12 @@ impl View {
             asked,
             planet_ahead: context.world.planet_ahead(frame.camera.position, &now.scene.planet),
             table_share: if frame.is_pure() { 1.0 } else { self.planner.share_of_tables() },
+            all_around: self.cache.environment.is_some(),
             keeps_tables: self.rehearses(),
         };
         self.effects.gather(&frame_context)?;
         let there = self.effects.all().iter().fold(Stages::PREPARE.with(Stages::TONE), |s, e| s.with(e.stages()));
-        let stages = Stages(stages.0 & there.0);
+        let stages = Stages(stages.0 & there.0); // those with something to draw
         let opaque = self.has_opaque(asked);
         let diagnoses = frame.diagnostic != Diagnostic::None;
         let rays = rays.filter(|_| stages.draw() || opaque || diagnoses);

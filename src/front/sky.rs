@@ -11,7 +11,7 @@ use crate::{
     clouds::CloudRays,
     context::{Context, Light, Scene},
     error::Result,
-    fog::{FogModel, reference::fog_along},
+    fog::{FogSample, SkyBanks},
     scene::depth::RANGE_SKY_M,
     sky::{Sightline, SolvedSkies, SolvedSky},
     stars::NightBehind,
@@ -48,8 +48,15 @@ impl Context {
         let skies = self.shared().get(|| Ok(SolvedSkies::default()))?;
         let law = self.fog_law();
         let detour = self.world.detour(position, &scene.conditions, time_s);
-        let fog = scene.fog_model(law, self.world.seed, self.world.set.planet.bottom_radius_m)?.led_by(detour);
-        let fog_depth = fog.depth_above(scene.place.altitude_m);
+        let world = &self.world;
+        let fog_of = |scene: &Scene| scene.fog_model(law, world.seed, world.set.planet.bottom_radius_m);
+        let fog_depth = fog_of(&scene)?.depth_above(scene.place.altitude_m);
+        // A law of the host's is one fog for all places.
+        let regions = if law.is_some() { &[][..] } else { &world.set.weather_regions[..] };
+        let outer = world.outer_fog(&scene.conditions, time_s)?;
+        let fog = SkyBanks::new(regions, &world.frame, (&scene, position), time_s, outer, |scene| {
+            Ok(fog_of(scene)?.led_by(detour))
+        })?;
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
         let clouds = self.cloud_rays((&scene, position), time_s)?;
         let bows = bow::in_low_air(&scene.conditions).filter(|_| bow::is_lit(&scene));
@@ -68,7 +75,7 @@ struct DirectionLight<'a> {
     skies: &'a SolvedSkies,
     solved: OnceCell<Arc<SolvedSky>>,
     scene: &'a Scene,
-    fog: FogModel,
+    fog: SkyBanks<'a>,
     /// Bows of the drops, where there is light to show them.
     bows: Option<bow::Table>,
     night: NightBehind,
@@ -168,15 +175,48 @@ impl DirectionLight<'_> {
 
     /// Returns the radiance of a pixel of the sky, as `with_fog` of the shaders.
     fn with_fog(&self, d: DVec3) -> Result<DVec3> {
-        let fog = fog_along(&self.fog, DVec3::ZERO, d, RANGE_SKY_M, RANGE_SKY_M);
+        let fog = self.fog.along(d, RANGE_SKY_M)?;
+        let through = fog.banks.iter().fold(fog.outer.transmittance, |left, bank| left * bank.transmittance);
         // Where the fog lets nothing through, the sky behind it is not needed.
-        let behind = if fog.transmittance.max_element() > 0.0 { self.behind(d)? } else { DVec3::ZERO };
-        let (mut before, mut through) = (DVec3::ZERO, DVec3::ONE);
-        if fog.distance > NEAR_FOG_M {
-            (before, through) = self.air(d, fog.distance)?;
+        let behind = if through.max_element() > 0.0 { self.behind(d)? } else { DVec3::ZERO };
+        let mut sky = self.with_outer(d, &fog.outer, FarLight { light: behind, through: DVec3::ONE })?;
+        for bank in &fog.banks {
+            let mut before = self.air_before(d, bank)?;
+            if bank.distance > NEAR_FOG_M {
+                before = self.with_outer(d, &self.fog.along(d, bank.distance)?.outer, before)?;
+            }
+            sky = with_layer(bank, bank.radiance, &before, &sky);
         }
-        let bow = self.bows.as_ref().map_or(DVec3::ZERO, |table| bow::phase_in(table, d, self.fog.to_sun));
-        let radiance = (fog.radiance + fog.once * bow).max(DVec3::ZERO);
-        Ok(before + through * radiance + fog.transmittance * (fog.shade * behind - before))
+        Ok(sky.light)
+    }
+
+    /// Returns the light of the air in front of a layer of fog.
+    fn air_before(&self, d: DVec3, fog: &FogSample) -> Result<FarLight> {
+        if fog.distance <= NEAR_FOG_M {
+            return Ok(FarLight { light: DVec3::ZERO, through: DVec3::ONE });
+        }
+        let (light, through) = self.air(d, fog.distance)?;
+        Ok(FarLight { light, through })
+    }
+
+    /// Lays the fog outside all banks over what is behind it.
+    fn with_outer(&self, d: DVec3, fog: &FogSample, far: FarLight) -> Result<FarLight> {
+        let bow = self.bows.as_ref().map_or(DVec3::ZERO, |table| bow::phase_in(table, d, self.fog.to_sun()));
+        Ok(with_layer(fog, (fog.radiance + fog.once * bow).max(DVec3::ZERO), &self.air_before(d, fog)?, &far))
+    }
+}
+
+/// Light towards the eye, and what it lets through from behind.
+struct FarLight {
+    light: DVec3,
+    through: DVec3,
+}
+
+/// Lays a layer of fog that scatters `radiance` over the light `back` behind it; `veil` is in front of it.
+fn with_layer(fog: &FogSample, radiance: DVec3, veil: &FarLight, back: &FarLight) -> FarLight {
+    let beyond = back.light * fog.shade - veil.light;
+    FarLight {
+        light: veil.light + veil.through * radiance + fog.transmittance * beyond,
+        through: back.through * fog.transmittance,
     }
 }

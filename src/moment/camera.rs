@@ -12,7 +12,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     scene::{FlashLamp, HostLight, MAX_FLASH_LAMPS},
     surroundings::{HostSurroundings, OccluderMaps, Shelter, ShelterReach, WindMap, WindTexture, WindView},
-    weather::Conditions,
+    weather::{Conditions, GroundLayer},
     wind::{Carrying, Detour, WindVolume},
 };
 
@@ -38,6 +38,8 @@ pub(crate) struct SceneMoment<'a> {
     pub here: Conditions,
     /// Extinction of the precipitation outside all regions.
     pub falling: FallingLayer,
+    /// Low layer of fog, mist or dust outside all regions.
+    pub outer_fog: GroundLayer,
     /// The host's shelters: boxes that keep rain off.
     pub shelters: &'a [Shelter],
     /// The host's occluder maps, if it has set any.

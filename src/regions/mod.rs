@@ -35,6 +35,7 @@
 mod field;
 mod merge;
 mod region;
+mod seen;
 mod shape;
 mod way;
 
@@ -42,5 +43,6 @@ pub(crate) use field::RegionsOver;
 pub(crate) use merge::RegionsHere;
 pub(crate) use region::HeldRegion;
 pub use region::{MAX_WEATHER_REGIONS, RegionPlan, WeatherRegion};
+pub(crate) use seen::SeenRegion;
 pub use shape::{MAX_REGION_CORNERS, RegionShape};
 pub(crate) use way::RegionWay;

@@ -21,7 +21,7 @@ const MOST_SPEED_M_S: f64 = 400.0;
 const MOST_VERTICAL_M_S: f64 = 50.0;
 /// Distance from a region's perimeter beyond which a point is taken as outside, m. On the far side of the planet the
 /// ground plan would lie over the region again.
-const FARTHEST_M: f64 = 3e5;
+pub(super) const FARTHEST_M: f64 = 3e5;
 
 /// Place of a region: its shape, its motion, and how much it acts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -113,7 +113,7 @@ impl RegionPlan {
     }
 
     /// Returns the distance from the centre beyond which the region cannot act, m.
-    fn reach_m(&self) -> f64 {
+    pub(super) fn reach_m(&self) -> f64 {
         1.1 * (self.shape.radius_m() + self.perimeter_m) + FARTHEST_M
     }
 
@@ -182,6 +182,16 @@ pub(super) struct PlanAxes {
 }
 
 impl PlanAxes {
+    /// Whether a position is within a distance of the centre, m.
+    pub fn is_within(&self, position: DVec3, distance_m: f64) -> bool {
+        (position - self.center).length() <= distance_m
+    }
+
+    /// Returns the unit vector along the heading.
+    pub fn ahead(&self) -> DVec3 {
+        self.ahead
+    }
+
     /// Returns a point's position on the plan, (right, ahead) of the centre, m. The point is moved along its own
     /// vertical to the altitude of the centre, so that columns are vertical everywhere.
     pub fn plan(&self, point: &PlanPoint) -> DVec2 {
@@ -206,6 +216,11 @@ impl PlanPoint {
     pub fn new(world: &WorldFrame, position: DVec3) -> Self {
         let local = world.frame_at(position);
         Self { position, up: local.world_to_enu.transpose().z_axis, altitude_m: local.place.altitude_m }
+    }
+
+    /// Returns the altitude, m.
+    pub fn altitude_m(&self) -> f64 {
+        self.altitude_m
     }
 }
 

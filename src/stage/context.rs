@@ -34,6 +34,8 @@ pub(crate) struct FrameContext<'a> {
     pub planet_ahead: Option<Planet>,
     /// Work on tables in this frame, as a share of the work that builds all of them.
     pub table_share: f32,
+    /// Whether directions outside the picture are drawn, too: for the cube map of the surroundings.
+    pub all_around: bool,
     /// Whether to draw with the existing tables of the planet, even if these belong to another weather.
     pub keeps_tables: bool,
 }

@@ -6,7 +6,7 @@ use super::{
 };
 
 /// Value that a picture shows, and the value below which only the difference counts, in the same unit.
-type Shown = [f64; 2];
+type SeenValue = [f64; 2];
 
 /// Value of a share, of which one fiftieth is as visible as one twentieth of a quantity.
 const SHARE: f64 = 0.4;
@@ -15,14 +15,15 @@ impl Conditions {
     /// Whether every quantity that a picture shows differs from that of `other` by at most `share` of the larger of
     /// both, or of a least value where both are smaller.
     pub(crate) fn is_near(&self, other: &Self, share: f64) -> bool {
-        let near = |([a, least], [b, _]): (Shown, Shown)| (a - b).abs() <= share * a.abs().max(b.abs()).max(least);
+        let near =
+            |([a, least], [b, _]): (SeenValue, SeenValue)| (a - b).abs() <= share * a.abs().max(b.abs()).max(least);
         let slabs = self.clouds.iter().zip(&other.clouds).filter(|(a, b)| a.cover > 0.0 || b.cover > 0.0);
         self.shown().zip(other.shown()).all(near)
             && slabs.flat_map(|(a, b)| a.shown().into_iter().zip(b.shown())).all(near)
     }
 
     /// Returns what a picture shows of everything but the cloud slots.
-    fn shown(&self) -> impl Iterator<Item = Shown> {
+    fn shown(&self) -> impl Iterator<Item = SeenValue> {
         let light = &self.cloud_light;
         let rest = [
             [self.extinction_per_m, 1e-5],
@@ -41,7 +42,7 @@ impl Conditions {
 }
 
 impl AerosolLayer {
-    fn shown(&self) -> [Shown; 6] {
+    fn shown(&self) -> [SeenValue; 6] {
         [
             [self.extinction_per_m, 1e-6],
             [self.angstrom_exponent, 2.0],
@@ -55,7 +56,7 @@ impl AerosolLayer {
 
 impl GroundLayer {
     /// Returns what a picture shows of the layer. Without extinction its shape is not seen.
-    fn shown(&self) -> [Shown; 10] {
+    fn shown(&self) -> [SeenValue; 10] {
         let share = if self.extinction_per_m > 0.0 { 1.0 } else { 0.0 };
         [
             [self.extinction_per_m, 1e-6],
@@ -73,7 +74,7 @@ impl GroundLayer {
 }
 
 impl Falling {
-    fn shown(&self) -> [Shown; 11] {
+    fn shown(&self) -> [SeenValue; 11] {
         [
             [self.liquid_extinction_per_m, 1e-6],
             [self.solid_extinction_per_m, 1e-6],
@@ -92,7 +93,7 @@ impl Falling {
 
 impl CloudSlab {
     /// Returns what a picture shows of the slab. Without cover its shape is not seen.
-    fn shown(&self) -> [Shown; 10] {
+    fn shown(&self) -> [SeenValue; 10] {
         let share = if self.cover > 0.0 { 1.0 } else { 0.0 };
         [
             [self.cover, SHARE],
@@ -110,13 +111,13 @@ impl CloudSlab {
 }
 
 impl WindProfile {
-    fn shown(&self) -> [Shown; 4] {
+    fn shown(&self) -> [SeenValue; 4] {
         [[self.east_m_s, 10.0], [self.north_m_s, 10.0], [self.gust_m_s, 10.0], [self.up_m_s, 10.0]]
     }
 }
 
 impl SeaState {
-    fn shown(&self) -> [Shown; 5] {
+    fn shown(&self) -> [SeenValue; 5] {
         let swell = self.swell_height_m;
         [
             [self.significant_wave_height_m, 0.5],
@@ -129,7 +130,7 @@ impl SeaState {
 }
 
 impl SurfaceCover {
-    fn shown(&self) -> [Shown; 4] {
+    fn shown(&self) -> [SeenValue; 4] {
         [[self.wetness, SHARE], [self.puddles, SHARE], [self.ice, SHARE], [self.snow_depth_m, 0.05]]
     }
 }

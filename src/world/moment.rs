@@ -27,6 +27,7 @@ impl World {
             weather,
             here,
             falling: self.falling(&scene.conditions),
+            outer_fog: self.outer_fog(&scene.conditions, self.time_s)?,
             shelters: &self.set.shelters,
             maps: self.maps.as_deref(),
             lamps: &self.lights,

@@ -26,7 +26,7 @@ use crate::{
     planet::Planet,
     scene::{HostLight, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, WindTexture},
-    weather::{CloudMap, Conditions, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
+    weather::{CloudMap, Conditions, GroundLayer, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindOver, WindVolume},
 };
 
@@ -169,6 +169,14 @@ impl World {
     pub fn weather_outside(&self, time_s: f64) -> Result<Conditions> {
         self.over().check_time(time_s)?;
         Ok(self.with_lifted_snow(self.timeline.at(time_s)))
+    }
+
+    /// Returns the low layer outside all regions at a time, where `c` is the weather at some place then.
+    ///
+    /// # Errors
+    /// As [`World::weather_outside`].
+    pub fn outer_fog(&self, c: &Conditions, time_s: f64) -> Result<GroundLayer> {
+        Ok(if self.set.weather_regions.is_empty() { c.fog } else { self.weather_outside(time_s)?.fog })
     }
 
     /// Returns the weather at a place and time, with the weather regions there and the snow that the wind lifts from

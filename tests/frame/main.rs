@@ -1,6 +1,7 @@
 //! Frames as a host sees them: stages, targets, colour spaces, errors. One binary, so that it links once.
 
 mod above;
+mod banks;
 mod diagnostic;
 mod environment;
 mod froxels;

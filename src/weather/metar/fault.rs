@@ -32,8 +32,8 @@ pub(super) fn fault(report: &str, byte: usize, expected: &str, found: Option<&st
     let before = &report[..byte.min(report.len())];
     let line = before.matches('\n').count() + 1;
     let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-    // A long or binary word is cut after 24 characters, and after 48 once it is escaped (an escape has up to ten bytes),
-    // so that the message stays legible.
+    // A long or binary word is cut after 24 characters, and after 48 once it is escaped (an escape has up to ten
+    // bytes), so that the message stays legible.
     let quoted = |word| beginning(&format!("{:?}", beginning(word, 24)), 48).into_owned();
     let found = found.map_or_else(|| "the end".into(), quoted);
     Error::new(Status::Parse, format!("METAR line {line}, column {column}: expected {expected}, found {found}"))
