@@ -1,7 +1,8 @@
 // Fog between the eye and a place. fog_clear.wgsl replaces this file in pipelines without fog.
 //!include "between/air.wgsl"
 //!include "between/bow.wgsl"
-//!include "fog/banks.wgsl"
+//!include "between/banks.wgsl"
+//!include "fog/lookup.wgsl"
 
 // Whether there is any fog.
 override FOG: bool = true;
@@ -19,7 +20,7 @@ fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
 fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) -> Veil {
     // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
-    replaced_fog = fog_of_banks(banks, ray.origin, ray.direction, range);
+    replaced_fog = replaced_by_banks(banks, ray, range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
         f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, low_air.fog.to_sun), vec3f(0.0));
@@ -36,24 +37,6 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    var met = 0u;
-    if FOG_BANKS {
-        met = banks_met(ray.origin, ray.direction, range);
-    }
-    let all = met;
-    var veil = with_low_air(ray, range, plane, all, behind);
-    // Software drivers draw as many rounds as the pixel of a group that meets most banks.
-    for (var i = 0u; FOG_BANKS && i < MOST_BANKS && met != 0u; i++) {
-        let bank = bank_along(first_bank(met), ray.origin, ray.direction, range);
-        met &= met - 1u;
-        if bank.transmittance.y < 1.0 {
-            var before = Veil(vec3f(0.0), vec3f(1.0));
-            if bank.distance > 50.0 {
-                before = air_between(ray.direction, bank.distance);
-                before = with_low_air(ray, bank.distance, bank.distance, all, before);
-            }
-            veil = with_layer(bank, before, veil);
-        }
-    }
-    return veil;
+    let banks = banks_before(ray, range);
+    return with_banks(banks, ray, range, with_low_air(ray, range, plane, banks, behind));
 }

@@ -25,10 +25,11 @@ fn source(name: &str) -> Option<&'static str> {
 }
 
 /// Words of variants, each with a shader file that has that variant.
-const VARIANTS: [(&str, &str); 6] = [
+const VARIANTS: [(&str, &str); 7] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
     ("clear", "frame/composite.wgsl"),
+    ("plain", "frame/composite.wgsl"),
     ("dry", "frame/composite.wgsl"),
     ("box", "clouds/probe.wgsl"),
     ("lamps", "clouds/glow_view.wgsl"),
@@ -44,7 +45,7 @@ pub fn with_variants(name: &str) -> Result<Vec<String>> {
     let has = |file: &str| text.contains(&format!("// ---- {file}\n"));
     let words = VARIANTS.iter().filter(|(_, file)| has(file)).map(|(word, _)| format!(":{word}"));
     let several = ["", ":multi", ":resolved"].map(|host| format!("{host}:clear:dry"));
-    let several = several.into_iter().chain([":even", ":dry:even"].map(String::from));
+    let several = several.into_iter().chain([":plain:dry", ":even", ":dry:even"].map(String::from));
     let several = several.filter(|_| name == "frame/composite_view.wgsl");
     Ok(std::iter::once(String::new()).chain(words).chain(several).map(|words| format!("{name}{words}")).collect())
 }

@@ -35,9 +35,11 @@ impl Variant {
         };
         let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
+        let has_banks = self.constants.between.value("FOG_BANKS") > 0.0;
+        let fog = if !clear.is_empty() || has_banks { clear } else { ":plain" };
         // Interpolated pixels already contain the fog.
-        let (clear, even) = if self.pixels.are_even() { ("", ":even") } else { (clear, "") };
-        (format!("{name}{clear}{dry}{even}"), entry)
+        let (fog, even) = if self.pixels.are_even() { ("", ":even") } else { (fog, "") };
+        (format!("{name}{fog}{dry}{even}"), entry)
     }
 
     /// Whether the variant equals `other` with these constants, without copying them.
