@@ -1,8 +1,7 @@
 // Fog between the eye and a place. fog_clear.wgsl replaces this file in pipelines without fog.
 //!include "between/air.wgsl"
 //!include "between/bow.wgsl"
-//!include "between/banks.wgsl"
-//!include "fog/lookup.wgsl"
+//!include "fog/banks.wgsl"
 
 // Whether there is any fog.
 override FOG: bool = true;
@@ -20,7 +19,7 @@ fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
 fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) -> Veil {
     // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
-    replaced_fog = replaced_by_banks(banks, ray, range);
+    replaced_fog = fog_of_banks(banks, ray.origin, ray.direction, range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
         f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, low_air.fog.to_sun), vec3f(0.0));
@@ -32,11 +31,34 @@ fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) 
     return with_layer(f, before, behind);
 }
 
+// Lays the banks `met` over `behind`, each with the air and the fog outside all banks in front of it.
+fn with_banks(met: u32, ray: ViewRay, range: f32, behind: Veil) -> Veil {
+    var veil = behind;
+    var left = met;
+    // Software drivers draw as many rounds as the pixel of a group that meets most banks.
+    for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
+        let bank = bank_along(first_bank(left), ray.origin, ray.direction, range);
+        left &= left - 1u;
+        if bank.transmittance.y < 1.0 {
+            var before = Veil(vec3f(0.0), vec3f(1.0));
+            if bank.distance > 50.0 {
+                before = air_between(ray.direction, bank.distance);
+                before = with_low_air(ray, bank.distance, bank.distance, met, before);
+            }
+            veil = with_layer(bank, before, veil);
+        }
+    }
+    return veil;
+}
+
 // Lays fog and fog banks over `behind`, which is the air along the whole ray (sky: its light, transmittance 0).
 fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    let banks = banks_before(ray, range);
+    if !FOG_BANKS {
+        return with_low_air(ray, range, plane, 0u, behind);
+    }
+    let banks = banks_met(ray.origin, ray.direction, range);
     return with_banks(banks, ray, range, with_low_air(ray, range, plane, banks, behind));
 }

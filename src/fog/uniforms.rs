@@ -131,8 +131,8 @@ impl FogVariant {
         Self { detour: model.detour.is_some(), ..Self::ALL }
     }
 
-    /// Returns the values of the shader's `override` constants.
-    pub fn constants(&self) -> [(&'static str, f64); 11] {
+    /// Returns the values of the `override` constants of `fog/lookup.wgsl`.
+    pub fn constants(&self) -> [(&'static str, f64); 8] {
         let flag = |b: bool| f64::from(u8::from(b));
         [
             ("FOG_KINDS", f64::from(self.kinds)),
@@ -143,10 +143,12 @@ impl FogVariant {
             ("FOG_CURTAINS", flag(self.curtains)),
             ("FOG_NEUTRAL", flag(self.neutral)),
             ("FOG_LIFTED", flag(self.lifted)),
-            ("FOG_BANKS", flag(self.bank_shapes != 0)),
-            ("BANK_SHAPES", f64::from(self.bank_shapes)),
-            ("BANKS_OVERLAP", flag(self.banks_overlap)),
         ]
+    }
+
+    /// Returns the values of the `override` constants of `fog/banks.wgsl` without `FOG_BANKS`.
+    pub(super) fn bank_constants(&self) -> [(&'static str, f64); 2] {
+        [("BANK_SHAPES", f64::from(self.bank_shapes)), ("BANKS_OVERLAP", f64::from(u8::from(self.banks_overlap)))]
     }
 }
 
@@ -306,6 +308,11 @@ impl Default for LowAirUniform {
 }
 
 impl LowAirUniform {
+    /// Returns the size of the block up to the last of so many banks, bytes.
+    pub(super) fn size_with(banks: usize) -> usize {
+        std::mem::offset_of!(Self, banks) + banks * size_of::<FogBankUniform>()
+    }
+
     /// Sets a frame's fog without banks. Without detours those of an earlier frame remain, and no shader reads them.
     pub fn set(&mut self, model: &FogModel) {
         self.fog = model.uniform();

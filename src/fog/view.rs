@@ -90,10 +90,13 @@ impl DrawnEffect for FogView {
         let share = context.share(&candidates::FOG, 0);
         let least = self.variant.filter(|_| share > 0.0);
         to.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
-        let traits = |veils_all| Traits { veils_all, ..Traits::default() };
+        let banks = self.variant.is_some_and(|variant| variant.bank_shapes != 0);
+        let traits = |veils_all| Traits { veils_all, veils_by_place: veils_all && banks, ..Traits::default() };
         to.set_traits(traits(self.variant.is_some()), traits(least.is_some()));
-        let whole = self.variant.unwrap_or(FogVariant::ALL).constants();
-        for ((name, whole), (_, least)) in whole.into_iter().zip(least.unwrap_or(FogVariant::ALL).constants()) {
+        to.between_and_veil("FOG_BANKS", flag(banks), flag(banks));
+        let [whole, least] = [self.variant, least].map(|variant| variant.unwrap_or(FogVariant::ALL));
+        let values = |variant: FogVariant| variant.constants().into_iter().chain(variant.bank_constants());
+        for ((name, whole), (_, least)) in values(whole).zip(values(least)) {
             to.between(name, whole, least);
         }
         to.set_frame_block(FrameBlock::Fog { share });
@@ -101,7 +104,8 @@ impl DrawnEffect for FogView {
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
             self.uniform.set(model);
             self.uniform.set_banks(&self.banks);
-            self.block.write(bytemuck::bytes_of(&*self.uniform));
+            // Banks that are not there are not written.
+            self.block.write(&bytemuck::bytes_of(&*self.uniform)[..LowAirUniform::size_with(self.banks.list().len())]);
         }
         Ok(to)
     }

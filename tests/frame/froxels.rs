@@ -9,7 +9,7 @@ use welkin_support::frame_host::{Host, SIZE, camera};
 use crate::spaces::{EXPOSURE, veil};
 
 /// The published snippet's look-up on the CPU: bilinear within a tile, linear between slices.
-fn sample(texels: &[[f32; 4]], uv: [f64; 2], distance: f64) -> [f64; 3] {
+pub fn sample(texels: &[[f32; 4]], uv: [f64; 2], distance: f64) -> [f64; 3] {
     let s = ((distance / 20.0 + 1.0).ln() * 3.639_611_2).clamp(0.0, 31.0);
     let near = s.floor().min(30.0);
     let at = |slice: f64| {

@@ -125,7 +125,7 @@ mod tests {
     use crate::stage::{Pipeline, Sampling, Traits};
 
     fn variant(stages: Stages, has_depth: bool, veils_all: bool) -> Variant {
-        let traits = Traits { veils_all, veils_drawn: true, is_marched: false, is_fine: false, is_overlaid: false };
+        let traits = Traits { veils_all, veils_drawn: true, ..Traits::default() };
         let constants = Pipeline { traits, ..Pipeline::NONE };
         Variant {
             stages,

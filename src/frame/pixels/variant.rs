@@ -33,13 +33,16 @@ impl Variant {
             _ if diagnoses => (self.sampling.diagnostic(), "diagnose"),
             _ => (composed, entry),
         };
-        let clear = if self.constants.traits.veils_all { "" } else { ":clear" };
+        let traits = &self.constants.traits;
+        let veil = match (traits.veils_all, traits.veils_by_place) {
+            (false, _) => ":clear",
+            (true, false) => ":plain",
+            (true, true) => "",
+        };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        let has_banks = self.constants.between.value("FOG_BANKS") > 0.0;
-        let fog = if !clear.is_empty() || has_banks { clear } else { ":plain" };
         // Interpolated pixels already contain the fog.
-        let (fog, even) = if self.pixels.are_even() { ("", ":even") } else { (fog, "") };
-        (format!("{name}{fog}{dry}{even}"), entry)
+        let (veil, even) = if self.pixels.are_even() { ("", ":even") } else { (veil, "") };
+        (format!("{name}{veil}{dry}{even}"), entry)
     }
 
     /// Whether the variant equals `other` with these constants, without copying them.

@@ -1,0 +1,21 @@
+// Replaces banks.wgsl in pipelines that draw no fog banks.
+//!include "fog/lookup.wgsl"
+
+// Whether there are banks.
+const FOG_BANKS: bool = false;
+
+fn banks_met(origin: vec3f, direction: vec3f, range: f32) -> u32 {
+    return 0u;
+}
+
+fn first_bank(met: u32) -> u32 {
+    return 0u;
+}
+
+fn fog_of_banks(met: u32, origin: vec3f, direction: vec3f, range: f32) -> f32 {
+    return 0.0;
+}
+
+fn bank_along(k: u32, origin: vec3f, direction: vec3f, range: f32) -> Fog {
+    return Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
+}
