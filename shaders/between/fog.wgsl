@@ -56,7 +56,7 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;
     }
-    if !FOG_BANKS {
+    if !BY_PLACE {
         return with_low_air(ray, range, plane, 0u, behind);
     }
     let banks = banks_met(ray.origin, ray.direction, range);

@@ -6,8 +6,8 @@
 // bank's share there times the layer's density.
 //!include "fog/lookup.wgsl"
 
-// Whether there are banks.
-override FOG_BANKS: bool = false;
+// Whether the veil differs from place to place: there are banks.
+override BY_PLACE: bool = false;
 // Whether regions of banks overlap.
 override BANKS_OVERLAP: bool = true;
 // Shapes of the banks: bit k stands for kind k.
@@ -394,7 +394,7 @@ fn first_bank(met: u32) -> u32 {
 // Optical depth at 550 nm of the fog outside all banks that the banks `met` replace along a ray.
 fn fog_of_banks(met: u32, origin: vec3f, direction: vec3f, range: f32) -> f32 {
     var depth = 0.0;
-    if FOG_BANKS && has_own_layer() && low_air.fog.kind == FOG_SLAB {
+    if BY_PLACE && has_own_layer() && low_air.fog.kind == FOG_SLAB {
         var left = met;
         for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
             let k = first_bank(left);

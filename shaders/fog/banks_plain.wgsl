@@ -1,8 +1,8 @@
 // Replaces banks.wgsl in pipelines that draw no fog banks.
 //!include "fog/lookup.wgsl"
 
-// Whether there are banks.
-const FOG_BANKS: bool = false;
+// Whether the veil differs from place to place.
+const BY_PLACE: bool = false;
 
 fn banks_met(origin: vec3f, direction: vec3f, range: f32) -> u32 {
     return 0u;

@@ -146,7 +146,7 @@ impl FogVariant {
         ]
     }
 
-    /// Returns the values of the `override` constants of `fog/banks.wgsl` without `FOG_BANKS`.
+    /// Returns the values of the `override` constants of `fog/banks.wgsl` without `BY_PLACE`.
     pub(super) fn bank_constants(&self) -> [(&'static str, f64); 2] {
         [("BANK_SHAPES", f64::from(self.bank_shapes)), ("BANKS_OVERLAP", f64::from(u8::from(self.banks_overlap)))]
     }

@@ -93,7 +93,7 @@ impl DrawnEffect for FogView {
         let banks = self.variant.is_some_and(|variant| variant.bank_shapes != 0);
         let traits = |veils_all| Traits { veils_all, veils_by_place: veils_all && banks, ..Traits::default() };
         to.set_traits(traits(self.variant.is_some()), traits(least.is_some()));
-        to.between_and_veil("FOG_BANKS", flag(banks), flag(banks));
+        to.between_and_veil("BY_PLACE", flag(banks), flag(banks));
         let [whole, least] = [self.variant, least].map(|variant| variant.unwrap_or(FogVariant::ALL));
         let values = |variant: FogVariant| variant.constants().into_iter().chain(variant.bank_constants());
         for ((name, whole), (_, least)) in values(whole).zip(values(least)) {

@@ -15,7 +15,7 @@ use crate::{
         recent::LruCache,
     },
     moment::Scene,
-    stage::{ColorSpace, Constants, DrawContext, Recording, Sampling},
+    stage::{ColorSpace, Constants, DrawContext, Recording, Sampling, veiled},
 };
 
 /// Edge of a face, texels.
@@ -355,7 +355,7 @@ impl EnvironmentMap {
             let mut constants = between;
             constants.push(("DISCS", 0.0));
             let desc = FullscreenDesc {
-                shader: "frame/environment.wgsl",
+                shader: &veiled("frame/environment.wgsl", constants.all()),
                 entry: "environment",
                 layouts: &[layouts[0], layouts[1], layouts[2], layout],
                 targets: &[FORMAT.into(), FORMAT.into()],

@@ -10,7 +10,7 @@ use crate::{
         pass::{self, FullscreenDesc},
         recent::LruCache,
     },
-    stage::{Constants, Recording, Sampling, Stages},
+    stage::{Constants, Recording, Sampling, Stages, veiled},
 };
 
 /// Texels of one distance slice, and numbers of slices side by side and one above the other.
@@ -96,7 +96,7 @@ impl Froxels {
             || {
                 let target = wgpu::ColorTargetState { format: FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL };
                 let desc = FullscreenDesc {
-                    shader: kind.shader,
+                    shader: &veiled(kind.shader, kind.constants.all()),
                     entry: "froxels",
                     layouts,
                     targets: &[target.clone(), target],

@@ -29,7 +29,7 @@ const VARIANTS: [(&str, &str); 7] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
     ("clear", "frame/composite.wgsl"),
-    ("plain", "frame/composite.wgsl"),
+    ("plain", "fog/banks.wgsl"),
     ("dry", "frame/composite.wgsl"),
     ("box", "clouds/probe.wgsl"),
     ("lamps", "clouds/glow_view.wgsl"),

@@ -13,7 +13,7 @@ use crate::{
         pass::{self, QuadsDesc},
         recent::LruCache,
     },
-    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
+    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag, veiled},
 };
 
 /// Format of the layer in front of the picture.
@@ -162,7 +162,7 @@ impl ChannelPass {
         let own = &self.layouts[usize::from(multi)];
         let make = || {
             let name = if multi { "lightning/channel.wgsl:multi" } else { "lightning/channel.wgsl" };
-            let module = device.shader(name)?;
+            let module = device.shader(&veiled(name, constants))?;
             let mut all = constants.to_vec();
             all.push(("HAS_DEPTH", flag(has_depth)));
             let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];

@@ -21,7 +21,7 @@ use crate::{
     },
     moment::Scene,
     particles::{LAYER_FORMAT, layer_pass},
-    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag},
+    stage::{Block, Constant, FrameUniform, MergedFrame, Recording, Texture, flag, veiled},
 };
 
 /// Uniform block `Columns` of `shaders/rain/area.wgsl`.
@@ -273,8 +273,8 @@ impl AreaPass {
     ) -> Result<wgpu::RenderPipeline> {
         let (columns, counts) = (&self.layouts[usize::from(kind.multi)], self.counts);
         let make = || {
-            let module =
-                device.shader(if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" })?;
+            let name = if kind.multi { "rain/shaft_view.wgsl:multi" } else { "rain/shaft_view.wgsl" };
+            let module = device.shader(&veiled(name, constants))?;
             let mut all = constants.to_vec();
             all.extend([
                 ("HAS_DEPTH", flag(kind.has_depth)),

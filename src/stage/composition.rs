@@ -89,6 +89,13 @@ pub(crate) enum Block {
     OnSurfaces = 1,
 }
 
+/// Returns the name of a shader that applies the veil. Where the constants need none, it is without the code for a veil
+/// that differs from place to place.
+pub(crate) fn veiled(shader: &str, constants: &[Constant]) -> String {
+    let by_place = constants.iter().any(|(name, value)| *name == "BY_PLACE" && *value > 0.0);
+    format!("{shader}{}", if by_place { "" } else { ":plain" })
+}
+
 /// Properties of the weather that select the shader's variant and the kinds of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Traits {

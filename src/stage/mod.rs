@@ -19,7 +19,7 @@ mod target;
 mod uniform;
 
 pub(crate) use composition::{
-    Block, Composition, Constant, Constants, Contribution, MergedFrame, Pipeline, Texture, Traits, flag,
+    Block, Composition, Constant, Constants, Contribution, MergedFrame, Pipeline, Texture, Traits, flag, veiled,
 };
 pub(crate) use context::{DrawContext, DrawTarget, FrameContext, PlannedShares, Tone};
 pub use diagnostic::Diagnostic;
