@@ -1,8 +1,10 @@
 // Replaces banks.wgsl in pipelines that draw no fog banks.
 //!include "fog/lookup.wgsl"
 
-// Whether the veil differs from place to place.
-const BY_PLACE: bool = false;
+// Constants of banks.wgsl. None is used but the first, which is false.
+override BY_PLACE: bool = false;
+override BANKS_OVERLAP: bool = true;
+override BANK_SHAPES: u32 = 15u;
 
 fn banks_met(origin: vec3f, direction: vec3f, range: f32) -> u32 {
     return 0u;
