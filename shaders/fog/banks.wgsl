@@ -291,7 +291,8 @@ fn over_bank(k: u32, ray: BankRay) -> BankRay {
     return BankRay(k, ray.origin, ray.direction, bank_plan(k, ray.origin), way, ray.h0, ray.mu, ray.t);
 }
 
-// Chord of a ray in which the bank's share is not everywhere the same: as bank_chord, or the middle third.
+// Distances along a ray between which it is inside the shape: for a polygon that is not convex, the middle third of the
+// chord `outer`; for a ray that misses the shape, its middle.
 fn inner_chord(ray: BankRay, outer: vec2f) -> vec2f {
     if (BANK_SHAPES & 8u) != 0u && low_air.banks[ray.bank].kind > BANK_CONVEX {
         let begin = max(outer.x, 0.0);
@@ -409,7 +410,7 @@ fn fog_of_banks(met: u32, origin: vec3f, direction: vec3f, range: f32) -> f32 {
     return depth;
 }
 
-// Effect of bank `k` along a ray; a transmittance of 1 where the ray does not meet it.
+// Returns the effect of bank `k` along a ray. Where the ray does not meet the bank, the transmittance is 1.
 fn bank_along(k: u32, origin: vec3f, direction: vec3f, range: f32) -> Fog {
     let ray = bank_ray(k, origin, direction, range);
     let outer = bank_chord(ray, low_air.banks[k].perimeter);

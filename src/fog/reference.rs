@@ -212,11 +212,17 @@ pub fn fog_beside_drops(
     plane: f64,
     hidden: f64,
 ) -> FogSample {
+    fog_beside(m, origin, direction, [range, plane], [hidden, 0.0])
+}
+
+/// Returns the effect of fog along a ray to an object at a distance along it and from the camera's plane, m. `less` has
+/// the optical depths that single drops hide of the precipitation and that fog banks replace of the layer.
+fn fog_beside(m: &FogModel, origin: DVec3, direction: DVec3, [range, plane]: [f64; 2], less: [f64; 2]) -> FogSample {
     match m.kind {
         FogKind::Clear if m.falling.extinction <= 0.0 => {
             FogSample { transmittance: DVec3::ONE, shade: 1.0, ..FogSample::default() }
         }
-        FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, [hidden, 0.0]),
+        FogKind::Clear | FogKind::Slab | FogKind::Exponential => fog_layer(m, origin, direction, range, less),
         _ => fog_compatible(m, direction, range, plane),
     }
 }
@@ -224,12 +230,7 @@ pub fn fog_beside_drops(
 /// Returns the effect of a layer from the camera as [`fog_along`] does, where fog banks replace the optical depth
 /// `replaced` of the layer.
 pub(super) fn fog_beside_banks(m: &FogModel, direction: DVec3, range: f64, replaced: f64) -> FogSample {
-    match m.kind {
-        FogKind::Clear | FogKind::Slab if m.kind == FogKind::Slab || m.falling.extinction > 0.0 => {
-            fog_layer(m, DVec3::ZERO, direction, range, [0.0, replaced])
-        }
-        _ => fog_along(m, DVec3::ZERO, direction, range, range),
-    }
+    fog_beside(m, DVec3::ZERO, direction, [range, range], [0.0, replaced])
 }
 
 /// Returns the effect of a fog bank along a ray from the camera that meets it between the distances `ends`, m, with the

@@ -91,7 +91,7 @@ impl DrawnEffect for FogView {
         let least = self.variant.filter(|_| share > 0.0);
         to.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
         let banks = self.variant.is_some_and(|variant| variant.bank_shapes != 0);
-        let traits = |veils_all| Traits { veils_all, veils_by_place: veils_all && banks, ..Traits::default() };
+        let traits = |veils_all| Traits { veils_all, ..Traits::default() };
         to.set_traits(traits(self.variant.is_some()), traits(least.is_some()));
         to.between_and_veil("BY_PLACE", flag(banks), flag(banks));
         let [whole, least] = [self.variant, least].map(|variant| variant.unwrap_or(FogVariant::ALL));

@@ -160,8 +160,8 @@ pub(crate) struct Situation {
     pub conditions: Conditions,
 }
 
-/// Largest change of what a picture shows of the weather, relative to its value, over which a gauge stays valid. A part
-/// that the weather did not have is drawn in any case.
+/// Largest relative change of each quantity of the weather that a picture shows, up to which a gauge stays valid. A
+/// part that the weather did not have is drawn in any case.
 const NEAR: f64 = 0.05;
 
 impl Situation {

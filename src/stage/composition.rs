@@ -101,8 +101,6 @@ pub(crate) fn veiled(shader: &str, constants: &[Constant]) -> String {
 pub(crate) struct Traits {
     /// The weather veils every pixel, including those on which the host drew nothing.
     pub veils_all: bool,
-    /// The veil of all pixels has bounds: it differs from place to place.
-    pub veils_by_place: bool,
     /// The weather veils what the host drew.
     pub veils_drawn: bool,
     /// Every pixel marches a ray, so that separate draws for each kind of pixels would gain nothing.
@@ -119,7 +117,6 @@ impl Traits {
     fn or(self, other: Self) -> Self {
         Self {
             veils_all: self.veils_all | other.veils_all,
-            veils_by_place: self.veils_by_place | other.veils_by_place,
             veils_drawn: self.veils_drawn | other.veils_drawn,
             is_marched: self.is_marched | other.is_marched,
             is_fine: self.is_fine | other.is_fine,
@@ -147,14 +144,7 @@ impl Pipeline {
         between: Constants::NONE,
         of_veil: Constants::NONE,
         composed: Constants::NONE,
-        traits: Traits {
-            veils_all: false,
-            veils_by_place: false,
-            veils_drawn: false,
-            is_marched: false,
-            is_fine: false,
-            is_overlaid: false,
-        },
+        traits: Traits { veils_all: false, veils_drawn: false, is_marched: false, is_fine: false, is_overlaid: false },
     };
 }
 

@@ -8,7 +8,7 @@ use super::{
 /// Value that a picture shows, and the value below which only the difference counts, in the same unit.
 type SeenValue = [f64; 2];
 
-/// Value of a share, of which one fiftieth is as visible as one twentieth of a quantity.
+/// Least value for quantities between 0 and 1: where others may change by 5 %, these may change by 0.02.
 const SHARE: f64 = 0.4;
 
 impl Conditions {

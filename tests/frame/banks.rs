@@ -214,7 +214,8 @@ fn the_depth_of_banks_together_is_that_along_the_way() {
     assert!(held > 0.999 && worst < 0.02, "{held} {worst}");
 }
 
-/// Sky pixels from every camera: the query integrates the shares on its own, and lights them by the same solution.
+/// Compares sky pixels from every camera with the query, which integrates the shares by itself and has the same
+/// solution of the light.
 #[test]
 fn the_light_of_banks_is_the_light_asked_for() {
     let mut bench = Bench::new(ContextDesc::default());

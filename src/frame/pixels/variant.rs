@@ -1,7 +1,7 @@
 //! Variant of the composition: the properties that distinguish one compiled pipeline from another.
 
 use super::pixel_kind::Pixels;
-use crate::stage::{Constants, Pipeline, Sampling, Stages, flag};
+use crate::stage::{Constants, Pipeline, Sampling, Stages, flag, veiled};
 
 /// Properties that distinguish one compiled variant from another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,16 +33,16 @@ impl Variant {
             _ if diagnoses => (self.sampling.diagnostic(), "diagnose"),
             _ => (composed, entry),
         };
-        let traits = &self.constants.traits;
-        let veil = match (traits.veils_all, traits.veils_by_place) {
-            (false, _) => ":clear",
-            (true, false) => ":plain",
-            (true, true) => "",
-        };
         let dry = if self.stages.has(Stages::SURFACE) { "" } else { ":dry" };
-        // Interpolated pixels already contain the fog.
-        let (veil, even) = if self.pixels.are_even() { ("", ":even") } else { (veil, "") };
-        (format!("{name}{veil}{dry}{even}"), entry)
+        let shader = if self.pixels.are_even() {
+            // Interpolated pixels already contain the fog.
+            format!("{name}{dry}:even")
+        } else if self.constants.traits.veils_all {
+            veiled(name, self.constants.between.all()) + dry
+        } else {
+            format!("{name}:clear{dry}")
+        };
+        (shader, entry)
     }
 
     /// Whether the variant equals `other` with these constants, without copying them.
