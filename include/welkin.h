@@ -8216,6 +8216,8 @@ typedef struct wk_soil_kind {
     double sinkage_kphi;
     /** Exponent n. Range [0.1, 3], default 1. */
     double sinkage_n;
+    /** Mean colour of the drawn surface when moist, linear Rec. 709 albedo. Range [0, 1], default that of loam. */
+    double albedo[3];
 } wk_soil_kind;
 
 /** Every field of `wk_soil_kind` at its default. */
@@ -8232,7 +8234,8 @@ typedef struct wk_soil_kind {
     /* reserved0 */ 0, \
     /* sinkage_kc */ 0.0, \
     /* sinkage_kphi */ 1500.0, \
-    /* sinkage_n */ 1.0 \
+    /* sinkage_n */ 1.0, \
+    /* albedo */ { 0.18, 0.106, 0.045 } \
 }
 
 /**
@@ -8541,6 +8544,10 @@ typedef struct wk_soil_point {
     wk_soil_kind_id kind;
     /** 1 if the cell has ground; all other fields are 0 otherwise. */
     uint32_t has_ground;
+    /** Colour of the soil that shows, linear Rec. 709 albedo. */
+    float albedo[3];
+    /** Share of the cell that this soil covers, 0 to 1; the undug surface shows in the rest. */
+    float covered;
 } wk_soil_point;
 
 /**

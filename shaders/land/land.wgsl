@@ -10,6 +10,8 @@ const STEEP: f32 = 0.69;
 const GENTLE: f32 = 0.81;
 // Altitudes between which natural ground loses its grass, m.
 const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
+// Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of it.
+const DUG_VARIES: vec2f = vec2f(0.14, 0.09);
 // Index of the class of soil, of rock, and of grass.
 const SOIL: u32 = 1u;
 const ROCK: u32 = 2u;
@@ -58,20 +60,41 @@ fn ground_albedo(shares: array<f32, 7>, cosine: f32, altitude: f32, noise: vec2f
     return clamp(albedo, vec3f(0.005), vec3f(0.9));
 }
 
+// Returns the albedo of dug soil times the share that it covers, and this share. Soil is varied like rock.
+fn dug_soil(uv: vec2f, noise: vec2f) -> vec4f {
+    if land.has_dug == 0u {
+        return vec4f(0.0);
+    }
+    let soil = textureSampleLevel(page_dug, page_sampler, uv, 0.0);
+    return vec4f(soil.rgb * max(1.0 + DUG_VARIES.x * noise.x + DUG_VARIES.y * noise.y, 0.3), soil.a);
+}
+
+// Returns the normal of a surface on which clods lie. `share` is that of the clods.
+fn cloddy(normal: vec3f, share: f32, place: vec3f, footprint: f32) -> vec3f {
+    if share <= 0.0 {
+        return normal;
+    }
+    let slope = share * clod_slope(place, footprint);
+    return normalize(normal - (slope - dot(slope, normal) * normal));
+}
+
 // Returns the luminance of the ground at a fragment.
 fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
     let size = vec2f(textureDimensions(page_slopes));
     let uv = (vec2f(in.slot) + in.texel + 0.5) / size;
     let slopes = textureSampleLevel(page_slopes, page_sampler, uv, 0.0);
     let slope = mix(slopes.xy, slopes.zw, in.morph);
-    let tilted = normalize(vec3f(-slope, 1.0));
+    let noise = vec2f(fine_noise(in.place, footprint), broad_noise(in.place, footprint));
+    let soil = dug_soil(uv, noise);
+    let tilted = cloddy(normalize(vec3f(-slope, 1.0)), soil.a, in.place, footprint);
     let normal = land.to_local[0].xyz * tilted.x + land.to_local[1].xyz * tilted.y + land.to_local[2].xyz * tilted.z;
     let here = land.to_local[0].xyz * in.place.x + land.to_local[1].xyz * in.place.y + land.to_local[2].xyz * in.place.z;
     let up = normalize(vec3f(here.xy * land.curvature, max(1.0 + here.z * land.curvature, 0.1)));
     let cosine = dot(normal, up);
     let altitude = land.altitude + in.place.z + land.eye.z;
-    let noise = vec2f(fine_noise(in.place, footprint), broad_noise(in.place, footprint));
-    let albedo = ground_albedo(class_shares(uv), cosine, altitude, noise);
+    // Walls of soil are steep, and yet no rock.
+    let firm = mix(cosine, 1.0, min(4.0 * soil.a, 1.0));
+    let albedo = (1.0 - soil.a) * ground_albedo(class_shares(uv), firm, altitude, noise) + soil.rgb;
     let direct = land.sun_lux.rgb * max(dot(normal, land.sun.xyz), 0.0) + land.moon_lux.rgb * max(dot(normal, land.moon.xyz), 0.0);
     let open = 0.5 + 0.5 * cosine;
     return albedo * (direct + land.sky_lux.rgb * open + land.bounce_lux.rgb * (1.0 - open)) / PI;

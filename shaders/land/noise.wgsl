@@ -37,6 +37,51 @@ fn octave_share(octave: Octave, footprint: f32) -> f32 {
     return 1.0 - smoothstep(octave.turn.z, octave.turn.w, footprint);
 }
 
+// Octaves of clods: those of the fine noise but the longest.
+const CLOD_OCTAVES: u32 = 3u;
+// Height of clods over their length. The heights then have a standard deviation of 2.3 cm, a random roughness between
+// that of harrowed and of ploughed soil (Renard et al. 1997, chapter 5).
+const CLOD_HEIGHT: f32 = 0.085;
+
+// Value noise of four cells of a level lattice, and its change across the square in both directions. Arguments are
+// those of level_noise.
+fn level_slopes(low: vec2u, high: vec2u, rest: u32, share: vec2f) -> vec3f {
+    let south = vec2f(key_number(low.x ^ low.y ^ rest), key_number(high.x ^ low.y ^ rest));
+    let north = vec2f(key_number(low.x ^ high.y ^ rest), key_number(high.x ^ high.y ^ rest));
+    let west_east = mix(south, north, share.y);
+    return vec3f(
+        mix(west_east.x, west_east.y, share.x),
+        west_east.y - west_east.x,
+        mix(north.x, north.y, share.x) - mix(south.x, south.y, share.x),
+    );
+}
+
+// Gradient of the height of clods, rise over run along the three axes, filtered.
+fn clod_slope(place: vec3f, footprint: f32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < CLOD_OCTAVES; i++) {
+        let octave = land.octaves[i];
+        let kept = octave_share(octave, footprint);
+        if kept > 0.0 {
+            let at = octave_place(octave, place);
+            let low = floor(at);
+            let part = at - low;
+            let share = part * part * (3.0 - 2.0 * part);
+            let rise = 6.0 * part * (1.0 - part);
+            let key = vec3u(octave.cell.xyz + vec3i(low)) * AXES;
+            let next = key + AXES;
+            let seed = u32(octave.cell.w);
+            let bottom = level_slopes(key.xy, next.xy, key.z ^ seed, share.xy);
+            let top = level_slopes(key.xy, next.xy, next.z ^ seed, share.xy);
+            let turned = rise * vec3f(mix(bottom.yz, top.yz, share.z), top.x - bottom.x);
+            let c = octave.turn.x;
+            let s = octave.turn.y;
+            sum += kept * vec3f(c * turned.x + s * turned.y, c * turned.y - s * turned.x, turned.z);
+        }
+    }
+    return CLOD_HEIGHT * sum;
+}
+
 // Noise of grains and tufts, in space: it does not stretch on steep ground.
 fn fine_noise(place: vec3f, footprint: f32) -> f32 {
     var sum = 0.0;

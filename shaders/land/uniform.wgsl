@@ -38,6 +38,8 @@ struct LandUniform {
     altitude: f32,
     // Curvature of the planet, 1/m.
     curvature: f32,
+    // 1 where the pages have colours of dug soil.
+    has_dug: u32,
     // For each level: the distance at which its vertices begin to move, cells, and 1 over the distance over which they
     // move.
     levels: array<vec4f, 27>,
@@ -63,3 +65,5 @@ struct LandUniform {
 @group(1) @binding(3) var page_classes: texture_2d<f32>;
 @group(1) @binding(4) var page_ground: texture_2d<f32>;
 @group(1) @binding(5) var page_sampler: sampler;
+// Albedo of dug soil times the share that it covers, and this share.
+@group(1) @binding(6) var page_dug: texture_2d<f32>;

@@ -47,6 +47,7 @@ fn kind_of(c: &wk_soil_kind) -> SoilKind {
         cohesion_kpa: c.cohesion_kpa,
         friction_deg: c.friction_deg,
         sinkage: (c.sinks != 0).then_some(set),
+        albedo: c.albedo,
     }
 }
 

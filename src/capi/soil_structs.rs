@@ -72,6 +72,8 @@ pub struct wk_soil_kind {
     pub sinkage_kphi: f64,
     /// Exponent n. Range [0.1, 3], default 1.
     pub sinkage_n: f64,
+    /// Mean colour of the drawn surface when moist, linear Rec. 709 albedo. Range [0, 1], default that of loam.
+    pub albedo: [f64; 3],
 }
 
 impl wk_soil_kind {
@@ -89,6 +91,7 @@ impl wk_soil_kind {
         sinkage_kc: 0.0,
         sinkage_kphi: 1500.0,
         sinkage_n: 1.0,
+        albedo: [0.18, 0.106, 0.045],
     };
 }
 
@@ -439,12 +442,25 @@ pub struct wk_soil_point {
     pub kind: wk_soil_kind_id,
     /// 1 if the cell has ground; all other fields are 0 otherwise.
     pub has_ground: u32,
+    /// Colour of the soil that shows, linear Rec. 709 albedo.
+    pub albedo: [f32; 3],
+    /// Share of the cell that this soil covers, 0 to 1; the undug surface shows in the rest.
+    pub covered: f32,
 }
 
 impl wk_soil_point {
     pub(super) fn of(point: Option<SoilPoint>) -> Self {
-        let none =
-            Self { surface_m: 0.0, change_m: 0.0, loose_m: 0.0, loose_kg_m3: 0.0, revision: 0, kind: 0, has_ground: 0 };
+        let none = Self {
+            surface_m: 0.0,
+            change_m: 0.0,
+            loose_m: 0.0,
+            loose_kg_m3: 0.0,
+            revision: 0,
+            kind: 0,
+            has_ground: 0,
+            albedo: [0.0; 3],
+            covered: 0.0,
+        };
         point.map_or(none, |p| Self {
             surface_m: p.surface_m,
             change_m: p.change_m,
@@ -453,6 +469,8 @@ impl wk_soil_point {
             revision: p.revision,
             kind: p.kind.0.into(),
             has_ground: 1,
+            albedo: p.albedo.map(|v| v as f32),
+            covered: p.covered as f32,
         })
     }
 }

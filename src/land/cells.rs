@@ -1,9 +1,12 @@
 //! Cells of a terrain as the drawing reads them: across tiles, with a height at every lattice position.
 
-use crate::terrain::{CellRect, HOLE, Terrain, Tile};
+use crate::terrain::{CellRect, DugColor, HOLE, Terrain, Tile};
 
 /// Farthest distance from which a position without ground takes its height, as a power of two of cells.
 pub(super) const FARTHEST_RING: u32 = 10;
+
+/// Steepness of a wall, drop over distance: steeper than soil rests, and than grass grows on.
+const WALL: f64 = 0.8;
 
 /// Directions of the eight positions around a position.
 const RING: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
@@ -44,6 +47,21 @@ impl<'a> CellReader<'a> {
     pub fn class(&mut self, place: [i32; 2]) -> Option<u8> {
         let (tile, cell) = self.tile_of(place)?;
         Some(tile.class_number(cell)).filter(|number| *number != HOLE)
+    }
+
+    /// Soil that shows in a cell.
+    pub fn dug_color(&mut self, place: [i32; 2]) -> DugColor {
+        self.tile_of(place).map_or_else(DugColor::default, |(tile, cell)| tile.dug_color(cell))
+    }
+
+    /// Returns whether a cell is the rim of a wall of soil: soil shows in a neighbour, and the drop to it is that of a
+    /// [`WALL`].
+    pub fn tops_wall(&mut self, [x, y]: [i32; 2]) -> bool {
+        let Some(own) = self.height([x, y]) else { return false };
+        let drop = (WALL * self.terrain.desc.cell_m) as f32;
+        [[x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]]
+            .into_iter()
+            .any(|at| self.dug_color(at).share > 0 && self.height(at).is_some_and(|height| own - height > drop))
     }
 
     /// Height at a lattice position. Where there is no ground it is the mean of the nearest ground around it, at

@@ -17,7 +17,8 @@
 //! to 66 x 66 texels. Pages that were used last are kept. A change of the terrain writes the texels of all pages that
 //! depend on it, in the frame that follows; the cost grows with the changed rectangle.
 //!
-//! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise.
+//! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise. Dug soil covers them
+//! with a colour that the tiles have, and with clods.
 //!
 //! **Light** is that of sun, moon and sky at the ground below the camera, for the ground's own slope; hills cast no
 //! shadows. The composition adds to the terrain what it adds to the host's own surfaces: water, lying snow, shadows of

@@ -4,6 +4,7 @@
 //! on, so that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values
 //! depend on the lattice position and the level alone, so pages that meet have the same values on their common edge.
 //! Each texel also has the slope of the next coarser level, to which the shading moves together with the vertices.
+//! Where the terrain has soil, texels have its colour, too, in a texture of its own.
 
 use half::f16;
 
@@ -11,7 +12,10 @@ use super::{
     cells::CellReader,
     relief::{NODE, NodeKey},
 };
-use crate::terrain::{CLASSES, CellRect};
+use crate::{
+    light::tone::{srgb_decode, srgb_encode},
+    terrain::{CLASSES, CellRect, DugColor, Terrain},
+};
 
 /// Vertices along a side of a page.
 pub(super) const VERTICES: i32 = NODE + 1;
@@ -38,6 +42,8 @@ pub(super) fn texels_in_node(level: u8) -> i32 {
 type SlopeTexel = [u16; 4];
 /// Shares of the classes, in the order of their numbers, and in the last byte 255 where there is ground.
 type ClassTexel = [u8; 8];
+/// Colour of dug soil times its share, in codes of sRGB, and its share.
+type DugTexel = [u8; 4];
 
 /// Scratch space in which a page, or a part of it, is computed.
 pub(super) struct PageWriter {
@@ -49,6 +55,10 @@ pub(super) struct PageWriter {
     pub slopes: Vec<SlopeTexel>,
     pub classes: Vec<ClassTexel>,
     pub vertices: Vec<f32>,
+    /// Dug soil of the texels written last; empty where the terrain has no soil.
+    pub dug: Vec<DugTexel>,
+    /// Linear value of each code of sRGB.
+    linear: [f32; 256],
 }
 
 impl Default for PageWriter {
@@ -60,6 +70,8 @@ impl Default for PageWriter {
             slopes: Vec::new(),
             classes: Vec::new(),
             vertices: Vec::new(),
+            dug: Vec::new(),
+            linear: std::array::from_fn(|code| srgb_decode(code as f64 / 255.0) as f32),
         }
     }
 }
@@ -149,6 +161,8 @@ impl PageWriter {
         }
         self.slopes.clear();
         self.classes.clear();
+        self.dug.clear();
+        let has_dug = shows_soil(cells.terrain);
         for [i, j] in rect.places() {
             let own = self.slope_at([i, j], 1, step_m);
             let coarse = if has_coarse { self.coarse_at([i, j]) } else { own };
@@ -157,7 +171,28 @@ impl PageWriter {
             let place = position(page, [i, j]);
             let classes = classes(cells, place, texel_cells(page.level), default);
             self.classes.push(classes);
+            if has_dug {
+                self.dug.push(self.dug_texel(cells, place, texel_cells(page.level)));
+            }
         }
+    }
+
+    /// Mean of the dug soil in the square of a texel around a lattice position.
+    fn dug_texel(&self, cells: &mut CellReader<'_>, place: [i32; 2], side: i32) -> DugTexel {
+        let (mut sum, mut share, mut last) = ([0.0; 3], 0, DugColor::default());
+        let samples = samples(side);
+        for at in samples.places(place) {
+            last = cells.dug_color(at);
+            if last.share < u8::MAX && cells.tops_wall(at) {
+                last = cells.terrain.surface_soil;
+            }
+            sum.iter_mut().zip(last.albedo).for_each(|(sum, code)| *sum += self.linear[usize::from(code)]);
+            share += u32::from(last.share);
+        }
+        let count = samples.count.pow(2) as u32;
+        let code = |sum: f32| (255.0 * srgb_encode(f64::from(sum) / f64::from(count))).round() as u8;
+        let [r, g, b] = if count == 1 || share == 0 { last.albedo } else { sum.map(code) };
+        [r, g, b, (share / count) as u8]
     }
 
     /// Index of a texel in the scratch arrays.
@@ -208,30 +243,53 @@ fn position(page: NodeKey, [i, j]: [i32; 2]) -> [i32; 2] {
     [x + i * step, y + j * step]
 }
 
+/// Whether pages of a terrain have colours of dug soil.
+pub(super) fn shows_soil(terrain: &Terrain) -> bool {
+    terrain.soil_revision > 0
+}
+
 /// Whether a texel of a page has no ground.
 pub(super) fn has_holes(cells: &mut CellReader<'_>, page: NodeKey) -> bool {
     PageRect::texels(page.level).places().any(|at| cells.class(position(page, at)).is_none())
 }
 
+/// Places in the square of a texel at which its cells are read.
+#[derive(Clone, Copy)]
+struct TexelSamples {
+    /// Side of the texel, cells.
+    side: i32,
+    /// Number of places along a side.
+    count: i32,
+}
+
+fn samples(side: i32) -> TexelSamples {
+    TexelSamples { side, count: side.min(CLASS_SAMPLES) }
+}
+
+impl TexelSamples {
+    /// Lattice positions of the places around a texel's own, by rows from the south-west.
+    fn places(self, [x, y]: [i32; 2]) -> impl Iterator<Item = [i32; 2]> {
+        let off = move |k: i32| (2 * k + 1) * self.side / (2 * self.count) - self.side / 2;
+        (0..self.count).flat_map(move |j| (0..self.count).map(move |i| [x + off(i), y + off(j)]))
+    }
+}
+
 /// Shares of the classes in the square of a texel around a lattice position.
-fn classes(cells: &mut CellReader<'_>, [x, y]: [i32; 2], side: i32, default: u8) -> ClassTexel {
+fn classes(cells: &mut CellReader<'_>, place: [i32; 2], side: i32, default: u8) -> ClassTexel {
     let mut texel = [0; 8];
-    let Some(own) = cells.class([x, y]) else { return texel };
+    let Some(own) = cells.class(place) else { return texel };
     texel[7] = 255;
     let class = |number: u8| usize::from(if number == 0 { default } else { number });
-    let count = side.min(CLASS_SAMPLES);
-    if count == 1 {
+    let samples = samples(side);
+    if samples.count == 1 {
         texel[class(own)] = 255;
         return texel;
     }
-    let off = |k: i32| (2 * k + 1) * side / (2 * count) - side / 2;
     let (mut shares, mut all) = ([0u32; CLASSES], 0);
-    for j in 0..count {
-        for i in 0..count {
-            if let Some(number) = cells.class([x + off(i), y + off(j)]) {
-                shares[class(number)] += 1;
-                all += 1;
-            }
+    for at in samples.places(place) {
+        if let Some(number) = cells.class(at) {
+            shares[class(number)] += 1;
+            all += 1;
         }
     }
     if all == 0 {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{
     cells::{CellReader, FARTHEST_RING},
-    page::{PageRect, PageWriter, TEXELS, VERTICES, has_holes},
+    page::{PageRect, PageWriter, TEXELS, VERTICES, has_holes, shows_soil},
     relief::NodeKey,
 };
 use crate::{
@@ -25,19 +25,22 @@ pub(super) struct PageTextures {
     pub slopes: wgpu::Texture,
     /// Shares of the first four classes, and of the other three with the presence of ground.
     pub classes: [wgpu::Texture; 2],
+    /// Colours of dug soil; a single texel without any where the terrain has no soil.
+    pub dug: wgpu::Texture,
 }
 
 impl PageTextures {
-    fn new(device: &wgpu::Device, slots: u32) -> Self {
+    fn new(device: &wgpu::Device, slots: u32, has_dug: bool) -> Self {
         use wgpu::{TextureFormat as F, TextureUsages as U};
-        let texture = |side: i32, format| {
-            let size = (SLOTS_IN_ROW * side as u32, slots / SLOTS_IN_ROW * side as u32);
-            flat_texture(device, "land pages", size, format, U::TEXTURE_BINDING | U::COPY_DST)
-        };
+        let usage = U::TEXTURE_BINDING | U::COPY_DST;
+        let size = |side: i32| (SLOTS_IN_ROW * side as u32, slots / SLOTS_IN_ROW * side as u32);
+        let texture = |side, format| flat_texture(device, "land pages", size(side), format, usage);
+        let dug = if has_dug { size(TEXELS) } else { (1, 1) };
         Self {
             vertices: texture(VERTICES, F::R32Float),
             slopes: texture(TEXELS, F::Rgba16Float),
             classes: [texture(TEXELS, F::Rgba8Unorm), texture(TEXELS, F::Rgba8Unorm)],
+            dug: flat_texture(device, "land soil", dug, F::Rgba8UnormSrgb, usage),
         }
     }
 }
@@ -67,15 +70,20 @@ pub(super) struct Pages {
     half: Vec<[u8; 4]>,
     /// Class of cells without one, with which the pages were filled.
     default_class: u8,
+    /// Whether the pages have colours of dug soil.
+    pub has_dug: bool,
     /// Texels written since the view was created.
     #[cfg(test)]
     pub texels_written: u64,
 }
 
 impl Pages {
-    /// Begins a picture in which cells without a class have the class `default`.
-    pub fn begin(&mut self, default: u8) {
+    /// Begins a picture of a terrain in which cells without a class have the class `default`.
+    pub fn begin(&mut self, terrain: &Terrain, default: u8) {
         self.picture += 1;
+        if self.has_dug != shows_soil(terrain) {
+            *self = Self { has_dug: !self.has_dug, picture: self.picture, ..Self::default() };
+        }
         if self.default_class != default {
             self.default_class = default;
             self.forget();
@@ -129,7 +137,7 @@ impl Pages {
         if count as usize == self.slots.len() {
             return false;
         }
-        self.textures = Some(PageTextures::new(&device.device, count));
+        self.textures = Some(PageTextures::new(&device.device, count, self.has_dug));
         self.slots = vec![EMPTY; count as usize];
         self.by_key = HashMap::with_capacity(2 * count as usize);
         true
@@ -150,7 +158,7 @@ impl Pages {
     /// GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         let [vertices, texels] = [VERTICES, TEXELS].map(|side| u64::from(side.unsigned_abs().pow(2)));
-        self.slots.len() as u64 * (4 * vertices + 16 * texels)
+        self.slots.len() as u64 * (4 * vertices + if self.has_dug { 20 } else { 16 } * texels)
     }
 
     fn write_vertices(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
@@ -179,6 +187,9 @@ impl Pages {
             self.half.clear();
             self.half.extend(self.writer.classes.iter().map(|c| [c[4 * i], c[4 * i + 1], c[4 * i + 2], c[4 * i + 3]]));
             write(device, texture, (slot, TEXELS), part, bytemuck::cast_slice(&self.half));
+        }
+        if self.has_dug {
+            write(device, &textures.dug, (slot, TEXELS), part, bytemuck::cast_slice(&self.writer.dug));
         }
     }
 }

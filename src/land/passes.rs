@@ -65,6 +65,7 @@ impl LandPass {
             (3, Slot::Filtered),
             (4, Slot::Filtered),
             (5, Slot::Sampler),
+            (6, Slot::Filtered),
         ];
         let list: Vec<u16> = patch_indices().collect();
         let indices = buffer(gpu, size_of_val(list.as_slice()), wgpu::BufferUsages::INDEX);
@@ -128,19 +129,20 @@ impl LandPass {
     }
 
     fn bind(&self, device: &wgpu::Device, pages: &PageTextures) -> wgpu::BindGroup {
-        let views = [&pages.vertices, &pages.slopes, &pages.classes[0], &pages.classes[1]]
+        let views = [&pages.vertices, &pages.slopes, &pages.classes[0], &pages.classes[1], &pages.dug]
             .map(|texture| texture.create_view(&Default::default()));
-        let texture = |i: usize| bind::view(i as u32 + 1, &views[i]);
+        let texture = |binding: u32, i: usize| bind::view(binding, &views[i]);
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("land"),
             layout: &self.layout,
             entries: &[
                 self.block.entry(0),
-                texture(0),
-                texture(1),
-                texture(2),
-                texture(3),
+                texture(1, 0),
+                texture(2, 1),
+                texture(3, 2),
+                texture(4, 3),
                 bind::sampler(5, &self.sampler),
+                texture(6, 4),
             ],
         })
     }

@@ -64,6 +64,7 @@ fn uniform_of(detail: &LevelDistances, eye: LandEye, top: u8) -> LandUniform {
         to_local: DMat3::IDENTITY,
         curvature: 0.0,
         altitude_m: 0.0,
+        has_dug: false,
         light: LandLight::default(),
     }
     .uniform(DMat4::IDENTITY, top)

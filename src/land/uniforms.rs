@@ -22,7 +22,8 @@ pub(super) struct LandUniform {
     pub spread: f32,
     pub altitude: f32,
     pub curvature: f32,
-    pub pad: [f32; 3],
+    pub has_dug: u32,
+    pub pad: [f32; 2],
     pub levels: [[f32; 4]; LEVELS],
     pub sun: [f32; 4],
     pub sun_lux: [f32; 4],
@@ -57,6 +58,8 @@ pub(super) struct LandPicture {
     pub curvature: f64,
     /// Altitude of the terrain's origin above the sea, m.
     pub altitude_m: f64,
+    /// Whether the pages have colours of dug soil.
+    pub has_dug: bool,
     pub light: LandLight,
 }
 
@@ -82,7 +85,8 @@ impl LandPicture {
             spread: self.detail.spread as f32,
             altitude: self.altitude_m as f32,
             curvature: self.curvature as f32,
-            pad: [0.0; 3],
+            has_dug: self.has_dug.into(),
+            pad: [0.0; 2],
             levels: std::array::from_fn(|level| self.level(level, top)),
             sun: four(self.light.sun),
             sun_lux: lux(self.light.sun_lux),
@@ -120,8 +124,8 @@ mod tests {
             "LandUniform",
             LandUniform,
             [
-                clip, to_local, eye, cell_m, above, spread, altitude, curvature, levels, sun, sun_lux, moon, moon_lux,
-                sky_lux, bounce_lux, materials, octaves
+                clip, to_local, eye, cell_m, above, spread, altitude, curvature, has_dug, levels, sun, sun_lux, moon,
+                moon_lux, sky_lux, bounce_lux, materials, octaves
             ]
         );
         shader::assert_layout!("land/land.wgsl", "Material", Material, [albedo, fine, broad]);

@@ -74,7 +74,7 @@ impl LandView {
             return Ok(());
         }
         let Self { relief, pages, .. } = self;
-        pages.begin(held.surface_class as u8);
+        pages.begin(terrain, held.surface_class as u8);
         relief.update(terrain, |changed| match changed {
             Some(rect) => pages.update(context.device, terrain, rect),
             None => pages.forget(),
@@ -98,6 +98,7 @@ impl LandView {
             to_local: now.scene.world_to_enu * terrain.to_enu.transpose(),
             curvature,
             altitude_m: terrain.altitude_m,
+            has_dug: self.pages.has_dug,
             light: LandLight::below(context, terrain, bounds, eye)?,
         });
         Ok(())

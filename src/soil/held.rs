@@ -1,5 +1,5 @@
-//! Soil of a context, on the tiles of the host's terrain: advanced, saved, and shown to all others as the heights of
-//! the tiles.
+//! Soil of a context, on the tiles of the host's terrain: advanced, saved, and shown to all others as the heights and
+//! colours of the tiles.
 //!
 //! The host's tiles are the undug ground. After each step the change of the soil is added to the heights of the tiles
 //! where it changed, so queries, water, snow and wind see one ground ([`DugGround::changes`] tells the water where).
@@ -13,12 +13,13 @@ use super::{
     material::DEPTH_UNITS,
     patch::{CELLS, SIDE, UndugGround},
     saved::SavedSite,
+    shown::ShownSoil,
     site::{SOIL_STEP_S, SoilPoint, SoilSite, SoilSiteDesc, steps_until},
     weather::WEATHER_STEPS,
 };
 use crate::{
     error::{Error, Result, Status, check_range},
-    terrain::{CellRect, Terrain, TileKey},
+    terrain::{CellRect, DugCell, Terrain, TileKey},
     world::{DUG_SIDE, DUG_WATER_S, DugGround, HeldEffect, UpdateBudget, World, parse_error},
 };
 
@@ -80,11 +81,11 @@ impl UndugGround for Terrain {
     }
 }
 
-/// Writes the change of the soil into the heights of the tiles. `is_known` says that the host has changed no tile since
-/// the last call. Adds each patch whose heights have changed to `changed`, with the rectangle of the changed cells.
+/// Writes the change of the soil into the heights and colours of the tiles. `is_known` says that the host has changed
+/// no tile since the last call. Adds each patch that has changed to `changed`, with the rectangle of the changed cells.
 fn show(terrain: &mut Terrain, site: &SoilSite, is_known: bool, changed: &mut Vec<([i32; 2], CellRect)>) {
     let (shown, revision) = (terrain.soil_revision, terrain.revision + 1);
-    let mut heights = [(0, 0.0); CELLS];
+    let mut cells = [DugCell::default(); CELLS];
     for slot in site.field.slots.values() {
         let patch = site.field.patch(*slot);
         if is_known && patch.revision <= shown {
@@ -101,10 +102,11 @@ fn show(terrain: &mut Terrain, site: &SoilSite, is_known: bool, changed: &mut Ve
             let at = terrain.in_tile([first[0] + (cell % SIDE) as i32, first[1] + (cell / SIDE) as i32]);
             let (undug_m, change) = (tile.undug_m(at), patch.change(cell));
             let dug_m = (f64::from(undug_m) + change as f64 / DEPTH_UNITS) as f32;
-            heights[count] = (at, if change == 0 { undug_m } else { dug_m });
+            let color = ShownSoil::of(patch, cell, &site.field.materials).color();
+            cells[count] = DugCell { cell: at, height_m: if change == 0 { undug_m } else { dug_m }, color };
             count += 1;
         }
-        let rect = terrain.set_dug(tile_slot, &heights[..count], revision);
+        let rect = terrain.set_dug(tile_slot, &cells[..count], revision);
         changed.extend(rect.map(|rect| (patch.key, rect)));
     }
     for (key, _) in changed.iter() {
@@ -113,6 +115,7 @@ fn show(terrain: &mut Terrain, site: &SoilSite, is_known: bool, changed: &mut Ve
         }
     }
     terrain.soil_revision = site.revision();
+    terrain.surface_soil = ShownSoil::of_surface(&site.field.materials).color();
 }
 
 /// Adds rectangles to a list, joined where they lie near each other.

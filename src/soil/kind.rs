@@ -51,26 +51,30 @@ pub struct SoilKind {
     pub friction_deg: f64,
     /// How the soil yields to wheels and tracks; `None` for soil that carries them without sinking.
     pub sinkage: Option<SinkageSet>,
+    /// Mean colour of the drawn surface when moist, linear Rec. 709 albedo, each \[0, 1\].
+    pub albedo: [f64; 3],
 }
 
 /// Built-in kinds in the order of their numbers. The densities are those of dug soil in the engineers' tables (sand dry
 /// 1602, gravel dry 1522, clay dry 1073, earth moist 1442 and dry 1249, broken limestone 1554, coal 890 kg/m^3) times
 /// 1 + swell, so that the dug soil has them. Angles of repose lie in the middle of the published ranges. Cohesion and
-/// friction of sand, loam, clay and topsoil belong to the sets of their sinkage (Wong 2008, table 2.3).
+/// friction of sand, loam, clay and topsoil belong to the sets of their sinkage (Wong 2008, table 2.3). Colours have
+/// the hues and luminances of common Munsell colours of such soils: 10YR 5/4, 2.5Y 5/1, 7.5YR 5/6, 10YR 4/4, 10YR 3/2,
+/// 10YR 7/1 and N 2.
 pub(super) const BUILT_IN: [SoilKind; 7] = [
-    kind([1794.0, 0.12, 34.0], [1.04, 28.0], Some(SinkageSet::DRY_SAND)),
-    kind([1750.0, 0.15, 37.0], [0.0, 37.0], None),
-    kind([1449.0, 0.35, 32.0], [4.14, 13.0], Some(SinkageSet::CLAYEY_38)),
-    kind([1803.0, 0.25, 37.0], [1.72, 29.0], Some(SinkageSet::SANDY_LOAM_15)),
-    kind([1561.0, 0.25, 37.0], [3.3, 33.7], Some(SinkageSet::UPLAND_LOAM)),
-    kind([2533.0, 0.63, 38.0], [1000.0, 40.0], None),
-    kind([1202.0, 0.35, 37.0], [100.0, 35.0], None),
+    kind([1794.0, 0.12, 34.0], [1.04, 28.0], Some(SinkageSet::DRY_SAND), [0.281, 0.177, 0.087]),
+    kind([1750.0, 0.15, 37.0], [0.0, 37.0], None, [0.203, 0.193, 0.166]),
+    kind([1449.0, 0.35, 32.0], [4.14, 13.0], Some(SinkageSet::CLAYEY_38), [0.337, 0.163, 0.063]),
+    kind([1803.0, 0.25, 37.0], [1.72, 29.0], Some(SinkageSet::SANDY_LOAM_15), [0.180, 0.106, 0.045]),
+    kind([1561.0, 0.25, 37.0], [3.3, 33.7], Some(SinkageSet::UPLAND_LOAM), [0.086, 0.060, 0.039]),
+    kind([2533.0, 0.63, 38.0], [1000.0, 40.0], None, [0.453, 0.415, 0.373]),
+    kind([1202.0, 0.35, 37.0], [100.0, 35.0], None, [0.0305, 0.0305, 0.031]),
 ];
 
-const fn kind(bulk: [f64; 3], strength: [f64; 2], sinkage: Option<SinkageSet>) -> SoilKind {
+const fn kind(bulk: [f64; 3], strength: [f64; 2], sinkage: Option<SinkageSet>, albedo: [f64; 3]) -> SoilKind {
     let [density_kg_m3, swell, repose_deg] = bulk;
     let [cohesion_kpa, friction_deg] = strength;
-    SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage }
+    SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage, albedo }
 }
 
 impl SoilKind {
@@ -84,6 +88,9 @@ impl SoilKind {
         check_range("soil_kind.repose_deg", self.repose_deg, 5.0, 60.0, "deg")?;
         check_range("soil_kind.cohesion_kpa", self.cohesion_kpa, 0.0, 1e4, "kPa")?;
         check_range("soil_kind.friction_deg", self.friction_deg, 0.0, 60.0, "deg")?;
+        for (i, albedo) in self.albedo.into_iter().enumerate() {
+            check_range(&format!("soil_kind.albedo[{i}]"), albedo, 0.0, 1.0, "")?;
+        }
         if let Some(set) = self.sinkage {
             check_range("soil_kind.sinkage.kc", set.kc, 0.0, 1e6, "kN/m^(n+1)")?;
             check_range("soil_kind.sinkage.kphi", set.kphi, 0.1, 1e8, "kN/m^(n+2)")?;
@@ -190,4 +197,25 @@ fn check_horizons(horizons: &[SoilHorizon], kinds: usize) -> Result<()> {
 pub(super) fn check_kind(name: &str, kind: SoilKindId, kinds: usize) -> Result<()> {
     let accepted = || format!("a known kind of soil, in [0, {}]", kinds - 1);
     if kind.index() < kinds { Ok(()) } else { Err(Error::range(name, &accepted(), kind.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::luminance;
+
+    /// Luminance of a Munsell value as a share of a white diffuser's (ASTM D1535, 2008).
+    fn munsell_luminance(value: f64) -> f64 {
+        let terms = [1.1914, -0.22533, 0.23352, -0.020484, 0.000_819_39];
+        terms.iter().rev().fold(0.0, |sum, term| (sum + term) * value) / 100.0
+    }
+
+    #[test]
+    fn built_in_kinds_have_the_luminance_of_their_munsell_values() {
+        assert!((munsell_luminance(10.0) - 1.0).abs() < 1e-3);
+        for (kind, value) in BUILT_IN.iter().zip([5.0, 5.0, 5.0, 4.0, 3.0, 7.0, 2.0]) {
+            let (own, stated) = (luminance(&kind.albedo), munsell_luminance(value));
+            assert!((own / stated - 1.0).abs() < 0.02, "{:?}: {own}, {stated} by Munsell", kind.albedo);
+        }
+    }
 }

@@ -26,8 +26,8 @@
 //! host may also keep a [`SoilSite`] of its own, which has no weather.
 //!
 //! Limits: a cell has one column, so a cell that is cut in part gives its upper layers first, and nothing overhangs.
-//! Soil is drawn only as the heights of the tiles, so there are no `view.rs`, `passes.rs` and `candidates.rs`; `laws/`
-//! is the physics in f64 in place of `reference.rs`.
+//! Soil is drawn with its terrain, as heights and colours of the tiles (`shown.rs`), so there are no `view.rs`,
+//! `passes.rs` and `candidates.rs`; `laws/` is the physics in f64 in place of `reference.rs`.
 
 mod field;
 mod heap;
@@ -39,6 +39,7 @@ mod patch;
 mod resistance;
 mod ribbon;
 mod saved;
+mod shown;
 mod site;
 #[cfg(test)]
 mod tests;

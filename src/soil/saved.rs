@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     field::SoilField,
-    kind::{MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId, SoilSettings},
+    kind::{BUILT_IN, MAX_SOIL_KINDS, SoilHorizon, SoilKind, SoilKindId, SoilSettings},
     laws::SinkageSet,
     material::SoilParcel,
     patch::{BankWater, CELLS, Pressed, SoilPatch, UndugGround},
@@ -62,6 +62,13 @@ struct SavedKind {
     strength: [f64; 2],
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sinkage: Option<[f64; 3]>,
+    /// States of older formats have none: those kinds have the default colour.
+    #[serde(default = "default_albedo")]
+    albedo: [f64; 3],
+}
+
+fn default_albedo() -> [f64; 3] {
+    BUILT_IN[SoilKindId::LOAM.index()].albedo
 }
 
 #[derive(Serialize, Deserialize)]
@@ -159,13 +166,14 @@ impl SavedKind {
             bulk: [kind.density_kg_m3, kind.swell, kind.repose_deg],
             strength: [kind.cohesion_kpa, kind.friction_deg],
             sinkage: kind.sinkage.map(|set| [set.kc, set.kphi, set.n]),
+            albedo: kind.albedo,
         }
     }
 
     fn kind(&self) -> SoilKind {
         let ([density_kg_m3, swell, repose_deg], [cohesion_kpa, friction_deg]) = (self.bulk, self.strength);
         let sinkage = self.sinkage.map(|[kc, kphi, n]| SinkageSet { kc, kphi, n });
-        SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage }
+        SoilKind { density_kg_m3, swell, repose_deg, cohesion_kpa, friction_deg, sinkage, albedo: self.albedo }
     }
 }
 

@@ -9,6 +9,7 @@ use super::{
     kind::{MAX_SOIL_KINDS, SoilKind, SoilKindId, SoilSettings, check_kind},
     material::{DEPTH_UNITS, MASS_UNITS, SoilMaterials, SoilParcel, depth_units},
     patch::UndugGround,
+    shown::ShownSoil,
     tool::{MAX_SOIL_TOOLS, SoilToolId, SoilToolPose, SoilToolShape},
     walls::break_walls,
     work::{SoilTool, ToolWork, WorkedGround, pour},
@@ -80,6 +81,10 @@ pub struct SoilPoint {
     pub kind: SoilKindId,
     /// Revision of the site (in a context: of the terrain) at the last change near this place; 0 where nothing was dug.
     pub revision: u64,
+    /// Colour of the soil that shows, linear Rec. 709 albedo.
+    pub albedo: [f64; 3],
+    /// Share of the cell that this soil covers, 0 to 1; the undug surface shows in the rest.
+    pub covered: f64,
 }
 
 /// Content of a tool, and what it met in the last step.
@@ -407,9 +412,16 @@ impl SoilSite {
         let materials = &self.field.materials;
         let Some(SoilCell { slot, cell }) = self.field.find(nearest) else {
             let kind = SoilKindId(materials.bank_kind(0) as u8);
-            let undug =
-                SoilPoint { surface_m: undug_m, change_m: 0.0, loose_m: 0.0, loose_kg_m3: 0.0, kind, revision: 0 };
-            return Some(undug);
+            return Some(SoilPoint {
+                surface_m: undug_m,
+                change_m: 0.0,
+                loose_m: 0.0,
+                loose_kg_m3: 0.0,
+                kind,
+                revision: 0,
+                albedo: materials.kinds[kind.index()].kind.albedo,
+                covered: 0.0,
+            });
         };
         let patch = self.field.patch(slot);
         let (surface_m, loose_m) = (patch.surface[cell] / DEPTH_UNITS, patch.loose[cell] as f64 / DEPTH_UNITS);
@@ -418,8 +430,9 @@ impl SoilSite {
         let kind = most.map_or_else(|| materials.bank_kind(patch.cut[cell]), |(kind, _)| kind);
         let loose_kg_m3 = if loose_m > 0.0 { mass as f64 / MASS_UNITS / (loose_m * materials.area_m2()) } else { 0.0 };
         let change_m = surface_m - undug_m;
-        let revision = patch.revision;
-        Some(SoilPoint { surface_m, change_m, loose_m, loose_kg_m3, kind: SoilKindId(kind as u8), revision })
+        let (revision, kind) = (patch.revision, SoilKindId(kind as u8));
+        let ShownSoil { albedo, share: covered } = ShownSoil::of(patch, cell, materials);
+        Some(SoilPoint { surface_m, change_m, loose_m, loose_kg_m3, kind, revision, albedo, covered })
     }
 
     /// Returns the pose up to which a tool has worked.

@@ -17,6 +17,7 @@
 mod changes;
 mod class;
 mod desc;
+mod dug;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -27,6 +28,7 @@ pub use class::SurfaceClass;
 pub(crate) use class::{CLASSES, HOLE};
 pub(crate) use desc::CellRect;
 pub use desc::{MAX_TERRAIN_CELLS, Rows, TerrainCells, TerrainDesc, TileKey};
+pub(crate) use dug::{DugCell, DugColor};
 pub(crate) use tile::Tile;
 pub use tiles::TerrainPoint;
 pub(crate) use tiles::{AROUND, CellId, Terrain};

@@ -1,6 +1,6 @@
 //! One tile of the terrain: heights, classes, and a hash that each change updates.
 
-use super::{HOLE, SurfaceClass, TerrainCells, TileKey, desc::is_height};
+use super::{DugCell, DugColor, HOLE, SurfaceClass, TerrainCells, TileKey, desc::is_height};
 
 use crate::chance::mixed;
 
@@ -13,6 +13,8 @@ pub(crate) struct Tile {
     pub heights_m: Vec<f32>,
     /// Heights that the host gave. Empty where soil has changed none: they are `heights_m` then.
     undug_m: Vec<f32>,
+    /// Soil that shows in each cell. Empty where none does.
+    dug_colors: Vec<DugColor>,
     /// Class numbers of the cells, or [`HOLE`]. Empty if the host has given no class for any cell.
     classes: Vec<u8>,
     /// Revision of the terrain at this tile's last change.
@@ -38,6 +40,7 @@ impl Tile {
             key: TileKey::default(),
             heights_m: Vec::new(),
             undug_m: Vec::new(),
+            dug_colors: Vec::new(),
             classes: Vec::new(),
             revision: 0,
             soil_revision: 0,
@@ -123,30 +126,47 @@ impl Tile {
         }
     }
 
-    /// Sets the height of a cell with the change of the soil, m. Returns whether the height has changed.
-    pub fn set_dug(&mut self, cell: usize, height_m: f32) -> bool {
-        if self.heights_m[cell] == height_m {
-            return false;
-        }
-        if self.undug_m.is_empty() {
-            self.undug_m = self.heights_m.clone();
-        }
-        self.hash = self.hash.wrapping_sub(self.cell_hash(cell));
-        self.heights_m[cell] = height_m;
-        self.hash = self.hash.wrapping_add(self.cell_hash(cell));
-        true
+    /// Soil that shows in a cell.
+    pub fn dug_color(&self, cell: usize) -> DugColor {
+        self.dug_colors.get(cell).copied().unwrap_or_default()
     }
 
-    /// Whether soil has changed any height.
+    /// Sets a cell with the change of the soil. Returns whether its height or its colour has changed.
+    pub fn set_dug(&mut self, dug: &DugCell) -> bool {
+        let &DugCell { cell, height_m, color } = dug;
+        let (moves, is_tinted) = (self.heights_m[cell] != height_m, self.dug_color(cell) != color);
+        if moves {
+            if self.undug_m.is_empty() {
+                self.undug_m = self.heights_m.clone();
+            }
+            self.hash = self.hash.wrapping_sub(self.cell_hash(cell));
+            self.heights_m[cell] = height_m;
+            self.hash = self.hash.wrapping_add(self.cell_hash(cell));
+        }
+        if is_tinted {
+            if self.dug_colors.is_empty() {
+                self.dug_colors = vec![DugColor::default(); self.heights_m.len()];
+            }
+            self.dug_colors[cell] = color;
+        }
+        moves || is_tinted
+    }
+
+    /// Whether soil has changed any cell.
     pub fn is_dug(&self) -> bool {
-        !self.undug_m.is_empty()
+        !self.undug_m.is_empty() || self.shows_soil()
+    }
+
+    /// Whether soil shows in any cell.
+    pub fn shows_soil(&self) -> bool {
+        !self.dug_colors.is_empty()
     }
 
     /// Undoes all changes by the soil.
     pub fn undo_dug(&mut self) {
         for cell in 0..self.undug_m.len() {
-            self.set_dug(cell, self.undug_m[cell]);
+            self.set_dug(&DugCell { cell, height_m: self.undug_m[cell], color: DugColor::default() });
         }
-        (self.undug_m, self.soil_revision) = (Vec::new(), 0);
+        (self.undug_m, self.dug_colors, self.soil_revision) = (Vec::new(), Vec::new(), 0);
     }
 }

@@ -10,7 +10,10 @@ use std::{
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{CellRect, MAX_TERRAIN_CELLS, RecentChanges, SurfaceClass, TerrainCells, TerrainDesc, Tile, TileKey};
+use super::{
+    CellRect, DugCell, DugColor, MAX_TERRAIN_CELLS, RecentChanges, SurfaceClass, TerrainCells, TerrainDesc, Tile,
+    TileKey,
+};
 use crate::{
     chance::mixed,
     error::{Error, Result},
@@ -71,6 +74,8 @@ pub(crate) struct Terrain {
     pub host_revision: u64,
     /// Revision of the soil whose change the heights include.
     pub soil_revision: u64,
+    /// Soil below the undug surface, which shows in walls.
+    pub surface_soil: DugColor,
     /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
     /// Last changes of its cells.
@@ -103,6 +108,7 @@ impl Terrain {
             revision: 1,
             host_revision: 1,
             soil_revision: 0,
+            surface_soil: DugColor::default(),
             hash: 0,
             recent: RecentChanges::default(),
         })
@@ -292,13 +298,13 @@ impl Terrain {
         Ok(rect)
     }
 
-    /// Sets heights of a tile's cells with the change of the soil, m, as a change with this revision. Returns the
-    /// smallest rectangle around the cells whose height has changed; `None` if there are none.
-    pub fn set_dug(&mut self, slot: u32, heights: &[(usize, f32)], revision: u64) -> Option<CellRect> {
+    /// Sets cells of a tile with the change of the soil, as a change with this revision. Returns the smallest rectangle
+    /// around the cells that have changed; `None` if there are none.
+    pub fn set_dug(&mut self, slot: u32, cells: &[DugCell], revision: u64) -> Option<CellRect> {
         let tile = Arc::make_mut(&mut self.tiles[slot as usize]);
         let (key, before) = (tile.key, hash_of(tile));
         let mut changed: Option<CellRect> = None;
-        for cell in heights.iter().filter_map(|(cell, height_m)| tile.set_dug(*cell, *height_m).then_some(*cell)) {
+        for cell in cells.iter().filter_map(|dug| tile.set_dug(dug).then_some(dug.cell)) {
             let low = [key.east << self.bits, key.north << self.bits];
             let mask = (1usize << self.bits) - 1;
             let low = [low[0] + (cell & mask) as i32, low[1] + (cell >> self.bits) as i32];

@@ -38,7 +38,7 @@ fn heights(key: TileKey, height: impl Fn(f64, f64) -> f64) -> Vec<f32> {
 }
 
 /// A host whose context draws 4 x 4 tiles with cells of this side and heights of cells as `height` says.
-fn host_with(cell_m: f64, height: impl Fn(f64, f64) -> f64) -> Host {
+pub fn host_with(cell_m: f64, height: impl Fn(f64, f64) -> f64) -> Host {
     let mut host = Host::new(wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Depth32Float, 1);
     let desc = TerrainDesc { origin: ORIGIN, cell_m, tile_cells: SIDE };
     host.context.set_terrain(Some(desc)).unwrap();
@@ -92,7 +92,7 @@ impl Host {
     }
 }
 
-fn looking(eye: DVec3, forward: DVec3) -> Mapped {
+pub fn looking(eye: DVec3, forward: DVec3) -> Mapped {
     looking_through(eye, forward, 0.8)
 }
 

@@ -3,6 +3,7 @@
 mod changing_air;
 mod counted;
 mod detour;
+mod dug;
 mod even;
 mod land;
 mod longest;

@@ -26,7 +26,7 @@ use crate::{
 
 use host::{Host, Mapped, mappings, ndc, pixels, texture, to_plane, to_wall};
 
-const SIZE: (u32, u32) = (64, 36);
+pub const SIZE: (u32, u32) = (64, 36);
 const ASPECT: f64 = 64.0 / 36.0;
 const EYE: DVec3 = DVec3::new(3.0, -5.0, 10.0);
 const PLANE_M: f64 = 3.0;

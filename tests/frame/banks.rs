@@ -140,7 +140,7 @@ fn compare(bench: &mut Bench, regions: &[WeatherRegion], name: &str) -> [f64; 3]
             -bench.context.between(camera.position, camera.position + d * range, 0.0).unwrap().transmittance[1].ln()
         };
         // The integral along a way takes about as long as a picture.
-        let compared = || (0..points.len()).step_by(if accept() { 1 } else { 7 });
+        let compared = || (0..points.len()).step_by(if accept() { 1 } else { 31 });
         let clear_asked: Vec<f64> = compared().map(|i| asked(bench, i)).collect();
         bench.context.set_weather_regions(regions).unwrap();
         let foggy = bench.depths(&camera, &depths);

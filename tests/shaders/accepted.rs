@@ -320,6 +320,11 @@ pub const ACCEPTED: &[(&str, &str, &str)] = &[
         "-away / select(leaving, select(-LEAST_WAY, LEAST_WAY, leaving >= 0.0), abs(leaving) < LEAST_WAY)",
         "LEAST_WAY at least, with either sign",
     ),
+    (
+        "cloddy",
+        "normalize(normal - (slope - dot(slope, normal) * normal))",
+        "what is taken from the unit normal lies across it",
+    ),
     ("convex_chord", "normalize(vec2f(b.y - a.y, a.x - b.x))", "corners of a polygon that are equal are refused"),
     (
         "polygon_distance",

@@ -230,6 +230,7 @@ fn wrong_input_is_named_and_changes_nothing() {
         cohesion_kpa: 0.0,
         friction_deg: 30.0,
         sinkage: None,
+        albedo: [0.2; 3],
     };
     let e = context.set_soil(Some(SoilSettings { own_kinds: vec![kind], ..settings() })).unwrap_err();
     assert!(e.to_string().starts_with("own_kinds[0].density_kg_m3 must be in [50, 10000] kg/m^3"), "{e}");

@@ -21,6 +21,7 @@ fn weak() -> SoilSettings {
         cohesion_kpa: 2.0,
         friction_deg: 30.0,
         sinkage: None,
+        albedo: [0.2; 3],
     };
     let horizons = vec![SoilHorizon { top_m: 0.0, kind: SoilKindId(7) }];
     SoilSettings { own_kinds: vec![kind], horizons, ..SoilSettings::default() }

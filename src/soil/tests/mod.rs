@@ -26,7 +26,15 @@ impl UndugGround for Plain {
 
 /// Soil that stands as any wall.
 fn firm(swell: f64) -> SoilKind {
-    SoilKind { density_kg_m3: 2000.0, swell, repose_deg: 35.0, cohesion_kpa: 5000.0, friction_deg: 30.0, sinkage: None }
+    SoilKind {
+        density_kg_m3: 2000.0,
+        swell,
+        repose_deg: 35.0,
+        cohesion_kpa: 5000.0,
+        friction_deg: 30.0,
+        sinkage: None,
+        ..BUILT_IN[0]
+    }
 }
 
 fn site_of(kind: SoilKind, cell_m: f64) -> SoilSite {
