@@ -154,12 +154,7 @@ impl Tile {
 
     /// Whether soil has changed any cell.
     pub fn is_dug(&self) -> bool {
-        !self.undug_m.is_empty() || self.shows_soil()
-    }
-
-    /// Whether soil shows in any cell.
-    pub fn shows_soil(&self) -> bool {
-        !self.dug_colors.is_empty()
+        !self.undug_m.is_empty() || !self.dug_colors.is_empty()
     }
 
     /// Undoes all changes by the soil.
