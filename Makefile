@@ -10,6 +10,8 @@ PREFIX  ?= /usr/local
 DESTDIR ?=
 # release, or dev for a quick build that the tests use.
 PROFILE ?= release
+# Of packaging/c. The tests' make the library share their compilation.
+FEATURES ?= $(if $(filter dev,$(PROFILE)),shared-build)
 
 TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
 OUT_DIR    := $(TARGET_DIR)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))
@@ -51,7 +53,7 @@ setup-build:
 
 # Both libraries come from one compilation. What a static link needs beside libwelkin.a is the compiler's to say.
 lib: setup-build ## build the shared and the static library (PROFILE=release)
-	cargo rustc --locked --lib --profile $(PROFILE) --crate-type cdylib,staticlib -- \
+	cargo rustc --locked --package welkin-c --profile $(PROFILE) --features "$(FEATURES)" -- \
 	    $(LINK_NAME) --print native-static-libs=$(abspath $(OUT_DIR))/native-static-libs.txt
 
 install: lib ## install to PREFIX (/usr/local), below DESTDIR if set
@@ -99,7 +101,7 @@ header: setup-build ## write include/welkin.h, the ABI lists and the list of the
 
 .PHONY: windows windows-accept
 windows: setup-build ## welkin.dll by MinGW, packed for Windows projects and checked, at most 12 minutes on two cores
-	@scripts/windows/run.sh
+	@PROFILE=$(PROFILE) scripts/windows/run.sh
 
 windows-accept: setup-build ## the library's Rust tests for Windows, under Wine
 	@scripts/windows/accept.sh
@@ -116,6 +118,7 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
 # What `make test` checks already, lint and documentation, is not checked twice. Benches come last, beside nothing else.
+accept: export FEATURES = shared-build
 accept: setup ## the long sweeps in release, under Wine too, and the benchmarks with a short day, at most 90 minutes
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)

@@ -9,6 +9,8 @@ use std::{
     sync::atomic::{AtomicU32, Ordering},
 };
 
+use welkin_support::c_library;
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -21,16 +23,8 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The shared library that `WELKIN_LIB` names; if it names none, one built in Cargo's `dev` profile.
 fn library() -> PathBuf {
-    if let Some(named) = std::env::var_os("WELKIN_LIB") {
-        return named.into();
-    }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    run(Command::new(cargo).current_dir(root()).args(["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]));
-    // The tests' temporary directory lies in the target directory.
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent");
-    target.join("debug/libwelkin.so")
+    c_library::shared(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
 /// Compiles one of the C programs beside these tests.

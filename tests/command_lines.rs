@@ -8,6 +8,8 @@ use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use welkin_support::c_library::{self, PROFILE};
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -36,21 +38,13 @@ fn cargo() -> Command {
     cargo
 }
 
-/// Profile of the tests: another one would build all of the library once more.
-const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
-
 /// The folder of what the tests' profile builds.
 fn built() -> PathBuf {
-    let folder = if PROFILE == "dev" { "debug" } else { PROFILE };
-    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join(folder)
+    c_library::built(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
 fn library() -> PathBuf {
-    if let Some(named) = std::env::var_os("WELKIN_LIB") {
-        return named.into();
-    }
-    run(cargo().args(["rustc", "--quiet", "--locked", "--profile", PROFILE, "--lib", "--crate-type", "cdylib"]));
-    built().join("libwelkin.so")
+    c_library::shared(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
 /// A C program of these sources, linked as a host is.

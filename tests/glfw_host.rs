@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use welkin_support::x_server::Server;
+use welkin_support::{c_library, x_server::Server};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -21,55 +21,70 @@ fn run(command: &mut Command) -> String {
     out.into_owned()
 }
 
-/// The shared library that `WELKIN_LIB` names; if it names none, one built in Cargo's `dev` profile.
 fn library() -> PathBuf {
-    if let Some(named) = std::env::var_os("WELKIN_LIB") {
-        return named.into();
-    }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    run(Command::new(cargo).current_dir(root()).args(["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]));
-    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
+    c_library::shared(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
-/// The host in a folder of one test's own, removed with the value.
-struct Host(PathBuf);
+/// Compiles the host, once for all tests. They are processes of their own: the first locks the others out.
+fn program() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("glfw_host");
+    fs::create_dir_all(&folder).expect("the target directory is writable");
+    let lock = fs::File::create(folder.join("lock")).expect("the folder is ours");
+    lock.lock().expect("the other tests let go");
+    let (program, library) = (folder.join("glfw_host"), library());
+    let listed = |folder: &str| {
+        let listed = fs::read_dir(root().join(folder)).expect("a folder of the repository");
+        listed.map(|e| e.expect("a file").path()).collect::<Vec<_>>()
+    };
+    let (sources, headers) = (listed("examples/glfw_host"), listed("include"));
+    let age = |path: &PathBuf| fs::metadata(path).and_then(|m| m.modified()).ok();
+    let newest = sources.iter().chain(&headers).chain([&library]).map(age).max().expect("files");
+    if age(&program) > newest {
+        return program;
+    }
+    for link in ["libwelkin.so", "libwelkin.so.1"] {
+        let _ = fs::remove_file(folder.join(link));
+        std::os::unix::fs::symlink(&library, folder.join(link)).expect("the folder is writable");
+    }
+    let flags = run(Command::new("pkg-config").args(["--cflags", "--libs", "glfw3", "egl", "libpng"]));
+    let mut cc = Command::new("gcc");
+    cc.args(["-std=c11", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]).arg(root().join("include"));
+    cc.args(sources.iter().filter(|p| p.extension().is_some_and(|e| e == "c")));
+    cc.arg("-o").arg(&program).arg("-L").arg(&folder).arg("-lwelkin").args(flags.split_whitespace()).arg("-lm");
+    run(cc.arg(format!("-Wl,-rpath,{}", folder.display())));
+    program
+}
+
+/// The host and a folder of one test's own, removed with the value.
+struct Host {
+    program: PathBuf,
+    folder: PathBuf,
+}
 
 impl Host {
     fn build(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("glfw_host-{name}"));
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).expect("the target directory is writable");
-        let library = library();
-        for link in ["libwelkin.so", "libwelkin.so.1"] {
-            std::os::unix::fs::symlink(&library, folder.join(link)).expect("the folder is writable");
-        }
-        let packages = ["glfw3", "egl", "libpng"];
-        let flags = run(Command::new("pkg-config").args(["--cflags", "--libs"]).args(packages));
-        let sources = fs::read_dir(root().join("examples/glfw_host")).expect("the example is there");
-        let sources = sources.map(|e| e.expect("a file").path()).filter(|p| p.extension().is_some_and(|e| e == "c"));
-        let mut cc = Command::new("gcc");
-        cc.args(["-std=c11", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I"]).arg(root().join("include"));
-        cc.args(sources).arg("-o").arg(folder.join("glfw_host")).arg("-L").arg(&folder).arg("-lwelkin");
-        run(cc.args(flags.split_whitespace()).arg("-lm").arg(format!("-Wl,-rpath,{}", folder.display())));
-        Self(folder)
+        Self { program: program(), folder }
     }
 
     fn command(&self) -> Command {
-        let mut host = Command::new(self.0.join("glfw_host"));
-        host.arg("--data").arg(root().join("examples/data")).arg("--out").arg(&self.0).args(["--size", "640x360"]);
+        let mut host = Command::new(&self.program);
+        host.arg("--data").arg(root().join("examples/data")).arg("--out").arg(&self.folder).args(["--size", "640x360"]);
         host.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
         host
     }
 
     /// One of the pictures it wrote.
     fn picture(&self, name: &str) -> image::RgbImage {
-        image::open(self.0.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).into_rgb8()
+        image::open(self.folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).into_rgb8()
     }
 }
 
 impl Drop for Host {
     fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        let _ = fs::remove_dir_all(&self.folder);
     }
 }
 

@@ -55,7 +55,7 @@ fn built() -> PathBuf {
     let said =
         run(cmake.args(["-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS=-O2 -Werror", "-DCMAKE_CXX_FLAGS=-Werror"]));
     assert!(!said.contains("osg_host is skipped"), "install {PACKAGE}: {said}");
-    run(Command::new("cmake").arg("--build").arg(&build));
+    run(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]));
     build.join("osg_host")
 }
 
@@ -331,5 +331,5 @@ fn without_openscenegraph_the_host_is_skipped_with_a_line() {
     cmake.arg(format!("-DCMAKE_PREFIX_PATH={}", tree().display()));
     let said = run(cmake.arg("-DCMAKE_DISABLE_FIND_PACKAGE_OpenSceneGraph=ON"));
     assert!(said.contains("osg_host is skipped") && said.contains(PACKAGE), "{said}");
-    run(Command::new("cmake").arg("--build").arg(&build));
+    run(Command::new("cmake").arg("--build").arg(&build).args(["--parallel", "2"]));
 }

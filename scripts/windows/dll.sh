@@ -3,8 +3,9 @@
 # shellcheck shell=bash
 
 build_dll() {
-    cargo rustc --locked --release --lib --crate-type cdylib --target "$TARGET" "${std[@]}" -- -C strip=symbols
-    built="$target_dir/$TARGET/release"
+    local profile="${PROFILE:-release}"
+    cargo rustc --locked --profile "$profile" --package welkin-c --crate-type cdylib --target "$TARGET" "${std[@]}" -- -C strip=symbols
+    built="$target_dir/$TARGET/${profile/dev/debug}"
 }
 
 # MSVC's linker wants an import library of its own kind: LLVM's dlltool writes the one that lib.exe would.

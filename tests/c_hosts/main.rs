@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use welkin_support::x_server::Server;
+use welkin_support::{c_library, x_server::Server};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -22,15 +22,8 @@ fn run(command: &mut Command) -> String {
     out.into_owned()
 }
 
-/// The shared library that `WELKIN_LIB` names; if it names none, one built in Cargo's `dev` profile.
 fn library() -> PathBuf {
-    if let Some(named) = std::env::var_os("WELKIN_LIB") {
-        return named.into();
-    }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    run(Command::new(cargo).current_dir(root()).args(["rustc", "--quiet", "--lib", "--crate-type", "cdylib"]));
-    // The tests' temporary directory lies in the target directory.
-    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
+    c_library::shared(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
 /// An example's program in a folder of its own, removed with the value.

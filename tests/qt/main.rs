@@ -9,6 +9,8 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use welkin_support::c_library;
+
 /// Debian's packages that the widget is built against.
 const PACKAGES: &str = "qt6-base-dev libqt6opengl6-dev";
 
@@ -23,14 +25,7 @@ fn run(command: &mut Command) -> Result<String, String> {
 }
 
 fn library() -> PathBuf {
-    if let Some(named) = std::env::var_os("WELKIN_LIB") {
-        return named.into();
-    }
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut cargo = Command::new(cargo);
-    cargo.current_dir(root()).args(["rustc", "--quiet", "--locked", "--lib", "--crate-type", "cdylib"]);
-    run(&mut cargo).unwrap_or_else(|e| panic!("{e}"));
-    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a parent").join("debug/libwelkin.so")
+    c_library::shared(Path::new(env!("CARGO_TARGET_TMPDIR")))
 }
 
 /// Compiler flags of Qt, if its headers and libraries are installed.

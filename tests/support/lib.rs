@@ -2,6 +2,7 @@
 //! scenes through the C functions, and references that use nothing of the library.
 
 pub mod brute_rain;
+pub mod c_library;
 pub mod c_scene;
 pub mod cloud_shape;
 pub mod coarse_sky;
