@@ -14,12 +14,11 @@ fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
     return Veil(light, behind.transmittance * through);
 }
 
-// Lays the fog outside all banks over `behind`; the ray may meet the banks `banks` (banks_met). A fog far away has air
-// in front of it; fog around the camera is in front of the air (fog/lookup.wgsl).
-fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) -> Veil {
+// Lays the fog outside all banks over `behind`. A fog far away has air in front of it; fog around the camera is in front
+// of the air (fog/lookup.wgsl).
+fn with_low_air(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
-    replaced_fog = fog_of_banks(banks, ray.origin, ray.direction, range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
         f.radiance = max(f.radiance + f.once * bow_phase(BOW_LOW_AIR, ray.direction, low_air.fog.to_sun), vec3f(0.0));
@@ -31,19 +30,24 @@ fn with_low_air(ray: ViewRay, range: f32, plane: f32, banks: u32, behind: Veil) 
     return with_layer(f, before, behind);
 }
 
-// Lays the banks `met` over `behind`, each with the air and the fog outside all banks in front of it.
-fn with_banks(met: u32, ray: ViewRay, range: f32, behind: Veil) -> Veil {
-    var veil = behind;
+// Lays the fog outside all banks over `behind`, then the banks `met`, from afar to near, each with the air and that fog
+// in front of it.
+fn with_banks(met: u32, ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
+    measure_banks(met, ray.origin, ray.direction, range, true);
+    let paths = bank_paths;
+    var veil = with_low_air(ray, range, plane, behind);
     var left = met;
     // Software drivers draw as many rounds as the pixel of a group that meets most banks.
     for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
-        let bank = bank_along(first_bank(left), ray.origin, ray.direction, range);
+        let k = first_bank(left);
         left &= left - 1u;
+        let bank = bank_along(k, bank_path(k, paths, ray.origin, ray.direction, range), ray.origin, ray.direction, range);
         if bank.transmittance.y < 1.0 {
             var before = Veil(vec3f(0.0), vec3f(1.0));
             if bank.distance > 50.0 {
                 before = air_between(ray.direction, bank.distance);
-                before = with_low_air(ray, bank.distance, bank.distance, met, before);
+                measure_banks(met, ray.origin, ray.direction, bank.distance, false);
+                before = with_low_air(ray, bank.distance, bank.distance, before);
             }
             veil = with_layer(bank, before, veil);
         }
@@ -57,8 +61,8 @@ fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
         return behind;
     }
     if !BY_PLACE {
-        return with_low_air(ray, range, plane, 0u, behind);
+        return with_low_air(ray, range, plane, behind);
     }
     let banks = banks_met(ray.origin, ray.direction, range);
-    return with_banks(banks, ray, range, with_low_air(ray, range, plane, banks, behind));
+    return with_banks(banks, ray, range, plane, behind);
 }

@@ -11,14 +11,15 @@
 //!
 //! # Method
 //! `shaders/fog/banks.wgsl` finds where a ray enters the shape and its perimeter on a flat plan. Inside the shape the
-//! depth is the integral of the layer's density; in the perimeter, and where regions overlap, it is a sum over Gauss
-//! points of the share times the density. Polygons that are not convex are sampled at twelve points of the ray's way
-//! through a circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the sphere, as
-//! visibility between two points does.
+//! depth is the integral of the layer's density; in the perimeter it is a sum over Gauss points of the share times the
+//! density. Banks whose regions overlap are integrated together: the ray is cut at the borders of all, and the shares of
+//! all are worked out once a point. Polygons that are not convex are sampled at twelve points of the ray's way through a
+//! circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the sphere, as visibility between
+//! two points does.
 //!
 //! # Cost
 //! On a software driver, in copies of a picture of 640 x 360 (`cargo bench --bench speed -- banks`): a bank outside the
-//! picture none, one across it 9, the camera inside one 11, eight that are apart 6, eight that overlap 42. A software
+//! picture none, one across it 8, the camera inside one 11, eight that are apart 6, eight that overlap 18. A software
 //! driver runs both sides of every branch, but a loop only as often as a pixel of its group needs. Each pixel therefore
 //! loops over the banks whose circle and heights its ray meets.
 

@@ -1,9 +1,11 @@
 //! Rules for all shaders, checked on naga's form of each: operations have defined results (operands.rs), loops end
-//! (loops.rs), and the code that drivers get is valid (written.rs).
+//! (loops.rs), their code stays small where drivers copy functions into their callers (inlined.rs), and the code that
+//! drivers get is valid (written.rs).
 
 mod accepted;
 mod arithmetic;
 mod drawn;
+mod inlined;
 mod loops;
 mod operands;
 mod ranges;
