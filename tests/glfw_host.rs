@@ -173,6 +173,44 @@ fn a_vessel_floats_on_the_sea() {
     assert!(crane > 15, "an orange crane: {crane} pixels");
 }
 
+/// Welkin draws the heights of a file where they are: a cliff to the east of a plain. Files that are no grid of heights
+/// are refused by what is wrong with them.
+#[test]
+fn heights_of_a_file_are_drawn_by_welkin() {
+    let host = Host::build("terrain");
+    let file = host.folder.join("cliff.asc");
+    let heights = |low: &str| format!("{low} ").repeat(151) + &"140 ".repeat(149) + "\n";
+    let grid =
+        |low: &str| "ncols 300\nnrows 300\nxllcorner 5000\ncellsize 10\n".to_string() + &heights(low).repeat(300);
+    fs::write(&file, grid("100")).expect("the folder is ours");
+    let at = |path: &Path| {
+        let mut command = host.command();
+        command.arg("--terrain").arg(path).args(["--report", "1", "--size", "320x180"]);
+        command
+    };
+    run(&mut at(&file));
+    let noon = host.picture("01_noon.png");
+    let (sky, plain, cliff) =
+        (mean(&noon, [0, 0, 160, 60]), mean(&noon, [0, 130, 160, 180]), mean(&noon, [280, 20, 320, 90]));
+    assert!(sky[2] > sky[0] + 30.0, "a blue sky: {sky:?}");
+    assert!(plain[1] > plain[2] + 20.0, "a green plain: {plain:?}");
+    assert!(cliff[2] < sky[2] - 20.0 && (cliff[0] - cliff[1]).abs() < 25.0, "a grey cliff: {cliff:?}");
+    for (text, named) in [
+        ("ncols 2\nnrows 2\n1 2 3 4\n", "cellsize above 0"),
+        ("ncols 2\nnrows 2\ncellsize 5\n1 2 3\n", "3 of 4 heights"),
+        ("ncols 2\nnrows 2\ncellsize 5\nNODATA_value 7\n7 7 7 7\n", "0 are known"),
+        ("ncolumns 2\n", "\"ncolumns\" is no word"),
+        ("ncols 2\nnrows 2\ncellsize 5\n1 2 3 200000\n", "heights_m"),
+    ] {
+        fs::write(&file, text).expect("the folder is ours");
+        let refused = at(&file).output().expect("the host runs");
+        let errors = String::from_utf8_lossy(&refused.stderr);
+        assert!(refused.status.code() == Some(1) && errors.contains(named), "{text}: {errors}");
+    }
+    let refused = at(&host.folder.join("none.asc")).arg("--sea").output().expect("the host runs");
+    assert!(refused.status.code() == Some(2), "{}", String::from_utf8_lossy(&refused.stderr));
+}
+
 /// The gallery's pictures have the size that was asked for or half of it, smooth edges, and in them what only they
 /// have: lamps, a bridge.
 #[test]

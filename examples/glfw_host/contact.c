@@ -95,18 +95,17 @@ static int write_sheet(demo *d, int first, int rows, const char *out)
     return ok ? 0 : 1;
 }
 
-int contact_run(const char *data, const char *planet, const char *out, int width, int height, int only, bool at_sea)
+int contact_run(const char *data, const demo_world *world, const char *out, int width, int height, int only)
 {
     platform p;
     demo d;
     int code = 1;
     if (!headless_open(&p))
         return 1;
-    if (gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1)) {
+    if (gl_load(&p) && demo_open(&d, &p, data, world, width, height, 1)) {
         bool one = only > 0 && only <= d.reports.count;
         printf("no display: writing pictures to %s\nadapter: %s\n", out, weather_adapter(&d.weather));
-        if (!at_sea || demo_sail(&d))
-            code = one ? write_sheet(&d, only - 1, 1, out) : write_sheet(&d, 0, d.reports.count, out);
+        code = one ? write_sheet(&d, only - 1, 1, out) : write_sheet(&d, 0, d.reports.count, out);
         demo_close(&d);
     }
     headless_close(&p);

@@ -2,13 +2,12 @@
 #ifndef CONTACT_H
 #define CONTACT_H
 
-#include <stdbool.h>
+#include "demo.h"
 
 /*
- * Writes PNG files into the existing folder `out` and prints their cost. If `only` > 0, draws that report alone; if
- * `at_sea`, on the open sea.
- * Returns the process's exit code.
+ * Writes PNG files into the existing folder `out` and prints their cost. If `only` > 0, draws that report alone. Returns
+ * the process's exit code.
  */
-int contact_run(const char *data, const char *planet, const char *out, int width, int height, int only, bool at_sea);
+int contact_run(const char *data, const demo_world *world, const char *out, int width, int height, int only);
 
 #endif

@@ -35,6 +35,15 @@ static camera view_at_sea(const demo *d, double time_s)
     return (camera){eye, normalize(sub(transform_point(level, vec(0, 0, 3)), eye)), RAD(45.0)};
 }
 
+static const char *const TERRAIN_CAMERA_NAMES[CAMERA_COUNT] = {"from eye height", "from 30 m", "from 300 m", "from 3 km"};
+
+/* The cameras over the terrain of a file. */
+static camera view_over_terrain(const demo *d)
+{
+    static const double ABOVE_M[CAMERA_COUNT] = {1.7, 30.0, 300.0, 3000.0}, PITCH_DEG[CAMERA_COUNT] = {0.0, -2.0, -8.0, -20.0};
+    return (camera){add(d->standing, vec(0, 0, ABOVE_M[d->camera])), direction(0.0, PITCH_DEG[d->camera]), RAD(50.0)};
+}
+
 static camera view_from(const demo *d)
 {
     const ground *g = &d->scene.ground;
@@ -69,20 +78,8 @@ double demo_clock_ms(void)
 #endif
 }
 
-bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer)
-{
-    char path[1024];
-    *d = (demo){.platform = p, .cut = true, .started_ms = demo_clock_ms()};
-    snprintf(path, sizeof path, "%s/jacksboro_dem.png", data);
-    if (!scene_create(&d->scene, path))
-        return false;
-    snprintf(path, sizeof path, "%s/metar.txt", data);
-    if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height, finer))
-        return false;
-    return weather_open(&d->weather, p, planet) && demo_next_report(d, 0) && demo_next_hour(d, 0);
-}
-
-bool demo_sail(demo *d)
+/* Puts a vessel on the open sea in place of the land, before the first frame. */
+static bool sail(demo *d)
 {
     wk_sea sea = WK_SEA_INIT;
     d->at_sea = d->scene.at_sea = true;
@@ -92,11 +89,39 @@ bool demo_sail(demo *d)
     d->boat = (vessel){0.0, 0.0, 210.0, 5.5, 0.5, 0.0};
     vessel before = vessel_at(&d->boat, -240.0);
     return weather_check(wk_context_set_sea(d->weather.context, &sea)) &&
-           weather_check(vessel_raise_wake(&before, d->weather.context)) && demo_next_report(d, 0);
+           weather_check(vessel_raise_wake(&before, d->weather.context));
+}
+
+/* Has Welkin draw the terrain of a file in place of the land. The cameras look north over most of it. */
+static bool settle_on(demo *d, const char *path)
+{
+    if (!terrain_file_read(&d->terrain, path))
+        return false;
+    d->on_terrain = d->scene.empty = true;
+    d->standing = terrain_file_ground(&d->terrain, 0.0, -0.3 * d->terrain.cell_m * d->terrain.rows);
+    d->weather.station_altitude_m = d->standing.z;
+    return weather_check(terrain_file_set(&d->terrain, d->weather.context));
+}
+
+bool demo_open(demo *d, const platform *p, const char *data, const demo_world *world, int width, int height, int finer)
+{
+    char path[1024];
+    *d = (demo){.platform = p, .cut = true, .started_ms = demo_clock_ms()};
+    snprintf(path, sizeof path, "%s/jacksboro_dem.png", data);
+    if (!scene_create(&d->scene, path))
+        return false;
+    snprintf(path, sizeof path, "%s/metar.txt", data);
+    if (!reports_read(&d->reports, path) || !picture_create(&d->picture, width, height, finer) ||
+        !weather_open(&d->weather, p, world->planet))
+        return false;
+    bool ok = !world->at_sea || sail(d);
+    ok = ok && (!world->terrain || settle_on(d, world->terrain));
+    return ok && demo_next_report(d, 0) && demo_next_hour(d, 0);
 }
 
 void demo_close(demo *d)
 {
+    terrain_file_free(&d->terrain);
     weather_close(&d->weather);
     picture_destroy(&d->picture);
     scene_destroy(&d->scene);
@@ -122,7 +147,7 @@ void demo_next_camera(demo *d, int step)
 
 const char *demo_camera_name(const demo *d)
 {
-    return d->at_sea ? SEA_CAMERA_NAMES[d->camera] : CAMERA_NAMES[d->camera];
+    return (d->at_sea ? SEA_CAMERA_NAMES : d->on_terrain ? TERRAIN_CAMERA_NAMES : CAMERA_NAMES)[d->camera];
 }
 
 bool demo_resize(demo *d, int width, int height)
@@ -148,7 +173,7 @@ bool demo_draw(demo *d)
             return false;
         scene_place_vessel(&d->scene, d->pose);
     }
-    camera c = d->still ? *d->still : d->at_sea ? view_at_sea(d, time_s) : view_from(d);
+    camera c = d->still ? *d->still : d->at_sea ? view_at_sea(d, time_s) : d->on_terrain ? view_over_terrain(d) : view_from(d);
     if (weather && !weather_light(&d->weather, &c, time_s, &l))
         return false;
     l.lamps = d->lamps;

@@ -6,10 +6,18 @@
 #include "platform.h"
 #include "reports.h"
 #include "scene.h"
+#include "terrain_file.h"
 #include "vessel.h"
 #include "weather_link.h"
 
 #define CAMERA_COUNT 4
+
+/* What stands in the demonstration's world in place of its own land, planet and sky. */
+typedef struct demo_world {
+    const char *planet;  /* text of a planet file; NULL: the Earth */
+    const char *terrain; /* path of a file of heights that Welkin draws; NULL: the host's land */
+    bool at_sea;         /* a vessel on the open sea */
+} demo_world;
 
 typedef struct demo {
     const platform *platform;
@@ -24,6 +32,9 @@ typedef struct demo {
     bool cut;  /* the camera jumped */
     bool measure; /* time each effect in the next frame; that frame's picture is not used */
     bool at_sea;  /* a vessel on the open sea in place of the land */
+    bool on_terrain; /* the terrain of a file in place of the land */
+    terrain_file terrain;
+    vec3 standing; /* point of that terrain below the cameras */
     vessel boat;
     mat4 pose; /* pose of the boat in the last frame */
     bool history; /* use the history of earlier frames although time stands still */
@@ -36,14 +47,11 @@ typedef struct demo {
 } demo;
 
 /*
- * `data` is the folder with the terrain and the reports; `planet` is the text of a planet file, or NULL. The host's
- * OpenGL context must be current. For the size, see picture_create.
+ * `data` is the folder with the terrain and the reports. The host's OpenGL context must be current. For the size, see
+ * picture_create.
  */
-bool demo_open(demo *d, const platform *p, const char *data, const char *planet, int width, int height, int finer);
+bool demo_open(demo *d, const platform *p, const char *data, const demo_world *world, int width, int height, int finer);
 void demo_close(demo *d);
-
-/* Puts a vessel on the open sea in place of the land, before the first frame. */
-bool demo_sail(demo *d);
 
 /* Step through reports, hours and cameras, wrapping around at the ends. `step` is 1 or -1. */
 bool demo_next_report(demo *d, int step);

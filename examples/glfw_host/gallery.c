@@ -128,7 +128,7 @@ int gallery_run(const char *data, const char *out, int width, int height, char *
     bool ok = false;
     if (!headless_open(&p))
         return 1;
-    if (gl_load(&p) && demo_open(&d, &p, data, NULL, width, height, SAMPLES_A_SIDE)) {
+    if (gl_load(&p) && demo_open(&d, &p, data, &(demo_world){0}, width, height, SAMPLES_A_SIDE)) {
         d.picture.plain = true;
         printf("adapter: %s\n", weather_adapter(&d.weather));
         ok = take_all(&d, out, names, count);

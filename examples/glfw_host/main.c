@@ -12,7 +12,8 @@
 #include "window.h"
 
 static const char USAGE[] =
-    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N] [--planet FILE] [--sea]\n"
+    "glfw_host [--data DIR] [--out DIR] [--size WxH] [--headless] [--frames N] [--report N] [--planet FILE]\n"
+    "          [--sea | --terrain FILE]\n"
     "glfw_host --gallery [NAME..] [--data DIR] [--out DIR] [--size WxH]\n"
     "  --data DIR   terrain and weather reports (examples/data)\n"
     "  --out DIR    where pictures go when there is no display (out); it must exist\n"
@@ -22,6 +23,7 @@ static const char USAGE[] =
     "  --report N   begin with report N; pictures of that one only\n"
     "  --planet FILE  a planet file, as examples/data/planet_dusty.toml, in place of the Earth\n"
     "  --sea        a vessel on the open sea in place of the land\n"
+    "  --terrain FILE  heights in metres in an ESRI ASCII grid, drawn by Welkin in place of the land\n"
     "  --gallery    draw the pictures of docs/gallery.md, or those of the names given, with 2 x 2 samples a pixel\n"
     "  --help, --version\n";
 
@@ -65,11 +67,12 @@ static char *text_of(const char *path)
 int main(int argc, char **argv)
 {
     const char *data = "examples/data", *out = "out", *planet_file = NULL;
+    demo_world world = {0};
     int width = 0, height = 0, frames = 0, report = 0;
-    bool headless = !window_possible(), gallery = false, at_sea = false;
+    bool headless = !window_possible(), gallery = false;
     char **names = argv; /* collected in place, over the arguments */
     int name_count = 0;
-    static const char *const WITH_VALUE[] = {"--data", "--out", "--planet", "--frames", "--report", "--size", NULL};
+    static const char *const WITH_VALUE[] = {"--data", "--out", "--planet", "--terrain", "--frames", "--report", "--size", NULL};
     if (command_line_answered(argc, argv, NAME, USAGE))
         return 0;
     for (int i = 1; i < argc; i++) {
@@ -92,7 +95,9 @@ int main(int argc, char **argv)
         else if (strcmp(option, "--headless") == 0)
             headless = true;
         else if (strcmp(option, "--sea") == 0)
-            at_sea = true;
+            world.at_sea = true;
+        else if (strcmp(option, "--terrain") == 0)
+            world.terrain = argv[++i];
         else if (strcmp(option, "--gallery") == 0)
             gallery = true;
         else if (gallery && option[0] != '-')
@@ -108,11 +113,16 @@ int main(int argc, char **argv)
         return 2;
     if (gallery)
         return gallery_run(data, out, width, height, names, name_count);
+    if (world.at_sea && world.terrain) {
+        fprintf(stderr, "%s: --terrain is not drawn with --sea\n", NAME);
+        return 2;
+    }
     char *planet = planet_file ? text_of(planet_file) : NULL;
     if (planet_file && !planet)
         return 1;
-    int code = headless ? contact_run(data, planet, out, width, height, report, at_sea)
-                        : window_run(data, planet, width, height, frames, report, at_sea);
+    world.planet = planet;
+    int code = headless ? contact_run(data, &world, out, width, height, report)
+                        : window_run(data, &world, width, height, frames, report);
     free(planet);
     return code;
 }

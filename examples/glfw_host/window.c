@@ -125,13 +125,12 @@ static void loop(GLFWwindow *w, demo *d, int frames)
     }
 }
 
-int window_run(const char *data, const char *planet, int width, int height, int frames, int first, bool at_sea)
+int window_run(const char *data, const demo_world *world, int width, int height, int frames, int first)
 {
     platform p;
     demo d;
     int code = 1;
-    if (window_contexts(&p, width, height, true) && gl_load(&p) && demo_open(&d, &p, data, planet, width, height, 1) &&
-        (!at_sea || demo_sail(&d))) {
+    if (window_contexts(&p, width, height, true) && gl_load(&p) && demo_open(&d, &p, data, world, width, height, 1)) {
         printf("adapter: %s\nkeys: N next report, T time of day, C camera (Shift: back), W weather on and off, Q quit\n",
                weather_adapter(&d.weather));
         glfwSetWindowUserPointer(windows[CONTEXT_HOST], &d);

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "platform.h"
+#include "demo.h"
 
 /* Checks whether there is a display for a window. */
 bool window_possible(void);
@@ -16,8 +16,8 @@ void window_end(void);
 
 /*
  * Runs until the window is closed, or for `frames` frames if that is not 0, starting with report `first` (counted from
- * 1), on the open sea if `at_sea`. Returns the process's exit code.
+ * 1). Returns the process's exit code.
  */
-int window_run(const char *data, const char *planet, int width, int height, int frames, int first, bool at_sea);
+int window_run(const char *data, const demo_world *world, int width, int height, int frames, int first);
 
 #endif

@@ -37,6 +37,25 @@ fn octave_share(octave: Octave, footprint: f32) -> f32 {
     return 1.0 - smoothstep(octave.turn.z, octave.turn.w, footprint);
 }
 
+// Cell of an octave's lattice with a place in it.
+struct OctaveCell {
+    // Keys of the cell and of the next one by axis.
+    key: vec3u,
+    next: vec3u,
+    seed: u32,
+    // Place in the cell, 0 to 1, and the share of the next cell there, by axis.
+    part: vec3f,
+    share: vec3f,
+}
+
+fn octave_cell(octave: Octave, place: vec3f) -> OctaveCell {
+    let at = octave_place(octave, place);
+    let low = floor(at);
+    let part = at - low;
+    let key = vec3u(octave.cell.xyz + vec3i(low)) * AXES;
+    return OctaveCell(key, key + AXES, u32(octave.cell.w), part, part * part * (3.0 - 2.0 * part));
+}
+
 // Octaves of clods: those of the fine noise but the longest.
 const CLOD_OCTAVES: u32 = 3u;
 // Height of clods over their length. The heights then have a standard deviation of 2.3 cm, a random roughness between
@@ -63,17 +82,11 @@ fn clod_slope(place: vec3f, footprint: f32) -> vec3f {
         let octave = land.octaves[i];
         let kept = octave_share(octave, footprint);
         if kept > 0.0 {
-            let at = octave_place(octave, place);
-            let low = floor(at);
-            let part = at - low;
-            let share = part * part * (3.0 - 2.0 * part);
-            let rise = 6.0 * part * (1.0 - part);
-            let key = vec3u(octave.cell.xyz + vec3i(low)) * AXES;
-            let next = key + AXES;
-            let seed = u32(octave.cell.w);
-            let bottom = level_slopes(key.xy, next.xy, key.z ^ seed, share.xy);
-            let top = level_slopes(key.xy, next.xy, next.z ^ seed, share.xy);
-            let turned = rise * vec3f(mix(bottom.yz, top.yz, share.z), top.x - bottom.x);
+            let cell = octave_cell(octave, place);
+            let rise = 6.0 * cell.part * (1.0 - cell.part);
+            let bottom = level_slopes(cell.key.xy, cell.next.xy, cell.key.z ^ cell.seed, cell.share.xy);
+            let top = level_slopes(cell.key.xy, cell.next.xy, cell.next.z ^ cell.seed, cell.share.xy);
+            let turned = rise * vec3f(mix(bottom.yz, top.yz, cell.share.z), top.x - bottom.x);
             let c = octave.turn.x;
             let s = octave.turn.y;
             sum += kept * vec3f(c * turned.x + s * turned.y, c * turned.y - s * turned.x, turned.z);
@@ -89,16 +102,10 @@ fn fine_noise(place: vec3f, footprint: f32) -> f32 {
         let octave = land.octaves[i];
         let kept = octave_share(octave, footprint);
         if kept > 0.0 {
-            let at = octave_place(octave, place);
-            let low = floor(at);
-            let part = at - low;
-            let share = part * part * (3.0 - 2.0 * part);
-            let key = vec3u(octave.cell.xyz + vec3i(low)) * AXES;
-            let next = key + AXES;
-            let seed = u32(octave.cell.w);
-            let bottom = level_noise(key.xy, next.xy, key.z ^ seed, share.xy);
-            let top = level_noise(key.xy, next.xy, next.z ^ seed, share.xy);
-            sum += kept * mix(bottom, top, share.z);
+            let cell = octave_cell(octave, place);
+            let bottom = level_noise(cell.key.xy, cell.next.xy, cell.key.z ^ cell.seed, cell.share.xy);
+            let top = level_noise(cell.key.xy, cell.next.xy, cell.next.z ^ cell.seed, cell.share.xy);
+            sum += kept * mix(bottom, top, cell.share.z);
         }
     }
     return sum;
@@ -111,12 +118,8 @@ fn broad_noise(place: vec3f, footprint: f32) -> f32 {
         let octave = land.octaves[i];
         let kept = octave_share(octave, footprint);
         if kept > 0.0 {
-            let at = octave_place(octave, place).xy;
-            let low = floor(at);
-            let part = at - low;
-            let share = part * part * (3.0 - 2.0 * part);
-            let key = vec2u(octave.cell.xy + vec2i(low)) * AXES.xy;
-            sum += kept * level_noise(key, key + AXES.xy, u32(octave.cell.w), share);
+            let cell = octave_cell(octave, place);
+            sum += kept * level_noise(cell.key.xy, cell.next.xy, cell.seed, cell.share.xy);
         }
     }
     return sum;
