@@ -474,7 +474,7 @@ const shot SHOTS[] = {
     {"drizzle", "Drizzle, 0.5 mm/h", ROADSIDE(-1.0), drizzle, WORLD, NULL, false},
     {"steady_rain", "Steady rain, 6 mm/h", ROADSIDE(-2.0), steady_rain, WORLD, NULL, false},
     {"cloudburst", "Cloudburst, 60 mm/h, wind 9 m/s", ROADSIDE(-4.0), cloudburst, WORLD, NULL, false},
-    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL, false},
+    {"work_lights", "Rain at night in work lights, 8 mm/h", 36.0, -9.0, 2.4, SITE_VIEW_AZIMUTH_DEG - 50.0, 0.0, 50.0, work_lights, WORLD, NULL, true},
     {"windscreen", "Through the windscreen, 25 mm/h", ROADSIDE(1.0), heavy_rain, WORLD, without_wipers, true},
     {"wiped", "The same with two wipers going", ROADSIDE(1.0), heavy_rain, WORLD, with_wipers, true},
     {"shallow_fog", "Shallow fog in a valley", HILLSIDE, shallow_fog, WORLD, NULL, false},
