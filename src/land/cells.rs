@@ -6,7 +6,7 @@ use crate::terrain::{CellRect, DugColor, HOLE, Terrain, Tile};
 pub(super) const FARTHEST_RING: u32 = 10;
 
 /// Steepness of a wall, drop over distance: steeper than soil rests, and than grass grows on.
-const WALL: f64 = 0.8;
+pub(super) const WALL: f64 = 0.8;
 
 /// Directions of the eight positions around a position.
 const RING: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];

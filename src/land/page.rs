@@ -9,7 +9,7 @@
 use half::f16;
 
 use super::{
-    cells::CellReader,
+    cells::{CellReader, WALL},
     relief::{NODE, NodeKey},
 };
 use crate::{
@@ -164,16 +164,20 @@ impl PageWriter {
         self.dug.clear();
         let has_dug = shows_soil(cells.terrain);
         for [i, j] in rect.places() {
-            let own = self.slope_at([i, j], 1, step_m);
+            let (place, side) = (position(page, [i, j]), texel_cells(page.level));
+            let mut own = self.slope_at([i, j], 1, step_m);
+            if has_dug {
+                let dug = self.dug_texel(cells, place, side);
+                if dug[3] > 0 && side == 1 && own[0].hypot(own[1]) > WALL as f32 {
+                    own = self.wall_slope([i, j], own, step_m);
+                }
+                self.dug.push(dug);
+            }
             let coarse = if has_coarse { self.coarse_at([i, j]) } else { own };
             let half = |v: f32| f16::from_f32(v.clamp(-6e4, 6e4)).to_bits();
             self.slopes.push([half(own[0]), half(own[1]), half(coarse[0]), half(coarse[1])]);
-            let place = position(page, [i, j]);
-            let classes = classes(cells, place, texel_cells(page.level), default);
+            let classes = classes(cells, place, side, default);
             self.classes.push(classes);
-            if has_dug {
-                self.dug.push(self.dug_texel(cells, place, texel_cells(page.level)));
-            }
         }
     }
 
@@ -218,6 +222,19 @@ impl PageWriter {
             slope(height([i - distance, j]), own, height([i + distance, j]), distance_m),
             slope(height([i, j - distance]), own, height([i, j + distance]), distance_m),
         ]
+    }
+
+    /// Slope of a wall of dug soil, in place of the texel's `own`. A wall that runs across the lattice is a stair of cells,
+    /// whose sides face east and north by turns: light falls on it as on their mean within two cells.
+    fn wall_slope(&self, [x, y]: [i32; 2], own: [f32; 2], distance_m: f32) -> [f32; 2] {
+        let mut sum = [0.0f32; 2];
+        for at in (PageRect { low: [x - 2, y - 2], high: [x + 3, y + 3] }).places() {
+            let slope = self.slope_at(at, 1, distance_m);
+            sum = [sum[0] + slope[0], sum[1] + slope[1]];
+        }
+        let (steepness, length) = (own[0].hypot(own[1]), sum[0].hypot(sum[1]));
+        // Walls that face each other have no mean direction.
+        if length < 2.5 * steepness { own } else { sum.map(|s| s * steepness / length) }
     }
 
     /// Computes the slopes of the next coarser level, whose texels are every other one.

@@ -11,14 +11,14 @@ use super::{
     page::{PageRect, PageWriter, VERTICES},
     passes::patch_indices,
     reference::vertex,
-    relief::Relief,
+    relief::{NodeKey, Relief},
     selection::{LandFrustum, LandPatch, LevelDistances, select},
     uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
     chance::RandomStream,
     scene::WorldFrame,
-    terrain::{Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
+    terrain::{DugCell, DugColor, Rows, SurfaceClass, Terrain, TerrainCells, TerrainDesc, TileKey},
 };
 
 const SIDE: u32 = 128;
@@ -183,4 +183,35 @@ fn patches_that_meet_share_their_vertices_to_the_bit() {
         }
     }
     assert!(levels[..4].iter().all(|count| *count > 100), "{levels:?}");
+}
+
+/// The bank of a wide pit, five cells deep, whose wall runs across the lattice at an angle: light falls on it as on a straight
+/// wall, though its cells are a stair.
+#[test]
+fn a_wall_of_soil_faces_one_way_at_any_angle_to_the_lattice() {
+    for angle_deg in [0.0f64, 8.0, 20.0, 35.0, 45.0] {
+        let facing = DVec2::from_angle(angle_deg.to_radians());
+        let mut terrain = terrain(1, |_, _| false);
+        let slot = terrain.slot(TileKey::new(0, 0)).unwrap();
+        let color = DugColor { albedo: [90; 3], share: 255 };
+        let cell = |cell: usize| {
+            let place = DVec2::new((cell % SIDE as usize) as f64, (cell / SIDE as usize) as f64);
+            let depth = 5.0 * (0.5 - (place - 32.0).dot(facing)).clamp(0.0, 1.0);
+            let color = if depth > 0.0 { color } else { DugColor::default() };
+            DugCell { cell, height_m: -depth as f32, color }
+        };
+        let cells: Vec<DugCell> = (0..(SIDE * SIDE) as usize).map(cell).collect();
+        terrain.set_dug(slot, &cells, 1);
+        (terrain.soil_revision, terrain.surface_soil) = (1, color);
+        let mut writer = PageWriter::default();
+        let page = NodeKey { level: 2, x: 0, y: 0 };
+        let rect = PageRect::texels(2);
+        writer.write_texels(&mut CellReader::new(&terrain), page, rect, 1);
+        let slopes = writer.slopes.iter().map(|s| [s[0], s[1]].map(|bits| f64::from(half::f16::from_bits(bits))));
+        let walls = slopes.map(DVec2::from_array).filter(|slope| slope.length() > 1.0);
+        let off: Vec<f64> = walls.map(|slope| slope.angle_to(facing).abs().to_degrees()).collect();
+        let rms = (off.iter().map(|v| v * v).sum::<f64>() / off.len() as f64).sqrt();
+        println!("{angle_deg} degrees: {} texels, {rms:.1} degrees off", off.len());
+        assert!(off.len() > 30 && rms < 2.0, "{angle_deg}: {rms}");
+    }
 }
