@@ -14,8 +14,8 @@ fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
     return Veil(light, behind.transmittance * through);
 }
 
-// Lays the fog outside all banks over `behind`. A fog far away has air in front of it; fog around the camera is in front
-// of the air (fog/lookup.wgsl).
+// Lays the fog outside all banks over `behind`. A fog far away has air in front of it; fog around the camera is in
+// front of the air (fog/lookup.wgsl).
 fn with_low_air(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     // Drops and flakes near the eye that are drawn one by one hide this share themselves.
     let hidden = drawn.w * depth_of_drawn(range);
@@ -41,7 +41,8 @@ fn with_banks(met: u32, ray: ViewRay, range: f32, plane: f32, behind: Veil) -> V
     for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
         let k = first_bank(left);
         left &= left - 1u;
-        let bank = bank_along(k, bank_path(k, paths, ray.origin, ray.direction, range), ray.origin, ray.direction, range);
+        let path = bank_path(k, paths, ray.origin, ray.direction, range);
+        let bank = bank_along(k, path, ray.origin, ray.direction, range);
         if bank.transmittance.y < 1.0 {
             var before = Veil(vec3f(0.0), vec3f(1.0));
             if bank.distance > 50.0 {

@@ -290,8 +290,8 @@ fn path_apart(k: u32, slab: u32, origin: vec3f, direction: vec3f, range: f32) ->
     return own_path(slab_of(slab), ray, inner_chord(ray, outer), outer);
 }
 
-// Measures what the banks `met` replace of the fog outside them along a ray (`replaced_fog`), and where regions overlap,
-// and `paths`, the paths through their banks.
+// Measures what the banks `met` replace of the fog outside them along a ray (`replaced_fog`), and where `paths`, the
+// paths through banks whose regions overlap.
 fn measure_banks(met: u32, origin: vec3f, direction: vec3f, range: f32, paths: bool) {
     replaced_fog = 0.0;
     let outer = has_own_layer() && low_air.fog.kind == FOG_SLAB;

@@ -12,10 +12,10 @@
 //! # Method
 //! `shaders/fog/banks.wgsl` finds where a ray enters the shape and its perimeter on a flat plan. Inside the shape the
 //! depth is the integral of the layer's density; in the perimeter it is a sum over Gauss points of the share times the
-//! density. Banks whose regions overlap are integrated together: the ray is cut at the borders of all, and the shares of
-//! all are worked out once a point. Polygons that are not convex are sampled at twelve points of the ray's way through a
-//! circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the sphere, as visibility between
-//! two points does.
+//! density. Banks whose regions overlap are integrated together: the ray is cut at the borders of all, and the shares
+//! of all are worked out once a point. Polygons that are not convex are sampled at twelve points of the ray's way
+//! through a circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the sphere, as
+//! visibility between two points does.
 //!
 //! # Cost
 //! On a software driver, in copies of a picture of 640 x 360 (`cargo bench --bench speed -- banks`): a bank outside the

@@ -224,8 +224,8 @@ impl PageWriter {
         ]
     }
 
-    /// Slope of a wall of dug soil, in place of the texel's `own`. A wall that runs across the lattice is a stair of cells,
-    /// whose sides face east and north by turns: light falls on it as on their mean within two cells.
+    /// Slope of a wall of dug soil, in place of the texel's `own`. A wall that runs across the lattice is a stair of
+    /// cells, whose sides face east and north by turns: light falls on it as on their mean within two cells.
     fn wall_slope(&self, [x, y]: [i32; 2], own: [f32; 2], distance_m: f32) -> [f32; 2] {
         let mut sum = [0.0f32; 2];
         for at in (PageRect { low: [x - 2, y - 2], high: [x + 3, y + 3] }).places() {

@@ -185,8 +185,8 @@ fn patches_that_meet_share_their_vertices_to_the_bit() {
     assert!(levels[..4].iter().all(|count| *count > 100), "{levels:?}");
 }
 
-/// The bank of a wide pit, five cells deep, whose wall runs across the lattice at an angle: light falls on it as on a straight
-/// wall, though its cells are a stair.
+/// The bank of a wide pit, five cells deep, whose wall runs across the lattice at an angle: light falls on it as on a
+/// straight wall, though its cells are a stair.
 #[test]
 fn a_wall_of_soil_faces_one_way_at_any_angle_to_the_lattice() {
     for angle_deg in [0.0f64, 8.0, 20.0, 35.0, 45.0] {
