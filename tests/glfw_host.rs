@@ -179,7 +179,7 @@ fn a_vessel_floats_on_the_sea() {
 fn heights_of_a_file_are_drawn_by_welkin() {
     let host = Host::build("terrain");
     let file = host.folder.join("cliff.asc");
-    let heights = |low: &str| format!("{low} ").repeat(151) + &"140 ".repeat(149) + "\n";
+    let heights = |low: &str| format!("{low} ").repeat(154) + &"140 ".repeat(146) + "\n";
     let grid =
         |low: &str| "ncols 300\nnrows 300\nxllcorner 5000\ncellsize 10\n".to_string() + &heights(low).repeat(300);
     fs::write(&file, grid("100")).expect("the folder is ours");
