@@ -39,7 +39,7 @@ fn box_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     return vec2f(max(first.x, first.y), min(last.x, last.y));
 }
 
-// As box_chord, for an ellipse with these half axes.
+// Chord of an ellipse with these half axes, in the form of box_chord.
 fn ellipse_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     let e = start / half;
     let v = way / half;
@@ -51,7 +51,8 @@ fn ellipse_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     return select(vec2f(0.0, -1.0), vec2f(middle - reach, middle + reach), left > 0.0);
 }
 
-// As box_chord, for a rectangle with round corners: where the ray passes a corner, the corner's circle bounds it.
+// Chord of a rectangle with round corners, in the form of box_chord: where the ray passes a corner, the corner's circle
+// bounds it.
 fn rounded_chord(start: vec2f, way: vec2f, half: vec2f, radius: f32) -> vec2f {
     var chord = box_chord(start, way, half);
     if chord.y <= chord.x || radius <= 0.0 {
@@ -79,7 +80,7 @@ fn bank_corner(k: u32, i: u32) -> vec2f {
     return select(pair.xy, pair.zw, (i & 1u) == 1u);
 }
 
-// As box_chord, for a convex polygon whose sides are moved outwards by `grown`.
+// Chord of a convex polygon whose sides are moved outwards by `grown` metres, in the form of box_chord.
 fn convex_chord(ray: BankRay, grown: f32) -> vec2f {
     var chord = vec2f(-1e9, 1e9);
     let count = min(low_air.banks[ray.bank].count, 16u);
@@ -96,6 +97,11 @@ fn convex_chord(ray: BankRay, grown: f32) -> vec2f {
     return chord;
 }
 
+// Whether the share of a bank is sampled along its chord: its polygon is not convex.
+fn is_sampled(k: u32) -> bool {
+    return (BANK_SHAPES & 8u) != 0u && low_air.banks[k].kind > BANK_CONVEX;
+}
+
 // Distances along a ray between which it is inside the shape grown by `grown` metres on all sides. For a polygon that
 // is not convex, those of a circle about it.
 fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
@@ -107,7 +113,7 @@ fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
     if (BANK_SHAPES & 4u) != 0u && kind == BANK_CONVEX {
         return convex_chord(ray, grown);
     }
-    if (BANK_SHAPES & 8u) != 0u && kind > BANK_CONVEX {
+    if is_sampled(ray.bank) {
         return ellipse_chord(ray.start, ray.way, vec2f(low_air.banks[ray.bank].radius + grown));
     }
     return rounded_chord(ray.start, ray.way, half, low_air.banks[ray.bank].corner + grown);

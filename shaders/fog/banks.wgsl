@@ -126,7 +126,7 @@ fn over_bank(k: u32, ray: BankRay) -> BankRay {
 // Distances along a ray between which it is inside the shape: for a polygon that is not convex, the middle third of the
 // chord `outer`; for a ray that misses the shape, its middle.
 fn inner_chord(ray: BankRay, outer: vec2f) -> vec2f {
-    if (BANK_SHAPES & 8u) != 0u && low_air.banks[ray.bank].kind > BANK_CONVEX {
+    if is_sampled(ray.bank) {
         let begin = max(outer.x, 0.0);
         let end = max(min(outer.y, ray.t), begin);
         return vec2f(mix(begin, end, 0.33333333), mix(begin, end, 0.66666667));
@@ -135,7 +135,8 @@ fn inner_chord(ray: BankRay, outer: vec2f) -> vec2f {
     return select(vec2f(0.5 * (outer.x + outer.y)), inner, inner.y > inner.x);
 }
 
-// Distances at which a ray enters a slab and its whole density, leaves that, and leaves the slab, m.
+// Four distances along a ray, m: it enters a slab, enters the part with the whole density, leaves that part, and leaves
+// the slab.
 fn slab_levels(u: FogUniform, ray: BankRay) -> vec4f {
     let course = ray_course(u, ray.h0, ray.mu, ray.t);
     var base = vec2f(0.0);
@@ -159,12 +160,12 @@ fn own_path(u: FogUniform, ray: BankRay, inner: vec2f, outer: vec2f) -> LayerPat
     let full = levels.yz;
     let a = clamp(inner.x, first, last);
     let b = clamp(inner.y, a, last);
-    let is_sampled = (BANK_SHAPES & 8u) != 0u && low_air.banks[ray.bank].kind > BANK_CONVEX;
+    let sampled = is_sampled(ray.bank);
     var length = 0.0;
-    if !is_sampled {
+    if !sampled {
         length = low_air.banks[ray.bank].strength * slab_length(u, ray, a, b, full);
     }
-    for (var i = 0u; i < select(2u, 3u, is_sampled); i++) {
+    for (var i = 0u; i < select(2u, 3u, sampled); i++) {
         let piece = select(select(vec2f(a, b), vec2f(b, last), i == 1u), vec2f(first, a), i == 0u);
         length += shared_piece(u, ray, piece.x, piece.y, full);
     }
@@ -215,7 +216,7 @@ fn add_together(banks: u32, ray: BankRay, outer: bool) {
         }
     }
     var s = ends.x;
-    for (var i = 0u; i < 68u && s < ends.y; i++) {
+    for (var i = 0u; i < 69u && s < ends.y; i++) {
         let least = vec4f(s + max(0.01, 1e-5 * s));
         var next = vec4f(ends.y);
         for (var j = 0u; j <= OUTER_SLAB; j++) {
@@ -296,7 +297,7 @@ fn measure_banks(met: u32, origin: vec3f, direction: vec3f, range: f32, paths: b
     replaced_fog = 0.0;
     let outer = has_own_layer() && low_air.fog.kind == FOG_SLAB;
     var together = 0u;
-    if has_own_layer() || BANKS_OVERLAP {
+    if has_own_layer() || (BANKS_OVERLAP && paths) {
         var left = met;
         for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
             let k = first_bank(left);

@@ -233,7 +233,7 @@ impl PageWriter {
             sum = [sum[0] + slope[0], sum[1] + slope[1]];
         }
         let (steepness, length) = (own[0].hypot(own[1]), sum[0].hypot(sum[1]));
-        // Walls that face each other have no mean direction.
+        // The slopes of two walls that face each other cancel out: the texel keeps its own.
         if length < 2.5 * steepness { own } else { sum.map(|s| s * steepness / length) }
     }
 
