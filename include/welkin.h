@@ -7428,6 +7428,12 @@ typedef struct wk_terrain_drawing {
      * rough that it would need a longer reach is drawn with a larger error.
      */
     double error_px;
+    /**
+     * Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
+     * [100, 1e5], default 1e4. Nearer shadows are sharper the shorter it is. A view with shadows holds up to 34 MB
+     * more.
+     */
+    double shadows_to_m;
 } wk_terrain_drawing;
 
 /** Every field of `wk_terrain_drawing` at its default. */
@@ -7435,7 +7441,8 @@ typedef struct wk_terrain_drawing {
     /* struct_size */ (uint32_t)sizeof(wk_terrain_drawing), \
     /* struct_type */ WK_STRUCT_TYPE_TERRAIN_DRAWING, \
     /* next */ NULL, \
-    /* error_px */ 1.0 \
+    /* error_px */ 1.0, \
+    /* shadows_to_m */ 1e4 \
 }
 
 /** Terrain at a queried place. Element of an array, without struct_size; calls take its sizeof instead. */

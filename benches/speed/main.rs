@@ -1,6 +1,6 @@
 //! Benchmarks that print ratios measured within one run: `make bench`. `cargo bench -- record` runs only the named ones
-//! (banks, clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, noise, parts, radiance, rain,
-//! run, sea, sky, wind).
+//! (banks, clouds, copies, falling, record, environment, first, fog, glass, gpu, ground, land, noise, parts, radiance,
+//! rain, run, sea, sky, wind).
 
 mod banks;
 mod clouds;
@@ -13,6 +13,8 @@ mod fog;
 mod glass;
 mod gpu;
 mod ground;
+mod host_images;
+mod land;
 mod noise;
 mod parts;
 mod radiance;
@@ -79,6 +81,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if wanted("ground") {
         ground::run()?;
+    }
+    if wanted("land") {
+        land::run()?;
     }
     if wanted("noise") {
         noise::run()?;

@@ -12,9 +12,12 @@ use welkin::{
     sea::{SeaHull, SeaPoint, SeaSettings},
     weather::{Weather, Wind},
 };
-use welkin_support::{processor::processor_ns, textures::texture};
+use welkin_support::processor::processor_ns;
 
-use crate::copies::{Copying, SETTLED, SIZE, median, size_of};
+use crate::{
+    copies::{Copying, SETTLED, SIZE, median, size_of},
+    host_images::HostImages,
+};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -22,37 +25,6 @@ type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 const ROUNDS: usize = 9;
 /// Time between frames of a moving sea, s.
 const STEP_S: f64 = 1.0 / 60.0;
-
-/// Pictures that all scenes draw into.
-struct SeaTarget {
-    color: wgpu::Texture,
-    depth: wgpu::Texture,
-}
-
-impl SeaTarget {
-    /// Clears colour and depth, as a host does before its own things.
-    fn clear(&self, device: &Device) -> Fallible<()> {
-        let mut encoder = device.device.create_command_encoder(&Default::default());
-        let [color, depth] = [&self.color, &self.depth].map(|t| t.create_view(&Default::default()));
-        let store = wgpu::StoreOp::Store;
-        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &color,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        }));
-        device.submit_and_wait(encoder)?;
-        Ok(())
-    }
-}
 
 /// A wind over the sea, or without sea, and the time between its frames.
 struct SeaScene {
@@ -86,7 +58,7 @@ impl SeaScene {
     }
 
     /// Processor time of a frame, ns.
-    fn ns(&mut self, device: &Device, target: &SeaTarget, camera: &Camera) -> Fallible<f64> {
+    fn ns(&mut self, device: &Device, target: &HostImages, camera: &Camera) -> Fallible<f64> {
         target.clear(device)?;
         self.frames += 1;
         self.context.update(self.step_s * self.frames as f64)?;
@@ -119,9 +91,7 @@ pub fn run() -> Fallible<()> {
     let device = Device::headless(&DeviceOptions::default())?;
     let shared = Arc::new(Shared::new(&device)?);
     let size = std::env::var("SIZE").map_or(Ok(SIZE), |asked| size_of(&asked))?;
-    let color = texture(&device, size, wgpu::TextureFormat::Rgba16Float, 1);
-    let depth = texture(&device, size, wgpu::TextureFormat::Depth32Float, 1);
-    let target = SeaTarget { color, depth };
+    let target = HostImages::new(&device, size);
     let copying = Copying::new(&device, size)?;
     let camera = Camera::look_to(DVec3::Z * 10.0, DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
     let scene = |name, wind, step_s| SeaScene::new(&device, &shared, name, wind, step_s);

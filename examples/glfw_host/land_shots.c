@@ -1,4 +1,4 @@
-/* The gallery's picture of terrain that Welkin draws: the site's heights and the road's class, in tiles. */
+/* The gallery's pictures of terrain that Welkin draws: the site's heights and the road's class, in tiles. */
 #include "land_shots.h"
 
 #include <stdlib.h>
@@ -40,18 +40,28 @@ static bool set_land(demo *d)
     return ok;
 }
 
-bool drawn_land(demo *d)
+static bool land_in_sun(demo *d, double azimuth_deg, double elevation_deg, double visibility_m)
 {
     wk_terrain terrain = WK_TERRAIN_INIT;
     wk_terrain_drawing drawing = WK_TERRAIN_DRAWING_INIT;
     wk_weather w = WK_WEATHER_INIT;
     terrain.cell_m = CELL_M;
     terrain.tile_cells = TILE_CELLS;
-    w.visibility_m = 30e3;
+    w.visibility_m = visibility_m;
     w.relative_humidity = 0.5;
     w.station_altitude_m = SITE_ALTITUDE_M;
-    return weather_clock(&d->weather, HOURS[0].utc_s) && sun_at(d, 150, 24) &&
+    return weather_clock(&d->weather, HOURS[0].utc_s) && sun_at(d, azimuth_deg, elevation_deg) &&
            weather_check(wk_context_set_weather(d->weather.context, &w, 0.0, 0.0)) &&
            weather_check(wk_context_set_terrain(d->weather.context, &terrain)) && set_land(d) &&
            weather_check(wk_context_set_terrain_drawing(d->weather.context, &drawing));
+}
+
+bool drawn_land(demo *d)
+{
+    return land_in_sun(d, 150, 24, 30e3);
+}
+
+bool land_shadows(demo *d)
+{
+    return land_in_sun(d, SITE_VIEW_AZIMUTH_DEG - 235, 8, 90e3);
 }

@@ -500,6 +500,7 @@ const shot SHOTS[] = {
     {"limb_with_clouds", "Clouds before the limb, 200 km up", HIGH(200e3, 8.0, -14.0, 30.0), limb_with_clouds, NO_WORLD, NULL, true},
     {"shadow", "200 km up at the terminator: the Earth's shadow", HIGH(200e3, 60.0, -16.0, 60.0), shadow, NO_WORLD, NULL, false},
     {"drawn_land", "Terrain that Welkin draws", HILLSIDE, drawn_land, LANDLESS, NULL, true},
+    {"land_shadows", "Shadows of hills under a low sun", 0, 0, 420, SITE_VIEW_AZIMUTH_DEG + 14, -9, 55, land_shadows, LANDLESS, NULL, true},
     {"dug_soil", "A trench and its spoil", 52.5, -24.4, 3.6, SITE_VIEW_AZIMUTH_DEG + 160.0, -22.0, 38.0, dug_soil, LANDLESS, NULL, true},
     {"sea_breeze", "The open sea, wind 5 m/s", AFLOAT(6.0, SITE_VIEW_AZIMUTH_DEG, -4.0, 50.0), sea_breeze, OPEN_SEA, NULL, true},
     {"sea_storm", "A storm from 15 m up, wind 20 m/s", AFLOAT(15.0, SITE_VIEW_AZIMUTH_DEG, -5.0, 50.0), sea_storm, OPEN_SEA, NULL, false},

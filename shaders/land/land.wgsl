@@ -3,6 +3,7 @@
 //!include "common/opaque.wgsl"
 //!include "land/vertex.wgsl"
 //!include "land/noise.wgsl"
+//!include "land/shadow_share.wgsl"
 
 const PI: f32 = 3.14159265;
 // Cosines of the slopes between which soil and grass give way to rock: 46 and 36 degrees.
@@ -10,6 +11,8 @@ const STEEP: f32 = 0.69;
 const GENTLE: f32 = 0.81;
 // Altitudes between which natural ground loses its grass, m.
 const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
+// Cosine of the slope from which on dug soil is a wall; `WALL` of src/land/cells.rs is its tangent.
+const WALL: f32 = 0.78;
 // Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of it.
 const DUG_VARIES: vec2f = vec2f(0.14, 0.09);
 // Index of the class of soil, of rock, and of grass.
@@ -78,8 +81,8 @@ fn cloddy(normal: vec3f, share: f32, place: vec3f, footprint: f32) -> vec3f {
     return normalize(normal - (slope - dot(slope, normal) * normal));
 }
 
-// Returns the luminance of the ground at a fragment.
-fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
+// Returns the luminance of the ground at a fragment. `facet` is the normal of the fragment's triangle.
+fn ground_luminance(in: LandVarying, footprint: f32, facet: vec3f) -> vec3f {
     let size = vec2f(textureDimensions(page_slopes));
     let uv = (vec2f(in.slot) + in.texel + 0.5) / size;
     let slopes = textureSampleLevel(page_slopes, page_sampler, uv, 0.0);
@@ -95,7 +98,12 @@ fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
     // Walls of soil are steep, and yet no rock.
     let firm = mix(cosine, 1.0, min(4.0 * soil.a, 1.0));
     let albedo = (1.0 - soil.a) * ground_albedo(class_shares(uv), firm, altitude, noise) + soil.rgb;
-    let direct = land.sun_lux.rgb * max(dot(normal, land.sun.xyz), 0.0) + land.moon_lux.rgb * max(dot(normal, land.moon.xyz), 0.0);
+    let lit = max(vec2f(dot(normal, land.sun.xyz), dot(normal, land.moon.xyz)), vec2f(0.0));
+    // The teeth of a wall that runs across the lattice cast no shadows on each other.
+    let is_wall = soil.a > 0.0 && facet.z < WALL;
+    let share = shadow_share(in.place, facet, select(0.0, land.cell_m, is_wall));
+    let seen = lit * mix(vec2f(1.0), vec2f(share), land.shadow.shaded.xy);
+    let direct = land.sun_lux.rgb * seen.x + land.moon_lux.rgb * seen.y;
     let open = 0.5 + 0.5 * cosine;
     return albedo * (direct + land.sky_lux.rgb * open + land.bounce_lux.rgb * (1.0 - open)) / PI;
 }
@@ -105,11 +113,23 @@ fn ground_luminance(in: LandVarying, footprint: f32) -> vec3f {
 fn shown(in: LandVarying) -> vec4f {
     // Side of the square that a pixel covers on the ground.
     let area = cross(dpdx(in.place), dpdy(in.place));
-    let footprint = sqrt(sqrt(max(dot(area, area), 0.0)));
+    let size = sqrt(max(dot(area, area), 0.0));
+    let footprint = sqrt(size);
+    // Rows of the picture may run upwards or downwards; the ground faces up.
+    let facet = area * (sign(area.z) / max(size, 1e-30));
     if is_kept(in.position.xy) || (in.has_holes == 1u && !has_ground(in.slot, in.texel)) {
         discard;
     }
-    return vec4f(host_number(ground_luminance(in, footprint)), 1.0);
+    return vec4f(host_number(ground_luminance(in, footprint, facet)), 1.0);
+}
+
+@vertex
+fn land_vertex(
+    @builtin(vertex_index) index: u32,
+    @location(0) low: vec2i,
+    @location(1) page: vec2u,
+) -> LandVarying {
+    return patch_vertex(land.clip, index, low, page);
 }
 
 @fragment

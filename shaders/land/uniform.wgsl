@@ -22,6 +22,31 @@ struct Octave {
     turn: vec4f,
 }
 
+// Shadow maps, finest first.
+const CASCADES: u32 = 4u;
+
+// Square shadow map across the light, around a centre near the eye. Places are in metres from the eye along the
+// lattice's axes; depth 0 is farthest from the light.
+struct Cascade {
+    // Rows of the matrix from a place to texture coordinates and depth.
+    u: vec4f,
+    v: vec4f,
+    depth: vec4f,
+    // Distance between depth 0 and 1, m; square of the map's side over it; 1 over 1.2 times half of the side, 1/m;
+    // distance from the centre, along the light, at depth 0, m.
+    size: vec4f,
+    // Side of a texel, in texture coordinates and in depth; radius, texels, of the disc of the light past something at
+    // a depth of 1 above a place; depth per metre.
+    texel: vec4f,
+}
+
+// Constants of the shadows.
+struct LandShadow {
+    cascades: array<Cascade, 4>,
+    // Light that the maps are for: 1, 0 for the sun, 0, 1 for the moon, 0, 0 without maps; number of maps.
+    shaded: vec4f,
+}
+
 struct LandUniform {
     // From the lattice's axes about the eye, m, to clip space.
     clip: mat4x4f,
@@ -54,6 +79,7 @@ struct LandUniform {
     // Materials by class number.
     materials: array<Material, 7>,
     octaves: array<Octave, 8>,
+    shadow: LandShadow,
 }
 
 @group(1) @binding(0) var<uniform> land: LandUniform;
@@ -67,3 +93,9 @@ struct LandUniform {
 @group(1) @binding(5) var page_sampler: sampler;
 // Albedo of dug soil times the share that it covers, and this share.
 @group(1) @binding(6) var page_dug: texture_2d<f32>;
+// Depths of the ground in the shadow maps, as seen from the light, to compare with and to read.
+@group(1) @binding(7) var shadow_compared: texture_depth_2d_array;
+@group(1) @binding(8) var shadow_depths: texture_2d_array<f32>;
+// Depth nearest to the light in each block of SHADOW_BLOCK x SHADOW_BLOCK texels.
+@group(1) @binding(9) var shadow_tops: texture_2d_array<f32>;
+@group(1) @binding(10) var shadow_sampler: sampler_comparison;

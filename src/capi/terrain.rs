@@ -87,6 +87,10 @@ pub struct wk_terrain_drawing {
     /// default 1. It sets the distance that each level of detail reaches, in [40, 160] sides of its squares. Ground so
     /// rough that it would need a longer reach is drawn with a larger error.
     pub error_px: f64,
+    /// Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
+    /// [100, 1e5], default 1e4. Nearer shadows are sharper the shorter it is. A view with shadows holds up to 34 MB
+    /// more.
+    pub shadows_to_m: f64,
 }
 
 impl wk_terrain_drawing {
@@ -95,6 +99,7 @@ impl wk_terrain_drawing {
         struct_type: WK_STRUCT_TYPE_TERRAIN_DRAWING,
         next: null(),
         error_px: 1.0,
+        shadows_to_m: 1e4,
     };
 }
 
@@ -349,7 +354,9 @@ pub unsafe extern "C" fn wk_context_set_terrain_drawing(
             layout::check_chain(&"terrain_drawing", c.next, &[])?;
             c
         };
-        object.write().set_terrain_drawing(Some(TerrainDrawing { error_px: c.error_px }))?;
+        object
+            .write()
+            .set_terrain_drawing(Some(TerrainDrawing { error_px: c.error_px, shadows_to_m: c.shadows_to_m }))?;
         Ok(Status::Ok)
     })
 }

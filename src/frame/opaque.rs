@@ -41,6 +41,12 @@ impl View {
         Ok(())
     }
 
+    /// Draws what the opaque parts of the effects read.
+    fn prepare_opaque(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
+        let mut drawn = self.effects.each().into_iter().filter(|effect| effect.has_opaque());
+        drawn.try_for_each(|effect| effect.prepare_opaque(context, recording))
+    }
+
     /// Draws the opaque parts of the effects. If the host's depth is read-only, counts these effects instead.
     pub(super) fn draw_opaque<'a>(
         &mut self,
@@ -53,6 +59,7 @@ impl View {
             self.history.report.opaque_left_out = self.effects.all().iter().filter(|e| e.has_opaque()).count() as u32;
             return Ok(());
         };
+        self.prepare_opaque(frame_context, recording)?;
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
         let block = uniform(frame, frame_context.now, target.rays, color.texture, target.exposure, false);

@@ -15,6 +15,10 @@ pub(crate) enum Slot {
     StorageRead(u64),
     /// A float texture, read texel by texel.
     Texels,
+    /// An array of float textures, read texel by texel.
+    TexelsArray,
+    /// An array of depth textures, compared with a depth.
+    ComparedArray,
     /// A multisampled texture.
     Samples,
     /// A texture of unsigned integers.
@@ -29,6 +33,8 @@ pub(crate) enum Slot {
     FilteredVolume,
     /// A filtering sampler.
     Sampler,
+    /// A sampler that compares.
+    Comparison,
 }
 
 impl Slot {
@@ -56,6 +62,8 @@ impl Slot {
             Self::Storage(bytes) => buffer(B::Storage { read_only: false }, false, bytes),
             Self::StorageRead(bytes) => buffer(B::Storage { read_only: true }, false, bytes),
             Self::Texels => texture(float(false), D::D2, false),
+            Self::TexelsArray => texture(float(false), D::D2Array, false),
+            Self::ComparedArray => texture(T::Depth, D::D2Array, false),
             Self::Samples => texture(float(false), D::D2, true),
             Self::Words => texture(T::Uint, D::D2, false),
             Self::Filtered => texture(float(true), D::D2, false),
@@ -63,6 +71,7 @@ impl Slot {
             Self::FilteredCube => texture(float(true), D::Cube, false),
             Self::FilteredVolume => texture(float(true), D::D3, false),
             Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            Self::Comparison => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         }
     }
 }

@@ -28,6 +28,17 @@ pub(super) struct LandLight {
 }
 
 impl LandLight {
+    /// Whether the sun is the light that casts shadows, and not the moon.
+    pub fn is_sunny(&self) -> bool {
+        self.sun_lux[1] >= self.moon_lux[1]
+    }
+
+    /// Direction of the light that casts shadows; `None` in darkness.
+    pub fn shaded(&self) -> Option<DVec3> {
+        let (lux, direction) = if self.is_sunny() { (self.sun_lux, self.sun) } else { (self.moon_lux, self.moon) };
+        (lux[1] > 0.0).then_some(direction)
+    }
+
     /// Returns the light of a scene. `to_local` rotates from the scene's axes to the camera's.
     fn of(scene: &Scene, to_local: glam::DMat3) -> Self {
         let light = &scene.ground;

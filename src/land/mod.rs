@@ -20,9 +20,9 @@
 //! **Materials** (`materials.rs`) follow from class, slope and altitude, varied by filtered noise. Dug soil covers them
 //! with a colour that the tiles have, and with clods.
 //!
-//! **Light** is that of sun, moon and sky at the ground below the camera, for the ground's own slope; hills cast no
-//! shadows. The composition adds to the terrain what it adds to the host's own surfaces: water, lying snow, shadows of
-//! clouds, air and fog.
+//! **Light** is that of sun, moon and sky at the ground below the camera, for the ground's own slope. Hills and pits
+//! have shadows (`shadow/`). The composition adds to the terrain what it adds to the host's own surfaces: water, lying
+//! snow, shadows of clouds, air and fog.
 //!
 //! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers
 //! of cells from the cell below the eye.
@@ -37,11 +37,13 @@ mod materials;
 mod page;
 mod pages;
 mod passes;
+mod patch;
 #[cfg(test)]
 pub(crate) mod reference;
 mod relief;
 mod selection;
 mod settings;
+mod shadow;
 #[cfg(test)]
 mod tests;
 mod uniforms;

@@ -4,8 +4,11 @@ use std::collections::HashMap;
 
 use super::{
     cells::{CellReader, FARTHEST_RING},
+    eye::LandEye,
     page::{PageRect, PageWriter, TEXELS, VERTICES, has_holes, shows_soil},
     relief::NodeKey,
+    selection::LandPatch,
+    uniforms::PatchInstance,
 };
 use crate::{
     gpu::{Device, flat_texture},
@@ -30,17 +33,19 @@ pub(super) struct PageTextures {
 }
 
 impl PageTextures {
-    fn new(device: &wgpu::Device, slots: u32, has_dug: bool) -> Self {
+    fn new(device: &wgpu::Device, slots: u32, (has_texels, has_dug): (bool, bool)) -> Self {
         use wgpu::{TextureFormat as F, TextureUsages as U};
         let usage = U::TEXTURE_BINDING | U::COPY_DST;
         let size = |side: i32| (SLOTS_IN_ROW * side as u32, slots / SLOTS_IN_ROW * side as u32);
-        let texture = |side, format| flat_texture(device, "land pages", size(side), format, usage);
-        let dug = if has_dug { size(TEXELS) } else { (1, 1) };
+        let texels = |is_there, format| {
+            let size = if is_there { size(TEXELS) } else { (1, 1) };
+            flat_texture(device, "land pages", size, format, usage)
+        };
         Self {
-            vertices: texture(VERTICES, F::R32Float),
-            slopes: texture(TEXELS, F::Rgba16Float),
-            classes: [texture(TEXELS, F::Rgba8Unorm), texture(TEXELS, F::Rgba8Unorm)],
-            dug: flat_texture(device, "land soil", dug, F::Rgba8UnormSrgb, usage),
+            vertices: flat_texture(device, "land pages", size(VERTICES), F::R32Float, usage),
+            slopes: texels(has_texels, F::Rgba16Float),
+            classes: [texels(has_texels, F::Rgba8Unorm), texels(has_texels, F::Rgba8Unorm)],
+            dug: texels(has_dug, F::Rgba8UnormSrgb),
         }
     }
 }
@@ -68,6 +73,8 @@ pub(super) struct Pages {
     writer: PageWriter,
     /// Scratch space: class texels of one texture.
     half: Vec<[u8; 4]>,
+    /// Whether the pages have only vertices: shadow maps need no more.
+    is_bare: bool,
     /// Class of cells without one, with which the pages were filled.
     default_class: u8,
     /// Whether the pages have colours of dug soil.
@@ -78,10 +85,15 @@ pub(super) struct Pages {
 }
 
 impl Pages {
+    /// Returns pages that have only vertices.
+    pub fn of_vertices() -> Self {
+        Self { is_bare: true, ..Self::default() }
+    }
+
     /// Begins a picture of a terrain in which cells without a class have the class `default`.
     pub fn begin(&mut self, terrain: &Terrain, default: u8) {
         self.picture += 1;
-        if self.has_dug != shows_soil(terrain) {
+        if !self.is_bare && self.has_dug != shows_soil(terrain) {
             *self = Self { has_dug: !self.has_dug, picture: self.picture, ..Self::default() };
         }
         if self.default_class != default {
@@ -114,7 +126,7 @@ impl Pages {
 
     /// Returns the slot of a page, which is filled if it was not there. `None` if more pages are used in this picture
     /// than there is room for.
-    pub fn slot_of(&mut self, device: &Device, terrain: &Terrain, page: NodeKey) -> Option<u32> {
+    fn slot_of(&mut self, device: &Device, terrain: &Terrain, page: NodeKey) -> Option<u32> {
         if let Some(slot) = self.by_key.get(&page) {
             self.slots[*slot as usize].used = self.picture;
             return Some(*slot);
@@ -131,20 +143,45 @@ impl Pages {
         Some(slot as u32)
     }
 
+    /// Writes an instance for each patch, with the slot of its page, and fills pages that are not there yet. Patches
+    /// for whose pages there is no room are left out.
+    pub fn place(
+        &mut self,
+        device: &Device,
+        (terrain, eye): (&Terrain, LandEye),
+        patches: &[LandPatch],
+        instances: &mut Vec<PatchInstance>,
+    ) {
+        loop {
+            instances.clear();
+            let is_complete = patches.iter().all(|patch| {
+                let Some(slot) = self.slot_of(device, terrain, patch.page) else { return false };
+                let low = patch.low();
+                let quarter = (patch.quarter[0] | patch.quarter[1] << 1) as u32;
+                let kind = u32::from(patch.page.level) | quarter << 8 | u32::from(self.has_holes(slot)) << 10;
+                instances.push(PatchInstance { low: [0, 1].map(|i| low[i] - eye.cell[i]), slot, kind });
+                true
+            });
+            if is_complete || !self.grow(device) {
+                return;
+            }
+        }
+    }
+
     /// Makes room for more pages, and forgets those that are there. Returns whether there is more room now.
-    pub fn grow(&mut self, device: &Device) -> bool {
+    fn grow(&mut self, device: &Device) -> bool {
         let count = (2 * self.slots.len() as u32).clamp(FIRST_SLOTS, MOST_SLOTS);
         if count as usize == self.slots.len() {
             return false;
         }
-        self.textures = Some(PageTextures::new(&device.device, count, self.has_dug));
+        self.textures = Some(PageTextures::new(&device.device, count, (!self.is_bare, self.has_dug)));
         self.slots = vec![EMPTY; count as usize];
         self.by_key = HashMap::with_capacity(2 * count as usize);
         true
     }
 
     /// Whether any texel of a slot has no ground.
-    pub fn has_holes(&self, slot: u32) -> bool {
+    fn has_holes(&self, slot: u32) -> bool {
         self.slots[slot as usize].has_holes
     }
 
@@ -158,7 +195,12 @@ impl Pages {
     /// GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
         let [vertices, texels] = [VERTICES, TEXELS].map(|side| u64::from(side.unsigned_abs().pow(2)));
-        self.slots.len() as u64 * (4 * vertices + if self.has_dug { 20 } else { 16 } * texels)
+        let bytes_of_texel = match (self.is_bare, self.has_dug) {
+            (true, _) => 0,
+            (false, false) => 16,
+            (false, true) => 20,
+        };
+        self.slots.len() as u64 * (4 * vertices + bytes_of_texel * texels)
     }
 
     fn write_vertices(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
@@ -171,7 +213,7 @@ impl Pages {
     }
 
     fn write_texels(&mut self, device: &Device, terrain: &Terrain, (slot, page): (u32, NodeKey), part: PageRect) {
-        let Some(textures) = &self.textures else { return };
+        let Some(textures) = self.textures.as_ref().filter(|_| !self.is_bare) else { return };
         let mut cells = CellReader::new(terrain);
         self.writer.write_texels(&mut cells, page, part, self.default_class);
         let is_holed = self.writer.classes.iter().any(|texel| texel[7] == 0);

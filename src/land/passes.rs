@@ -1,8 +1,9 @@
-//! GPU resources of the drawn terrain: pipeline, mesh of a patch, instances, and the bind group of the pages.
+//! GPU resources of the drawn terrain: pipeline, mesh, and the bind group of the pages and the shadow maps.
 
 use super::{
     pages::PageTextures,
-    selection::PATCH,
+    patch::{PatchMesh, patch_layout},
+    shadow::{ShadowMaps, no_maps},
     uniforms::{LandUniform, PatchInstance},
 };
 use crate::{
@@ -15,44 +16,21 @@ use crate::{
     stage::{OpaqueDraw, OpaqueTarget},
 };
 
-/// Indices of a patch: two triangles a square.
-const INDICES: u32 = (PATCH * PATCH * 6) as u32;
-/// Instances that a view begins with.
-const FIRST_INSTANCES: usize = 512;
+/// Vertices of the pages, and depths of the shadow maps: the others come and go with them.
+type BoundTextures = (wgpu::Texture, Option<wgpu::Texture>);
 
 /// Resources of a view.
 pub(super) struct LandPass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    indices: wgpu::Buffer,
-    instances: wgpu::Buffer,
+    mesh: PatchMesh,
     /// Pipeline, and the target that it was made for.
     pipeline: Option<(OpaqueTarget, wgpu::RenderPipeline)>,
-    /// Bind group, and one of the textures that it was made for.
-    group: Option<(wgpu::Texture, wgpu::BindGroup)>,
-}
-
-/// Indices of the triangles of a patch, in rows from the south-west. Each square is split from its south-western to its
-/// north-eastern corner.
-pub(super) fn patch_indices() -> impl Iterator<Item = u16> {
-    let vertices = PATCH as u16 + 1;
-    (0..PATCH as u16).flat_map(move |j| {
-        (0..PATCH as u16).flat_map(move |i| {
-            let low = j * vertices + i;
-            let (east, north, far) = (low + 1, low + vertices, low + vertices + 1);
-            [low, east, far, low, far, north]
-        })
-    })
-}
-
-fn buffer(device: &wgpu::Device, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("land"),
-        size: bytes as u64,
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    compared: wgpu::Sampler,
+    no_maps: [wgpu::TextureView; 2],
+    /// Bind group, and the textures of pages and of shadow maps that it was made for.
+    group: Option<(BoundTextures, wgpu::BindGroup)>,
 }
 
 impl LandPass {
@@ -66,10 +44,11 @@ impl LandPass {
             (4, Slot::Filtered),
             (5, Slot::Sampler),
             (6, Slot::Filtered),
+            (7, Slot::ComparedArray),
+            (8, Slot::TexelsArray),
+            (9, Slot::TexelsArray),
+            (10, Slot::Comparison),
         ];
-        let list: Vec<u16> = patch_indices().collect();
-        let indices = buffer(gpu, size_of_val(list.as_slice()), wgpu::BufferUsages::INDEX);
-        device.write_buffer(&indices, 0, bytemuck::cast_slice(&list));
         Self {
             block: blocks.block(device, size_of::<LandUniform>()),
             layout: bind::layout(gpu, "land", wgpu::ShaderStages::VERTEX_FRAGMENT, &slots),
@@ -79,8 +58,15 @@ impl LandPass {
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
             }),
-            indices,
-            instances: buffer(gpu, FIRST_INSTANCES * size_of::<PatchInstance>(), wgpu::BufferUsages::VERTEX),
+            compared: gpu.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("land shadows"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(wgpu::CompareFunction::GreaterEqual),
+                ..Default::default()
+            }),
+            no_maps: no_maps(gpu),
+            mesh: PatchMesh::new(device),
             pipeline: None,
             group: None,
         }
@@ -88,7 +74,7 @@ impl LandPass {
 
     /// GPU memory, bytes.
     pub fn bytes(&self) -> u64 {
-        self.indices.size() + self.instances.size()
+        self.mesh.bytes()
     }
 
     /// Draws the patches of a picture.
@@ -99,36 +85,31 @@ impl LandPass {
         &mut self,
         device: &Device,
         opaque: &OpaqueDraw<'_>,
-        pages: &PageTextures,
+        (pages, maps): (&PageTextures, Option<&ShadowMaps>),
         (block, patches): (&LandUniform, &[PatchInstance]),
         pass: &mut wgpu::RenderPass<'_>,
     ) -> Result<()> {
         self.block.write(bytemuck::bytes_of(block));
-        let bytes: &[u8] = bytemuck::cast_slice(patches);
-        if (self.instances.size() as usize) < bytes.len() {
-            let room = bytes.len().next_power_of_two();
-            self.instances = buffer(&device.device, room, wgpu::BufferUsages::VERTEX);
-        }
-        device.write_buffer(&self.instances, 0, bytes);
+        self.mesh.write(device, patches);
         let pipeline = match self.pipeline.take() {
             Some((target, pipeline)) if target == opaque.target => pipeline,
             _ => pipeline(device, opaque, &self.layout)?,
         };
+        let textures = (pages.vertices.clone(), maps.map(|maps| maps.texture().clone()));
         let group = match self.group.take() {
-            Some((vertices, group)) if vertices == pages.vertices => group,
-            _ => self.bind(&device.device, pages),
+            Some((bound, group)) if bound == textures => group,
+            _ => self.bind(&device.device, pages, maps),
         };
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(1, &group, &[]);
-        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint16);
-        pass.set_vertex_buffer(0, self.instances.slice(..));
-        pass.draw_indexed(0..INDICES, 0, 0..patches.len() as u32);
+        self.mesh.draw(pass, 0..patches.len() as u32);
         self.pipeline = Some((opaque.target, pipeline));
-        self.group = Some((pages.vertices.clone(), group));
+        self.group = Some((textures, group));
         Ok(())
     }
 
-    fn bind(&self, device: &wgpu::Device, pages: &PageTextures) -> wgpu::BindGroup {
+    fn bind(&self, device: &wgpu::Device, pages: &PageTextures, maps: Option<&ShadowMaps>) -> wgpu::BindGroup {
+        let [depths, tops] = maps.map_or_else(|| self.no_maps.clone(), ShadowMaps::views);
         let views = [&pages.vertices, &pages.slopes, &pages.classes[0], &pages.classes[1], &pages.dug]
             .map(|texture| texture.create_view(&Default::default()));
         let texture = |binding: u32, i: usize| bind::view(binding, &views[i]);
@@ -143,6 +124,10 @@ impl LandPass {
                 texture(4, 3),
                 bind::sampler(5, &self.sampler),
                 texture(6, 4),
+                bind::view(7, &depths),
+                bind::view(8, &depths),
+                bind::view(9, &tops),
+                bind::sampler(10, &self.compared),
             ],
         })
     }
@@ -157,11 +142,6 @@ fn pipeline(device: &Device, opaque: &OpaqueDraw<'_>, own: &wgpu::BindGroupLayou
         bind_group_layouts: &[Some(opaque.layout), Some(own)],
         immediate_size: 0,
     });
-    let instances = wgpu::VertexBufferLayout {
-        array_stride: size_of::<PatchInstance>() as u64,
-        step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &wgpu::vertex_attr_array![0 => Sint32x2, 1 => Uint32x2],
-    };
     Ok(device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("land"),
         layout: Some(&layout),
@@ -169,7 +149,7 @@ fn pipeline(device: &Device, opaque: &OpaqueDraw<'_>, own: &wgpu::BindGroupLayou
             module: &module,
             entry_point: Some("land_vertex"),
             compilation_options: Default::default(),
-            buffers: &[Some(instances)],
+            buffers: &[Some(patch_layout())],
         },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(target.depth_test()),

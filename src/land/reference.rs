@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
+pub(crate) use super::shadow::DISC;
 use super::{
     page::VERTICES,
     selection::PATCH,
@@ -40,6 +41,26 @@ pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, 
         let axis = usize::from(y < x);
         square[axis] += plan[axis].signum();
     }
+}
+
+/// Number of rays to a disc.
+const RAYS: u32 = 9;
+
+/// Returns the share of a disc of the sun's size, in the direction `light`, that the ground leaves in view from a
+/// place, m along the lattice's axes from its origin: the share of rays to points spread over the disc. No ground is
+/// higher than `top_m`.
+pub(crate) fn disc_share(terrain: &Terrain, place: DVec3, light: DVec3, top_m: f64) -> f64 {
+    let side = light.any_orthonormal_vector();
+    let axes = [side, light.cross(side)];
+    let seen = (0..RAYS).filter(|i| {
+        let part = (f64::from(*i) + 0.5) / f64::from(RAYS);
+        let (sine, cosine) = libm::sincos(2.399_963_229_728_653 * f64::from(*i));
+        let off = DISC * part.sqrt() * (axes[0] * cosine + axes[1] * sine);
+        let ray = (light + off).normalize();
+        let over_all = (top_m - place.z).max(0.0) / ray.z.max(1e-4);
+        ray_to_ground(terrain, place, ray, over_all + 1.0).is_none()
+    });
+    seen.count() as f64 / f64::from(RAYS)
 }
 
 /// Distance along a ray to the plane of a triangle of a square, if the ray meets the triangle itself.

@@ -49,6 +49,18 @@ impl LandPatch {
     }
 }
 
+impl LandPatch {
+    /// Corners of the box around the patch's ground, m along the lattice's axes from its origin.
+    pub fn corners_m(self, relief: &Relief, cell_m: f64) -> [DVec3; 2] {
+        let (low, side) = (self.low(), PATCH << self.page.level);
+        let heights = relief.bounds(self.page).unwrap_or_default();
+        [0, 1].map(|i| {
+            let plan = low.map(|v| f64::from(v + side * i as i32) * cell_m);
+            DVec3::new(plan[0], plan[1], f64::from(heights[i]))
+        })
+    }
+}
+
 /// Distances by which levels are chosen and vertices moved, for one picture. Lengths are in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LevelDistances {
@@ -135,6 +147,13 @@ impl LandFrustum {
         let rows = clip.transpose();
         let (x, y, w) = (rows.x_axis, rows.y_axis, rows.w_axis);
         Self { planes: [w + x, w - x, w + y, w - y, w], cell_m, eye }
+    }
+
+    /// Returns the box of a shadow map, open towards the light. The arguments are as those of [`Self::new`].
+    pub fn of_light(clip: DMat4, eye: DVec3, cell_m: f64) -> Self {
+        let mut planes = Self::new(clip, eye, cell_m);
+        planes.planes[4] = clip.transpose().z_axis;
+        planes
     }
 
     /// Whether a box of the lattice may be in the picture.

@@ -9,7 +9,7 @@ use super::{
     eye::LandEye,
     light::LandLight,
     page::{PageRect, PageWriter, VERTICES},
-    passes::patch_indices,
+    patch::patch_indices,
     reference::vertex,
     relief::{NodeKey, Relief},
     selection::{LandFrustum, LandPatch, LevelDistances, select},
@@ -66,6 +66,7 @@ fn uniform_of(detail: &LevelDistances, eye: LandEye, top: u8) -> LandUniform {
         altitude_m: 0.0,
         has_dug: false,
         light: LandLight::default(),
+        shadows_to_m: 0.0,
     }
     .uniform(DMat4::IDENTITY, top)
 }

@@ -10,6 +10,28 @@ use super::{
     selection::LevelDistances,
 };
 
+/// Number of shadow maps.
+pub(super) const CASCADES: usize = 4;
+
+/// Constants of a shadow map. `shaders/land/uniform.wgsl` has their meaning.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct CascadeUniform {
+    pub u: [f32; 4],
+    pub v: [f32; 4],
+    pub depth: [f32; 4],
+    pub size: [f32; 4],
+    pub texel: [f32; 4],
+}
+
+/// Constants of the shadows. `shaders/land/uniform.wgsl` has their meaning.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct LandShadowUniform {
+    pub cascades: [CascadeUniform; CASCADES],
+    pub shaded: [f32; 4],
+}
+
 /// Constants of a picture. `shaders/land/uniform.wgsl` has the units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -33,6 +55,7 @@ pub(super) struct LandUniform {
     pub bounce_lux: [f32; 4],
     pub materials: [Material; MATERIALS],
     pub octaves: [Octave; OCTAVES],
+    pub shadow: LandShadowUniform,
 }
 
 /// One patch of a picture.
@@ -61,6 +84,8 @@ pub(super) struct LandPicture {
     /// Whether the pages have colours of dug soil.
     pub has_dug: bool,
     pub light: LandLight,
+    /// Distance up to which the ground has shadows, m; 0 for none.
+    pub shadows_to_m: f64,
 }
 
 fn four(v: DVec3) -> [f32; 4] {
@@ -75,7 +100,7 @@ impl LandPicture {
     /// Returns the constants for a draw. `clip` is the matrix from camera-relative east, north, up to clip space, `top`
     /// the level of the largest nodes.
     pub fn uniform(&self, clip: DMat4, top: u8) -> LandUniform {
-        let metres = DVec3::new(self.place_m(0), self.place_m(1), self.eye.place.z);
+        let metres = self.eye_m();
         LandUniform {
             clip: (clip * DMat4::from_mat3(self.to_local)).as_mat4().to_cols_array(),
             to_local: [0, 1, 2].map(|i| four(self.to_local.col(i))),
@@ -96,6 +121,7 @@ impl LandPicture {
             bounce_lux: lux(self.light.bounce_lux),
             materials: CLASS_MATERIALS,
             octaves: octaves(metres),
+            shadow: LandShadowUniform::default(),
         }
     }
 
@@ -107,8 +133,10 @@ impl LandPicture {
         [start as f32, if moves { (1.0 / (end - start)) as f32 } else { 0.0 }, 0.0, 0.0]
     }
 
-    fn place_m(&self, axis: usize) -> f64 {
-        self.eye.place[axis] * self.cell_m
+    /// Place of the eye along the lattice's axes from its origin, m.
+    pub fn eye_m(&self) -> DVec3 {
+        let place = self.eye.place;
+        DVec3::new(place.x * self.cell_m, place.y * self.cell_m, place.z)
     }
 }
 
@@ -125,10 +153,12 @@ mod tests {
             LandUniform,
             [
                 clip, to_local, eye, cell_m, above, spread, altitude, curvature, has_dug, levels, sun, sun_lux, moon,
-                moon_lux, sky_lux, bounce_lux, materials, octaves
+                moon_lux, sky_lux, bounce_lux, materials, octaves, shadow
             ]
         );
         shader::assert_layout!("land/land.wgsl", "Material", Material, [albedo, fine, broad]);
+        shader::assert_layout!("land/land.wgsl", "LandShadow", LandShadowUniform, [cascades, shaded]);
+        shader::assert_layout!("land/land.wgsl", "Cascade", CascadeUniform, [u, v, depth, size, texel]);
         shader::assert_layout!("land/land.wgsl", "Octave", Octave, [cell, place, turn]);
     }
 }

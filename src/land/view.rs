@@ -10,13 +10,14 @@ use super::{
     passes::LandPass,
     relief::Relief,
     selection::{LandFrustum, LandPatch, LevelDistances, select},
-    uniforms::{LandPicture, PatchInstance},
+    shadow::Shadows,
+    uniforms::{LandPicture, LandUniform, PatchInstance},
 };
 use crate::{
     error::Result,
     gpu::blocks::Blocks,
     scene::WorldKind,
-    stage::{DepthAccess, DrawContext, DrawnEffect, FrameContext, OpaqueDraw, Outputs, Stages},
+    stage::{DepthAccess, DrawContext, DrawnEffect, FrameContext, OpaqueDraw, Outputs, Recording, Stages},
     terrain::Terrain,
 };
 
@@ -28,6 +29,7 @@ pub(crate) struct LandView {
     blocks: Blocks,
     relief: Relief,
     pages: Pages,
+    shadows: Shadows,
     patches: Vec<LandPatch>,
     instances: Vec<PatchInstance>,
     /// Whether the host has asked for terrain, and there is some.
@@ -35,6 +37,9 @@ pub(crate) struct LandView {
     /// Picture of this frame, if terrain is drawn into it.
     picture: Option<LandPicture>,
     pass: Option<LandPass>,
+    /// Whether sun and moon do not shine on the ground.
+    #[cfg(test)]
+    pub is_dark: bool,
 }
 
 impl LandView {
@@ -43,11 +48,14 @@ impl LandView {
             blocks: blocks.clone(),
             relief: Relief::default(),
             pages: Pages::default(),
+            shadows: Shadows::new(blocks),
             patches: Vec::new(),
             instances: Vec::new(),
             is_there: false,
             picture: None,
             pass: None,
+            #[cfg(test)]
+            is_dark: false,
         }
     }
 
@@ -55,6 +63,19 @@ impl LandView {
     #[cfg(test)]
     pub fn texels_written(&self) -> u64 {
         self.pages.texels_written
+    }
+
+    /// Shadow maps drawn so far.
+    #[cfg(test)]
+    pub fn maps_drawn(&self) -> u64 {
+        self.shadows.maps_drawn
+    }
+
+    /// Side of the texels, m, of the finest shadow map of the last picture that holds a place relative to the eye, m
+    /// along the lattice's axes, and of the next coarser one.
+    #[cfg(test)]
+    pub fn shadow_texels_m(&self, place: DVec3) -> Option<[f64; 2]> {
+        self.shadows.texels_m(&self.shadows.uniform(self.picture.as_ref()?), place)
     }
 
     /// Number of pages that have a texel without ground, and of those that have a vertex without.
@@ -73,11 +94,14 @@ impl LandView {
         if !cells.is_finite() || cells.abs().max_element() > FARTHEST_CELL {
             return Ok(());
         }
-        let Self { relief, pages, .. } = self;
+        let Self { relief, pages, shadows, .. } = self;
         pages.begin(terrain, held.surface_class as u8);
-        relief.update(terrain, |changed| match changed {
-            Some(rect) => pages.update(context.device, terrain, rect),
-            None => pages.forget(),
+        relief.update(terrain, |changed| {
+            match changed {
+                Some(rect) => pages.update(context.device, terrain, rect),
+                None => pages.forget(),
+            }
+            shadows.change(context.device, terrain, changed);
         });
         let (cell_m, height_px) = (terrain.desc.cell_m, f64::from(color.height()));
         let sizes = (height_px, drawing.error_px);
@@ -86,7 +110,7 @@ impl LandView {
         let eye = LandEye::new(DVec3::new(cells.x, cells.y, height_m));
         let frustum = LandFrustum::new(frame.camera.projection * to_eye, eye.place, cell_m);
         select(&self.relief, &mut detail, &frustum, &mut self.patches);
-        self.fill_pages(context, terrain, eye);
+        self.pages.place(context.device, (terrain, eye), &self.patches, &mut self.instances);
         let curvature = match now.weather.world.kind {
             WorldKind::Flat => 0.0,
             WorldKind::Tangent | WorldKind::Ecef => 1.0 / (now.planet_radius_m + now.scene.place.altitude_m),
@@ -100,26 +124,9 @@ impl LandView {
             altitude_m: terrain.altitude_m,
             has_dug: self.pages.has_dug,
             light: LandLight::below(context, terrain, bounds, eye)?,
+            shadows_to_m: drawing.shadows_to_m,
         });
         Ok(())
-    }
-
-    /// Finds the slot of each patch's page, and fills pages that are not there yet.
-    fn fill_pages(&mut self, context: &FrameContext<'_>, terrain: &Terrain, eye: LandEye) {
-        loop {
-            self.instances.clear();
-            let is_complete = self.patches.iter().all(|patch| {
-                let Some(slot) = self.pages.slot_of(context.device, terrain, patch.page) else { return false };
-                let low = patch.low();
-                let quarter = (patch.quarter[0] | patch.quarter[1] << 1) as u32;
-                let kind = u32::from(patch.page.level) | quarter << 8 | u32::from(self.pages.has_holes(slot)) << 10;
-                self.instances.push(PatchInstance { low: [0, 1].map(|i| low[i] - eye.cell[i]), slot, kind });
-                true
-            });
-            if is_complete || !self.pages.grow(context.device) {
-                return;
-            }
-        }
     }
 }
 
@@ -142,6 +149,16 @@ impl DrawnEffect for LandView {
         self.is_there
     }
 
+    fn prepare_opaque(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
+        let (Some(picture), Some(color)) = (&self.picture, context.frame.color) else { return Ok(()) };
+        let Some(terrain) = context.world.set.tiles.as_deref() else { return Ok(()) };
+        if picture.shadows_to_m == 0.0 {
+            self.shadows.forget();
+            return Ok(());
+        }
+        self.shadows.draw(picture, (terrain, &self.relief), color.height(), recording)
+    }
+
     fn draw_opaque(
         &mut self,
         context: &DrawContext<'_>,
@@ -152,12 +169,15 @@ impl DrawnEffect for LandView {
         if self.instances.is_empty() {
             return Ok(());
         }
-        let block = picture.uniform(opaque.clip, self.relief.top());
+        let block =
+            LandUniform { shadow: self.shadows.uniform(picture), ..picture.uniform(opaque.clip, self.relief.top()) };
+        #[cfg(test)]
+        let block = if self.is_dark { LandUniform { sun_lux: [0.0; 4], moon_lux: [0.0; 4], ..block } } else { block };
         let own = self.pass.get_or_insert_with(|| LandPass::new(context.device, &self.blocks));
-        own.draw(context.device, opaque, pages, (&block, &self.instances), pass)
+        own.draw(context.device, opaque, (pages, self.shadows.maps()), (&block, &self.instances), pass)
     }
 
     fn bytes(&self) -> u64 {
-        self.pages.bytes() + self.pass.as_ref().map_or(0, LandPass::bytes)
+        self.pages.bytes() + self.shadows.bytes() + self.pass.as_ref().map_or(0, LandPass::bytes)
     }
 }

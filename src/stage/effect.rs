@@ -70,6 +70,11 @@ pub(crate) trait DrawnEffect {
         false
     }
 
+    /// Draws in the effect's own passes what its opaque parts read.
+    fn prepare_opaque(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
+        Ok(())
+    }
+
     /// Draws the opaque parts into the host's colour and depth, before the composition of stage SURFACE. Water on
     /// surfaces, air and precipitation read their depth like the host's own.
     fn draw_opaque(

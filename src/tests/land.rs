@@ -193,10 +193,12 @@ fn a_changed_rectangle_shows_in_the_next_frame() {
     assert!(errors_px(&host, &case).iter().all(|e| *e < 1.5));
     let cost = host.view.effects.land.texels_written() - written;
     assert!(cost < 12 * 900, "{cost} texels for 900 cells");
-    // Once more without a change: nothing is written.
+    // Without a change nothing is written, and the picture rests once all shadow maps have the mound.
+    (0..3).for_each(|_| host.draw(&case));
+    let rests = (host.depths(0), host.colors());
     host.draw(&case);
     assert_eq!(host.view.effects.land.texels_written() - written, cost);
-    assert!(after == (host.depths(0), host.colors()));
+    assert!(rests == (host.depths(0), host.colors()) && rests.0 == after.0);
 }
 
 #[test]
@@ -334,7 +336,13 @@ fn without_tiles_or_with_drawing_off_nothing_is_drawn() {
     host.context.set_terrain(None).unwrap();
     host.draw(&case);
     assert_eq!(host.view.report().passes, 0);
-    let refused = host.context.set_terrain_drawing(Some(TerrainDrawing { error_px: f64::NAN })).unwrap_err();
-    assert!(refused.to_string().contains("terrain_drawing.error_px must be in [0.25, 16] px, got NaN"), "{refused}");
+    let fine = TerrainDrawing::default();
+    let mut refused = |drawing| host.context.set_terrain_drawing(Some(drawing)).unwrap_err().to_string();
+    let error = refused(TerrainDrawing { error_px: f64::NAN, ..fine });
+    assert!(error.contains("terrain_drawing.error_px must be in [0.25, 16] px, got NaN"), "{error}");
+    for bad in [-1.0, 99.0, 2e5, f64::NAN] {
+        let error = refused(TerrainDrawing { shadows_to_m: bad, ..fine });
+        assert!(error.contains("terrain_drawing.shadows_to_m must be 0 or in [100, 100000] m, got"), "{error}");
+    }
     assert_eq!(host.context.terrain_drawing(), Some(TerrainDrawing::default()));
 }

@@ -12,4 +12,5 @@ mod opaque;
 mod prepared;
 mod sea;
 mod seascapes;
+mod shadow;
 pub mod textures;

@@ -1,0 +1,43 @@
+//! Images of a host whose depth Welkin may write, for effects that draw opaque things.
+
+use welkin::gpu::Device;
+use welkin_support::textures::texture;
+
+/// Picture and depth that all scenes draw into.
+pub struct HostImages {
+    pub color: wgpu::Texture,
+    pub depth: wgpu::Texture,
+}
+
+impl HostImages {
+    pub fn new(device: &Device, size: (u32, u32)) -> Self {
+        let color = texture(device, size, wgpu::TextureFormat::Rgba16Float, 1);
+        Self { color, depth: texture(device, size, wgpu::TextureFormat::Depth32Float, 1) }
+    }
+
+    /// Clears colour and depth, as a host does before its own things.
+    ///
+    /// # Errors
+    /// A GPU fault.
+    pub fn clear(&self, device: &Device) -> Result<(), Box<dyn std::error::Error>> {
+        let mut encoder = device.device.create_command_encoder(&Default::default());
+        let [color, depth] = [&self.color, &self.depth].map(|t| t.create_view(&Default::default()));
+        let store = wgpu::StoreOp::Store;
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &color,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        }));
+        device.submit_and_wait(encoder)?;
+        Ok(())
+    }
+}
