@@ -8,6 +8,8 @@
 mod cascade;
 mod maps;
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 #[cfg(test)]
@@ -79,9 +81,11 @@ impl Shadows {
         self.stale = self.stale.map(|frames| frames.max(1));
     }
 
-    /// Frees the maps.
+    /// Frees the maps, if there are any.
     pub fn forget(&mut self) {
-        *self = Self::new(&self.blocks);
+        if self.maps.is_some() {
+            *self = Self::new(&self.blocks);
+        }
     }
 
     /// Maps that the ground's shader reads; `None` before the first.
@@ -143,8 +147,20 @@ impl Shadows {
         }
         self.pages.begin(terrain, 0);
         self.pages.place(recording.device, (terrain, picture.eye), &self.patches, &mut self.instances);
-        self.record(picture, relief.top(), (due, &ranges), recording);
+        self.leave_out(&mut ranges);
+        self.record(picture, relief.top(), &ranges, recording);
         Ok(())
+    }
+
+    /// Takes back the maps for whose pages there was no room beside those of the first: a later frame draws them.
+    fn leave_out(&mut self, ranges: &mut [Range<u32>; CASCADES]) {
+        let placed = self.instances.len() as u32;
+        for (range, drawn) in ranges.iter_mut().zip(&mut self.drawn) {
+            if range.end > placed && range.start > 0 {
+                (*range, *drawn) = (0..0, None);
+            }
+            range.end = range.end.min(placed);
+        }
     }
 
     /// Side of the texels, m, of the finest map that holds a place relative to the eye, and of the next coarser one.
@@ -186,22 +202,22 @@ impl Shadows {
         map
     }
 
-    /// Records the passes of the maps that are due.
+    /// Records the passes of the maps that have a range of patches.
     fn record(
         &mut self,
         picture: &LandPicture,
         top: u8,
-        (due, ranges): ([bool; CASCADES], &[std::ops::Range<u32>; CASCADES]),
+        ranges: &[Range<u32>; CASCADES],
         recording: &mut Recording<'_>,
     ) {
         let (Some(maps), Some(pages)) = (&mut self.maps, &self.pages.textures) else { return };
         let device = recording.device;
         maps.write_patches(device, &self.instances);
-        for i in (0..CASCADES).filter(|i| due[*i]) {
+        for (i, range) in ranges.iter().enumerate().filter(|(_, range)| !range.is_empty()) {
             let Some(map) = &self.drawn[i] else { continue };
             let mut block = picture.uniform(glam::DMat4::IDENTITY, top);
             block.clip = map.clip(picture.eye_m()).as_mat4().to_cols_array();
-            maps.draw(device, recording.encoder, (i, &block), pages, ranges[i].clone());
+            maps.draw(device, recording.encoder, (i, &block), pages, range.clone());
             #[cfg(test)]
             {
                 self.maps_drawn += 1;
