@@ -1,20 +1,25 @@
 //! Shadows of the drawn terrain on the software driver, against rays through every triangle of the ground.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{
     land::{clear_images, host_with, looking},
     opaque::host::{Host, Mapped, ndc, pixels},
+    textures::texture,
 };
 use crate::{
     chance::RandomStream,
-    frame::Stages,
+    context::{Context, ContextDesc},
+    frame::{DepthAccess, Frame, Shared, Stages, View},
+    gpu::{Device, DeviceOptions, readback},
     land::{
         TerrainDrawing,
         reference::{DISC, disc_share, ray_to_ground},
     },
     scene::{Camera, ClipSpace, DepthKind, DepthMapping},
-    terrain::{Rows, TerrainCells, TileKey},
+    terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     world::GivenDirection,
 };
 
@@ -244,4 +249,45 @@ fn the_shadow_of_a_pit_comes_with_it() {
     let dark = shaded(&mut host);
     println!("{dark} pixels are in shadow");
     assert!(dark > 40, "{dark}");
+}
+
+/// Picture of hills under a low sun by a driver of one kind, without shadows and with.
+fn pictures_by(backends: wgpu::Backends) -> [Vec<[f32; 4]>; 2] {
+    let device = Device::headless(&DeviceOptions { backends, ..DeviceOptions::default() }).unwrap();
+    let shared = Arc::new(Shared::new(&device).unwrap());
+    let mut context = Context::new(device.clone(), shared, ContextDesc::default()).unwrap();
+    let desc = TerrainDesc { cell_m: 1.0, tile_cells: 128, ..TerrainDesc::default() };
+    context.set_terrain(Some(desc)).unwrap();
+    let heights: Vec<f32> = (0..128 * 128).map(|i| hills(f64::from(i % 128), f64::from(i / 128)) as f32).collect();
+    context.set_terrain_tile(&TerrainCells { heights_m: Rows::of(&heights), ..TerrainCells::default() }).unwrap();
+    context.set_sun(Some(GivenDirection { azimuth_deg: 60.0, elevation_deg: 8.0 })).unwrap();
+    context.update(0.0).unwrap();
+    let mut view = View::new(&context).unwrap();
+    let [color, depth] = [wgpu::TextureFormat::Rgba16Float, wgpu::TextureFormat::Depth32Float]
+        .map(|format| texture(&device, (64, 36), format, 1));
+    let eye = DVec3::new(64.0, 10.0, hills(64.0, 10.0) + 20.0);
+    let case = looking(eye, DVec3::new(0.1, 1.0, -0.4));
+    [0.0, 1e4].map(|shadows_to_m| {
+        let drawing = TerrainDrawing { shadows_to_m, ..TerrainDrawing::default() };
+        context.set_terrain_drawing(Some(drawing)).unwrap();
+        clear_images(&device, [&color, &depth]);
+        let mut frame = Frame::new(1 + shadows_to_m as u64, case.camera, &color, Some(&depth));
+        (frame.depth_mapping, frame.depth_access) = (case.mapping, DepthAccess::ReadWrite);
+        view.record(&context, &frame, Stages::SURFACE).unwrap();
+        device.check().unwrap();
+        readback::rgba(&device, &color).unwrap()
+    })
+}
+
+#[test]
+fn opengl_draws_the_same_shadows() {
+    let [lit, shaded] = pictures_by(wgpu::Backends::VULKAN);
+    let [lit_gl, shaded_gl] = pictures_by(wgpu::Backends::GL);
+    let darker = (0..lit.len()).filter(|i| shaded[*i][1] < 0.98 * lit[*i][1]).count();
+    let differ = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        a.iter().zip(b).filter(|(a, b)| (a[1] - b[1]).abs() > 0.01 * a[1].max(1.0)).count()
+    };
+    let differences = [differ(&lit, &lit_gl), differ(&shaded, &shaded_gl)];
+    println!("{darker} pixels are in shadow, {differences:?} differ");
+    assert!(darker > 40 && differences.iter().all(|count| *count < 12), "{darker}, {differences:?}");
 }
