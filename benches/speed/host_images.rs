@@ -1,12 +1,17 @@
 //! Images of a host whose depth Welkin may write, for effects that draw opaque things.
 
-use welkin::gpu::Device;
-use welkin_support::textures::texture;
+use welkin::{
+    context::Context,
+    frame::{DepthAccess, Frame, FrameFlags, Stages, View},
+    gpu::Device,
+    scene::Camera,
+};
+use welkin_support::{processor::processor_ns, textures::texture};
 
 /// Picture and depth that all scenes draw into.
 pub struct HostImages {
-    pub color: wgpu::Texture,
-    pub depth: wgpu::Texture,
+    color: wgpu::Texture,
+    depth: wgpu::Texture,
 }
 
 impl HostImages {
@@ -16,10 +21,7 @@ impl HostImages {
     }
 
     /// Clears colour and depth, as a host does before its own things.
-    ///
-    /// # Errors
-    /// A GPU fault.
-    pub fn clear(&self, device: &Device) -> Result<(), Box<dyn std::error::Error>> {
+    fn clear(&self, device: &Device) -> Result<(), Box<dyn std::error::Error>> {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let [color, depth] = [&self.color, &self.depth].map(|t| t.create_view(&Default::default()));
         let store = wgpu::StoreOp::Store;
@@ -39,5 +41,25 @@ impl HostImages {
         }));
         device.submit_and_wait(encoder)?;
         Ok(())
+    }
+
+    /// Draws a frame into cleared images. Returns its processor time, ns.
+    ///
+    /// # Errors
+    /// The errors of [`View::record`].
+    pub fn frame_ns(
+        &self,
+        device: &Device,
+        (view, context): (&mut View, &Context),
+        camera: &Camera,
+        frame_id: u64,
+    ) -> Result<f64, Box<dyn std::error::Error>> {
+        self.clear(device)?;
+        let mut frame = Frame::new(frame_id, *camera, &self.color, Some(&self.depth));
+        (frame.depth_access, frame.flags) = (DepthAccess::ReadWrite, FrameFlags::NO_HISTORY);
+        let before = processor_ns();
+        view.record(context, &frame, Stages::ALL.without(Stages::TONE))?;
+        device.wait()?;
+        Ok((processor_ns() - before) as f64)
     }
 }

@@ -6,16 +6,15 @@ use std::{f64::consts::TAU, sync::Arc};
 use glam::DVec3;
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
-    frame::{DepthAccess, Frame, FrameFlags, Shared, Stages, View},
+    frame::{Shared, View},
     gpu::{Device, DeviceOptions},
     land::TerrainDrawing,
     scene::Camera,
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
 };
-use welkin_support::processor::processor_ns;
 
 use crate::{
-    copies::{Copying, SETTLED, SIZE, median, size_of},
+    copies::{Copying, SETTLED, SIZE, median, quantile, size_of},
     host_images::HostImages,
 };
 
@@ -84,7 +83,6 @@ impl LandScene {
 
     /// Processor time of a frame, ns.
     fn ns(&mut self, device: &Device, target: &HostImages) -> Fallible<f64> {
-        target.clear(device)?;
         self.frames += 1;
         let time_s = if self.moves { STEP_S * self.frames as f64 } else { 0.0 };
         let elevation_deg = 20.0 + SUN_DEG_S * time_s;
@@ -93,12 +91,7 @@ impl LandScene {
         let north = SPEED_M_S * time_s;
         let eye = DVec3::new(0.0, north, height(0.0, north) + 2.0);
         let camera = Camera::look_to(eye, DVec3::Y, DVec3::Z, 0.9, 16.0 / 9.0, 0.1);
-        let mut frame = Frame::new(self.frames, camera, &target.color, Some(&target.depth));
-        (frame.depth_access, frame.flags) = (DepthAccess::ReadWrite, FrameFlags::NO_HISTORY);
-        let before = processor_ns();
-        self.view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE))?;
-        device.wait()?;
-        Ok((processor_ns() - before) as f64)
+        target.frame_ns(device, (&mut self.view, &self.context), &camera, self.frames)
     }
 }
 
@@ -155,6 +148,5 @@ pub fn run() -> Fallible<()> {
 
 /// Median and 99th percentile.
 fn high(values: &mut [f64]) -> [f64; 2] {
-    let middle = median(values);
-    [middle, values[(values.len() * 99 / 100).min(values.len() - 1)]]
+    [0.5, 0.99].map(|share| quantile(values, share))
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use welkin::{
     context::{Context, ContextDesc, GivenDirection},
-    frame::{DepthAccess, Frame, FrameFlags, Shared, Stages, View},
+    frame::{Shared, View},
     gpu::{Device, DeviceOptions},
     scene::Camera,
     sea::{SeaHull, SeaPoint, SeaSettings},
@@ -59,15 +59,9 @@ impl SeaScene {
 
     /// Processor time of a frame, ns.
     fn ns(&mut self, device: &Device, target: &HostImages, camera: &Camera) -> Fallible<f64> {
-        target.clear(device)?;
         self.frames += 1;
         self.context.update(self.step_s * self.frames as f64)?;
-        let mut frame = Frame::new(self.frames, *camera, &target.color, Some(&target.depth));
-        (frame.depth_access, frame.flags) = (DepthAccess::ReadWrite, FrameFlags::NO_HISTORY);
-        let before = processor_ns();
-        self.view.record(&self.context, &frame, Stages::ALL.without(Stages::TONE))?;
-        device.wait()?;
-        Ok((processor_ns() - before) as f64)
+        target.frame_ns(device, (&mut self.view, &self.context), camera, self.frames)
     }
 
     /// Processor time of one query at a new time, ns: the spectrum's waves and the tiles' transforms.

@@ -11,7 +11,7 @@ const STEEP: f32 = 0.69;
 const GENTLE: f32 = 0.81;
 // Altitudes between which natural ground loses its grass, m.
 const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
-// Cosine of the slope from which on dug soil is a wall; `WALL` of src/land/cells.rs is its tangent.
+// Cosine of the slope above which dug soil counts as a wall; `WALL` of src/land/cells.rs is its tangent.
 const WALL: f32 = 0.78;
 // Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of it.
 const DUG_VARIES: vec2f = vec2f(0.14, 0.09);
@@ -99,7 +99,7 @@ fn ground_luminance(in: LandVarying, footprint: f32, facet: vec3f) -> vec3f {
     let firm = mix(cosine, 1.0, min(4.0 * soil.a, 1.0));
     let albedo = (1.0 - soil.a) * ground_albedo(class_shares(uv), firm, altitude, noise) + soil.rgb;
     let lit = max(vec2f(dot(normal, land.sun.xyz), dot(normal, land.moon.xyz)), vec2f(0.0));
-    // The teeth of a wall that runs across the lattice cast no shadows on each other.
+    // A dug wall at an angle to the lattice is a stair of cells, whose steps cast no shadows on each other.
     let is_wall = soil.a > 0.0 && facet.z < WALL;
     let share = shadow_share(in.place, facet, select(0.0, land.cell_m, is_wall));
     let seen = lit * mix(vec2f(1.0), vec2f(share), land.shadow.shaded.xy);
@@ -129,7 +129,7 @@ fn land_vertex(
     @location(0) low: vec2i,
     @location(1) page: vec2u,
 ) -> LandVarying {
-    return patch_vertex(land.clip, index, low, page);
+    return patch_vertex(index, low, page);
 }
 
 @fragment

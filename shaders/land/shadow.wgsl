@@ -7,5 +7,5 @@ fn shadow_vertex(
     @location(0) low: vec2i,
     @location(1) page: vec2u,
 ) -> @builtin(position) vec4f {
-    return patch_vertex(land.clip, index, low, page).position;
+    return patch_vertex(index, low, page).position;
 }

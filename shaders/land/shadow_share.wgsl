@@ -3,7 +3,7 @@
 //!include "land/uniform.wgsl"
 //!include "land/shadow_block.wgsl"
 
-// Largest radius of the disc in a map, texels, between which a coarser map takes over.
+// Radii of the disc in a map, texels, between which the next coarser map takes over.
 const COARSER: vec2f = vec2f(6.0, 8.0);
 // Distances from a map's centre, as shares of half of its side, between which the next map takes over.
 const OUTER: vec2f = vec2f(0.85, 0.97);

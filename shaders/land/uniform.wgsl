@@ -32,8 +32,8 @@ struct Cascade {
     u: vec4f,
     v: vec4f,
     depth: vec4f,
-    // Distance between depth 0 and 1, m; square of the map's side over it; 1 over 1.2 times half of the side, 1/m;
-    // distance from the centre, along the light, at depth 0, m.
+    // Distance between depth 0 and 1, m; square of the map's side over this distance; 1 over 1.2 times half of the
+    // side, 1/m; distance from the centre, along the light, at depth 0, m.
     size: vec4f,
     // Side of a texel, in texture coordinates and in depth; radius, texels, of the disc of the light past something at
     // a depth of 1 above a place; depth per metre.

@@ -40,8 +40,8 @@ fn morph_at(cell: vec2i, level: u32) -> f32 {
     return clamp((distance - morph.x) * morph.y, 0.0, 1.0);
 }
 
-// Vertex of a patch. `clip` is the matrix from places to clip space.
-fn patch_vertex(clip: mat4x4f, index: u32, low: vec2i, page: vec2u) -> LandVarying {
+// Vertex of a patch.
+fn patch_vertex(index: u32, low: vec2i, page: vec2u) -> LandVarying {
     let level = page.y & 255u;
     let quarter = vec2i(i32((page.y >> 8u) & 1u), i32((page.y >> 9u) & 1u));
     let at = vec2i(i32(index % PATCH_VERTICES), i32(index / PATCH_VERTICES));
@@ -57,7 +57,7 @@ fn patch_vertex(clip: mat4x4f, index: u32, low: vec2i, page: vec2u) -> LandVaryi
     let squares = vec2f(quarter * 8 + at) - vec2f(odd) * morph;
     let texels_in_square = f32(1u << min(level, 2u));
     return LandVarying(
-        clip * vec4f(place, 1.0),
+        land.clip * vec4f(place, 1.0),
         place,
         squares * texels_in_square,
         morph,

@@ -70,7 +70,7 @@ pub(crate) trait DrawnEffect {
         false
     }
 
-    /// Draws in the effect's own passes what its opaque parts read.
+    /// Draws the textures that the effect's opaque parts read, in passes of its own.
     fn prepare_opaque(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
         Ok(())
     }

@@ -97,7 +97,7 @@ pub fn looking(eye: DVec3, forward: DVec3) -> Mapped {
 }
 
 /// Camera with a vertical field of view in radians.
-fn looking_through(eye: DVec3, forward: DVec3, fov: f64) -> Mapped {
+pub fn looking_through(eye: DVec3, forward: DVec3, fov: f64) -> Mapped {
     let camera = Camera::look_to(eye, forward, DVec3::Z, fov, ASPECT, 0.2);
     let mapping = DepthMapping { kind: DepthKind::Perspective, reversed: true, clip: ClipSpace::ZeroToOne };
     Mapped { camera, mapping }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::{
-    land::{clear_images, host_with, looking},
+    land::{clear_images, host_with, looking, looking_through},
     opaque::host::{Host, Mapped, ndc, pixels},
     textures::texture,
 };
@@ -18,12 +18,11 @@ use crate::{
         TerrainDrawing,
         reference::{DISC, disc_share, ray_to_ground},
     },
-    scene::{Camera, ClipSpace, DepthKind, DepthMapping},
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
     world::GivenDirection,
 };
 
-/// Sharpest hills that a shadow map and the picture's levels of detail show alike.
+/// Height of hills whose waves are 17 to 210 m long, m.
 fn hills(x: f64, y: f64) -> f64 {
     let wave = |length: f64, turn: f64| {
         let (sine, cosine) = libm::sincos(turn);
@@ -65,12 +64,6 @@ fn drawn_shares(host: &mut Host, case: &Mapped, least: f64) -> Vec<Option<f64>> 
         (b - c > least * b && b > 0.0).then(|| (a - c) / (b - c))
     };
     pixels().map(share).collect()
-}
-
-fn camera(eye: DVec3, forward: DVec3, up: DVec3, height: f64) -> Mapped {
-    let camera = Camera::look_to(eye, forward, up, height, 64.0 / 36.0, 0.2);
-    let mapping = DepthMapping { kind: DepthKind::Perspective, reversed: true, clip: ClipSpace::ZeroToOne };
-    Mapped { camera, mapping }
 }
 
 /// Counts of pixels: wholly lit and wholly shaded ones, and those of either kind that are drawn otherwise.
@@ -151,6 +144,9 @@ fn walled(x: f64, _: f64) -> f64 {
     if (56.0..=EDGE).contains(&x) { WALL } else { 0.0 }
 }
 
+/// Direction down, with north at the top of the picture.
+const DOWN: DVec3 = DVec3::new(0.0, 1e-6, -1.0);
+
 /// Places at which the share of a profile passes a value, linearly interpolated.
 fn crossing(profile: &[(f64, f64)], share: f64) -> f64 {
     let pair = profile.windows(2).find(|pair| (pair[0].1 < share) != (pair[1].1 < share));
@@ -169,12 +165,12 @@ fn the_edge_of_a_shadow_is_where_the_sun_puts_it_and_as_wide_as_its_disc() {
         let eye = origin(&host) + DVec3::new(edge, 250.0, over);
         // Width of the penumbra on the ground from none to all of the disc.
         let whole = 2.0 * DISC * WALL / angle.sin().powi(2);
-        draw(&mut host, &camera(eye, DVec3::NEG_Z, DVec3::Y, 0.5));
+        draw(&mut host, &looking_through(eye, DOWN, 0.5));
         let [fine, coarse] = host.view.effects.land.shadow_texels_m(DVec3::new(0.0, 0.0, -over)).unwrap();
         let radius = DISC * WALL / angle.sin();
         let texel = if radius > 6.0 * fine { coarse } else { fine };
         let width = (2.0 * whole).max(24.0 * texel / angle.sin()).min(60.0);
-        let case = camera(eye, DVec3::NEG_Z, DVec3::Y, 2.0 * (0.5 * width * 36.0 / 64.0 / over).atan());
+        let case = looking_through(eye, DOWN, 2.0 * (0.5 * width * 36.0 / 64.0 / over).atan());
         let shares = drawn_shares(&mut host, &case, 0.005);
         let rays = case.rays();
         let profile: Vec<(f64, f64)> = (0..64)

@@ -17,7 +17,8 @@ const LEAST_RATIO: f64 = 2.0;
 const MARGIN: f64 = 0.125;
 /// Angle that the light may turn before a map is drawn anew, rad: a tenth of its disc, and so of any penumbra.
 const TURN: f64 = 9.3e-4;
-/// Depth behind the centre that a map reaches, and that within which it is used, half sides.
+/// Distances from the centre along the light, half sides: how far behind it a map reaches, and within which a map is
+/// used.
 const BEHIND: f64 = 1.25;
 const BESIDE: f64 = 1.2;
 /// Tangent of the radius of the discs of sun and moon: 0.267 degrees.
@@ -32,7 +33,7 @@ pub(super) struct Cascade {
     eye: DVec3,
     centre: DVec3,
     half_m: f64,
-    /// Distance of the things nearest to the light from the centre, along the light.
+    /// Distance along the light from the centre to the ground that is nearest to the light.
     top_m: f64,
     /// Texels along a side.
     side: u32,
@@ -46,7 +47,7 @@ pub(super) fn nearest_m(above_m: f64, kept_m: f64) -> f64 {
 }
 
 /// Half sides that maps should have, m, from the distance at which the finest begins up to `reach_m`. They change in
-/// steps: a map is drawn anew when its own changes.
+/// steps, because a map is drawn anew when its half side changes.
 pub(super) fn half_sides_m(nearest_m: f64, reach_m: f64) -> [f64; CASCADES] {
     let reach = libm::exp2(0.5 * (2.0 * libm::log2(reach_m.max(1.0))).ceil());
     let ratio = libm::pow(reach / nearest_m, 1.0 / CASCADES as f64).max(LEAST_RATIO);

@@ -33,7 +33,7 @@ use crate::{
 /// then take at most 34 MB.
 const SIDE_PER_ROW: f64 = 4.0 / 3.0;
 const SIDES: [f64; 2] = [256.0, 1440.0];
-/// Lateness from which on a map is drawn in any case.
+/// Lateness above which a map is drawn anew whatever else is due.
 const FAR_TOO_LATE: f64 = 3.0;
 
 /// Shadow maps of a view.
@@ -193,7 +193,8 @@ impl Shadows {
     /// Adds the patches of a map, and returns the map with the depth that they need.
     fn add_patches(&mut self, mut map: Cascade, picture: &LandPicture, relief: &Relief) -> Cascade {
         let frustum = LandFrustum::of_light(map.clip(picture.eye_m()), picture.eye.place, picture.cell_m);
-        select(relief, &mut picture.detail.clone(), &frustum, &mut self.chosen);
+        let mut detail = picture.detail;
+        select(relief, &mut detail, &frustum, &mut self.chosen);
         for patch in &self.chosen {
             let [low, high] = patch.corners_m(relief, picture.cell_m);
             map.hold(low, high);
