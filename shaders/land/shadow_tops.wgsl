@@ -7,8 +7,8 @@
 @group(0) @binding(1) var map_depths: texture_2d_array<f32>;
 
 @fragment
-fn shadow_top(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
-    let first = vec2i(position.xy) * SHADOW_BLOCK;
+fn shadow_top(in: FullscreenVarying) -> @builtin(frag_depth) f32 {
+    let first = vec2i(in.position.xy) * SHADOW_BLOCK;
     var top = 0.0;
     for (var j = 0; j < SHADOW_BLOCK; j++) {
         for (var i = 0; i < SHADOW_BLOCK; i++) {
