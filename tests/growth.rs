@@ -21,7 +21,7 @@ use welkin_support::{
 
 /// Returns the number of frames before the measurement, in which tables and pipelines are built, and of measured ones.
 fn frames() -> (usize, usize) {
-    if accept() { (40, 30) } else { (24, 12) }
+    if accept() { (30, 20) } else { (24, 12) }
 }
 
 fn world(device: &Arc<Device>, weather: &str) -> Context {

@@ -64,7 +64,7 @@ fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 #[test]
 fn rain_is_drawn_as_the_picture_needs_it() {
     let mut bench = Bench::new();
-    let scenes = if accept() { 48 } else { 24 };
+    let scenes = if accept() { 36 } else { 24 };
     let (mut veiled, mut on_cones, mut dropped, mut beyond) = (0, 0, 0, Vec::new());
     for seed in 0..scenes {
         let shot = rainy(seed);

@@ -9,9 +9,14 @@ use welkin::sky::reference::medium::{Medium, mie_phase, rayleigh_phase};
 use welkin::sky::reference::quadrature::Gauss;
 use welkin::sky::reference::ray::Ray;
 use welkin::sky::reference::sun::sun_transmittance;
-use welkin::sky::reference::{Orders, Reference, View};
+use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 
-use super::{accept, golden, solve};
+use super::{accept, golden};
+
+fn solve(planet: &Planet, orders: Orders) -> Reference {
+    let resolution = if accept() { Resolution::FINE } else { Resolution::QUICK };
+    Reference::solve(planet, &Options { orders, resolution, ..Options::default() }).unwrap()
+}
 
 /// Radiance table of the CPU reference of Bruneton's 2017 implementation, 4 orders: sun and view zenith angles, values
 /// at 440, 520 and 600 nm.

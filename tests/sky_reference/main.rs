@@ -12,10 +12,6 @@ use welkin::sky::planet::Planet;
 use welkin::sky::reference::{Options, Orders, Reference, Resolution, View};
 use welkin_support::accept;
 
-fn resolution() -> Resolution {
-    if accept() { Resolution::FINE } else { Resolution::QUICK }
-}
-
 fn golden() -> Planet {
     Planet::from_toml(include_str!("../../examples/data/planet_golden.toml")).unwrap()
 }
@@ -28,8 +24,9 @@ fn hazy() -> Planet {
     planet
 }
 
+/// Solution on the default grid, on which laws must hold already.
 fn solve(planet: &Planet, orders: Orders) -> Reference {
-    Reference::solve(planet, &Options { orders, resolution: resolution(), ..Options::default() }).unwrap()
+    Reference::solve(planet, &Options { orders, ..Options::default() }).unwrap()
 }
 
 /// Views from the ground to space, all round, day and twilight.

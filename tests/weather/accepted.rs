@@ -92,7 +92,7 @@ pub fn report(count: usize, faults: &[(String, Given)]) {
 #[test]
 fn every_random_weather_answers() {
     let host = Host::new();
-    let count = if accept() { 40_000 } else { 1500 };
+    let count = if accept() { 16_000 } else { 1500 };
     let (mut asked, mut dice, mut faults) = (Asked::new(&host), Dice(1), Vec::new());
     for _ in 0..count {
         let (given, elevation) = (Given::random(&mut dice), dice.below(100) as f64 - 20.0);
