@@ -117,13 +117,13 @@ test: setup lint docs ## all checks, at most 25 minutes on two cores from a clea
 
 ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
 
-# What `make test` checks already, lint and documentation, is not checked twice. Benches come last, beside nothing else.
+# What `make test` checks already, lint and documentation, is not checked twice. Benchmarks assert nothing and need an
+# idle machine for longer than this takes: `make bench` runs those that a change is about.
 accept: export FEATURES = shared-build
-accept: setup ## the long sweeps in release, under Wine too, and the benchmarks with a short day, at most 90 minutes
+accept: setup ## the long sweeps in release, under Wine too, at most 90 minutes on two cores
 	$(MAKE) --no-print-directory lib PROFILE=release
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/release/$(SHARED))" WELKIN_ACCEPT=1 $(RUN_TESTS) $(if $(NEXTEST),--cargo-profile release --profile accept,--release)
 	$(MAKE) --no-print-directory windows-accept
-	RUN_QUICK=1 $(MAKE) --no-print-directory bench
 
 # Other drivers are fetched into target/drivers and stay there; pictures and logs too. Uses the tests' quick build.
 .PHONY: drivers drivers-all
