@@ -14,7 +14,7 @@
  *     each frame:
  *         wk_context_update(context, time_s);
  *         ... the host draws its world ...
- *         wk_view_record(view, &frame, WK_STAGE_ALL);        sky behind it, fog and air before it
+ *         wk_view_record(view, &frame, WK_STAGE_ALL);        sky behind it, fog and air in front of it
  *
  * OWNERSHIP
  *
@@ -207,7 +207,10 @@ typedef int32_t wk_status;
 #define WK_ERROR_DEVICE_LOST (-6)
 /** Memory ran out, on the host or on the GPU. */
 #define WK_ERROR_OUT_OF_MEMORY (-7)
-/** An earlier call on this device ended in a fault inside Welkin. Only destroy works on it and its children. */
+/**
+ * An earlier call on this device ended in a fault inside Welkin. Only the calls that destroy the device and its
+ * children still work.
+ */
 #define WK_ERROR_POISONED (-8)
 /** The native queue or OpenGL context already belongs to another wk_device. */
 #define WK_ERROR_ALREADY_WRAPPED (-9)
@@ -240,8 +243,8 @@ typedef uint32_t wk_log_level;
 #define WK_LOG_LEVEL_DEBUG 4
 
 /**
- * Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls it from any thread that is in a Welkin
- * call. It must not call Welkin and must not unwind.
+ * Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls the function from any thread that is
+ * in a Welkin call. The function must not call Welkin and must not unwind.
  */
 typedef void (*wk_log_fn)(void *user, wk_log_level level, const char *message);
 
@@ -469,7 +472,7 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  * ====================================================================================================
  */
 
-/** A native queue or OpenGL context. Parent of contexts, surfaces and textures. */
+/** A native queue or OpenGL context. Parent of wk_contexts, surfaces and textures. */
 typedef struct wk_device wk_device;
 
 /** Native graphics interfaces, as flags. */
@@ -575,7 +578,8 @@ WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_de
 /**
  * Destroys a device. NULL does nothing.
  * Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
- * can be made) current. Elsewhere, or when the context is already gone, Welkin abandons its GPU objects.
+ * can be made) current. Elsewhere, or when the OpenGL context is already gone, Welkin abandons the device's GPU
+ * objects.
  * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
@@ -610,8 +614,8 @@ WK_API wk_status wk_caps_init(wk_caps *out, uint32_t struct_size);
  * ====================================================================================================
  * [texture] Textures of an own device
  *
- * For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
- * with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
+ * These textures are for hosts without graphics of their own: programs that want pictures in memory, or that draw with
+ * Welkin only. Hosts with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
  * ====================================================================================================
  */
 
@@ -742,7 +746,7 @@ typedef uint32_t wk_window_kind;
 #define WK_WINDOW_WAYLAND 3
 /** Windows: `handle` is the HWND, `display` the HINSTANCE of the module that made the window. */
 #define WK_WINDOW_WIN32 4
-/** macOS: `handle` is the NSView*; all calls on the main thread. */
+/** macOS: `handle` is the NSView*. Make all calls on the main thread. */
 #define WK_WINDOW_APPKIT 5
 
 /**
@@ -808,13 +812,13 @@ typedef struct wk_surface_config {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
-     * minimised.
+     * Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while the window
+     * is minimised.
      */
     uint32_t width;
     /**
-     * Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
-     * minimised.
+     * Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while the window
+     * is minimised.
      */
     uint32_t height;
     /** Encoding of the values drawn. Default WK_SURFACE_DISPLAY_LINEAR. */
@@ -878,7 +882,7 @@ wk_status wk_surface_configure(wk_surface *surface,
  * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
  * Thread: exclusive.
  * Returns WK_PENDING if the window shows nothing now, because it is hidden or the screen is busy: skip this frame.
- * Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised;
+ * Errors: WK_ERROR_SURFACE_OUTDATED if the surface must be configured again, and while the window is minimised;
  * WK_ERROR_WRONG_ORDER before the first wk_surface_configure.
  */
 WK_API wk_status wk_surface_acquire(wk_surface *surface);
@@ -944,7 +948,7 @@ typedef int32_t (*wk_opengl_make_current_fn)(void *user, uint32_t which);
 /** The context that Welkin draws in. */
 typedef uint32_t wk_opengl_mode;
 
-/** Its own context, which shares objects with the host's. */
+/** Welkin's own context, which shares objects with the host's. */
 #define WK_OPENGL_SHARED 0
 /** The host's context, whose state Welkin restores. */
 #define WK_OPENGL_HOST_CONTEXT 1
@@ -954,7 +958,10 @@ typedef uint32_t wk_opengl_handover;
 
 /** By fences, as the standard requires. */
 #define WK_OPENGL_FENCE 0
-/** By a flush alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it. */
+/**
+ * By a flush alone: enough, and cheaper, where one queue serves both contexts. Check the pictures and the gain on your
+ * driver.
+ */
 #define WK_OPENGL_FLUSH 1
 
 /** Access to a host's OpenGL: its functions, contexts and options. */
@@ -1017,7 +1024,7 @@ typedef uint32_t wk_opengl_image_kind;
 typedef struct wk_opengl_image {
     /** Type of the object. Default WK_OPENGL_NONE. */
     wk_opengl_image_kind kind;
-    /** Its OpenGL name. Default 0. */
+    /** OpenGL name of the object. Default 0. */
     uint32_t name;
     /** Target of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100). */
     uint32_t target;
@@ -1056,7 +1063,7 @@ typedef struct wk_opengl_target {
     /**
      * The host's depth; none (the default) shows the sky in every pixel. If `color` is a framebuffer, use the same
      * one, else another image. It has as many samples as `color`. If `color` has one sample (a resolved picture),
-     * depth may have more, except on OpenGL ES; one sample of each pixel then counts.
+     * depth may have more, except on OpenGL ES; one sample of each pixel is then used.
      */
     wk_opengl_image depth;
     /**
@@ -1074,8 +1081,8 @@ typedef struct wk_opengl_target {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * A texture of one sample with each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use
-     * wk_ground_grid or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+     * A texture of one sample with each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use the
+     * class of the host's terrain or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
      */
     wk_opengl_image surface_classes;
     /**
@@ -1108,7 +1115,7 @@ typedef uint32_t wk_opengl_context;
 
 /**
  * The context that the host draws in. With several windows, this is the context that was current when the host called
- * Welkin; the host stores it for each thread.
+ * Welkin: the host must remember it for each thread.
  */
 #define WK_OPENGL_CONTEXT_HOST 0
 /** The context that the host made for Welkin, sharing objects with its own. */
@@ -1158,7 +1165,8 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  * Pass handles as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
  *
  * Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
- * computes. For these features, enable on the device and list here:
+ * computes. For each use on the left, enable the extension or feature on the right for the VkDevice, and list it in
+ * the wk_vulkan_host_desc:
  *
  *     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions
  *     colour of several samples                     VkPhysicalDeviceFeatures::sampleRateShading in enabled_features
@@ -1262,7 +1270,7 @@ typedef struct wk_vulkan_image {
     const void *next;
     /** VkImage. Default 0; must be given. */
     uint64_t image;
-    /** VkFormat that it was created with. Default 0; must be given. */
+    /** VkFormat that the image was created with. Default 0; must be given. */
     uint32_t format;
     /** Width, pixels. Default 0; must be given. */
     uint32_t width;
@@ -1274,11 +1282,11 @@ typedef struct wk_vulkan_image {
      */
     uint32_t samples;
     /**
-     * VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for images
-     * that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
+     * VkImageUsageFlags that the image was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for
+     * images that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
      */
     uint32_t usage;
-    /** Array layers that it was created with. Default 1. For an occluder map it must be 1. */
+    /** Array layers that the image was created with. Default 1. For an occluder map it must be 1. */
     uint32_t array_layers;
     /**
      * Array layer that is handed over, such as one eye of a stereo or multiview host; the others stay untouched.
@@ -1366,7 +1374,8 @@ typedef struct wk_vulkan_target {
     const wk_vulkan_image *color;
     /**
      * The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
-     * depth may have more; the first of each pixel then counts. With NULL (the default) every pixel shows the sky.
+     * depth may have more; the first sample of each pixel is then used. With NULL (the default) every pixel shows the
+     * sky.
      */
     const wk_vulkan_image *depth;
     /**
@@ -1394,8 +1403,8 @@ typedef struct wk_vulkan_target {
      */
     uint32_t signal_stride;
     /**
-     * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
-     * default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+     * Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
+     * or the context's default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
      */
     const wk_vulkan_image *surface_classes;
     /**
@@ -1482,7 +1491,7 @@ wk_status wk_vulkan_target_init(wk_vulkan_target *out,
  * ====================================================================================================
  * [weather_kinds] Kinds of weather
  *
- * Kinds that a report names with words. Their numbers never change.
+ * These constants are the kinds of weather that a report names with words. Their numbers never change.
  * ====================================================================================================
  */
 
@@ -1513,7 +1522,9 @@ typedef uint32_t wk_aerosol_kind;
 /** Fog and mist: suspended droplets at the ground. */
 typedef uint32_t wk_fog_kind;
 
-/** No fog: all extinction that the reported visibility requires beyond the air's is aerosol. */
+/**
+ * No fog: the reported visibility requires more extinction than clean air has, and all of the difference is aerosol.
+ */
 #define WK_FOG_NONE 0
 /** Mist (METAR BR): droplets, visibility 1 to 5 km. */
 #define WK_FOG_MIST 1
@@ -1635,7 +1646,7 @@ typedef uint32_t wk_surface_state;
  * ====================================================================================================
  */
 
-/** Flags of the optional fields of a wk_cloud_layer that are set. */
+/** Flags that say which optional fields of a wk_cloud_layer are set. */
 typedef uint32_t wk_cloud_layer_has_flags;
 
 /** thickness_m */
@@ -1703,7 +1714,7 @@ typedef struct wk_cloud_layer {
     /* life_s */ 0.0 \
 }
 
-/** Flags of the optional fields of a wk_weather that are set. */
+/** Flags that say which optional fields of a wk_weather are set. */
 typedef uint64_t wk_weather_has_flags;
 
 /** vertical_visibility_m */
@@ -1757,7 +1768,7 @@ typedef uint32_t wk_precipitation_flags;
 /** Precipitation with hail in addition to its kind (GR, GS). */
 #define WK_PRECIPITATION_WITH_HAIL 4
 
-/** The weather at a station and moment. Heights are above the station unless stated otherwise. */
+/** The weather at a station and a time. Heights are above the station unless stated otherwise. */
 typedef struct wk_weather {
     /** sizeof(wk_weather) of your header. */
     uint32_t struct_size;
@@ -1801,8 +1812,8 @@ typedef struct wk_weather {
     double aerosol_asymmetry;
     /**
      * Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
-     * kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky counts
-     * densities from sea level.
+     * kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky is computed
+     * from the density at sea level, which is limited to 100 times that at the station.
      */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
@@ -1833,7 +1844,10 @@ typedef struct wk_weather {
      * runs clockwise. Range [0, 360].
      */
     double wind_variable_from_deg;
-    /** End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB). */
+    /**
+     * End of the range within which the direction varies, degrees. Range [0, 360]. 0 to 360 means all directions
+     * (VRB).
+     */
     double wind_variable_to_deg;
     /**
      * Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
@@ -1858,7 +1872,7 @@ typedef struct wk_weather {
     double surface_snow_depth_m;
     /** Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03. */
     double surface_roughness_length_m;
-    /** Optional: depth of the layer that the wind lifts, m. Range [0.1, 5000]; else by kind. */
+    /** Optional: depth of the layer of matter that the wind lifts, m. Range [0.1, 5000]; else by kind. */
     double lofted_top_m;
     /** Kind of matter that the wind lifts. Default WK_LOFTED_NONE. */
     wk_lofted_kind lofted_kind;
@@ -1922,7 +1936,7 @@ typedef struct wk_weather {
     /* reserved0 */ 0 \
 }
 
-/** Flags of the fields of a wk_weather_overrides that are set. */
+/** Flags that say which fields of a wk_weather_overrides are set. */
 typedef uint32_t wk_override_flags;
 
 /** aerosol_extinction_per_m */
@@ -1939,7 +1953,7 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_RAYLEIGH_DENSITY 32
 /** rayleigh_scale_height_m */
 #define WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT 64
-/** No value: rain adds no cloud that the report lacks. */
+/** No field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls from. */
 #define WK_OVERRIDE_RAIN_WITHOUT_CLOUD 128
 /** cloud_direct and cloud_diffuse */
 #define WK_OVERRIDE_CLOUD_LIGHT 256
@@ -1964,10 +1978,14 @@ typedef struct wk_weather_overrides {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
+     * Aerosol extinction at 550 nm and station height, 1/m, in place of that which follows from the visibility. Range
+     * [0, 10].
      */
     double aerosol_extinction_per_m;
-    /** Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10]. */
+    /**
+     * Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of that which follows
+     * from the visibility. Range [0, 10].
+     */
     double fog_extinction_per_m;
     /** Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10]. */
     double precipitation_extinction_per_m;
@@ -2147,17 +2165,17 @@ typedef struct wk_metar {
     uint32_t runways_length;
     /** Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included. */
     uint32_t trend_offset;
-    /** Bytes of the trend forecast. */
+    /** Length of the trend forecast, bytes. */
     uint32_t trend_length;
     /** Offset of the remarks, after RMK. */
     uint32_t remarks_offset;
-    /** Bytes of the remarks. */
+    /** Length of the remarks, bytes. */
     uint32_t remarks_length;
     /** Offset of the first word that is no group of the code. */
     uint32_t unread_offset;
-    /** Bytes of that word. */
+    /** Length of this first word, bytes. */
     uint32_t unread_length;
-    /** Number of such words. */
+    /** Number of words that are no group of the code. */
     uint32_t unread_count;
     /** Always 0. */
     uint32_t reserved0;
@@ -2248,7 +2266,7 @@ wk_status wk_weather_from_metar_with(const char *report,
  * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
  * names.
  * Thread: any.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown name; the message lists the known ones.
  */
 WK_API
 wk_status wk_weather_from_preset(const char *name,
@@ -2258,8 +2276,8 @@ wk_status wk_weather_from_preset(const char *name,
                                  wk_weather *out_weather);
 
 /**
- * Gets the name and the one-line description of the preset `index`. Indices count from 0, in an order that suits a
- * menu. Both texts live as long as the process. Either pointer may be NULL.
+ * Gets the name and the one-line description of the preset `index`. Indices begin at 0 and are in an order that suits
+ * a menu. Both texts live as long as the process. Either pointer may be NULL.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an index beyond the last preset.
  */
@@ -2292,8 +2310,8 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
  * degrees clockwise from true north.
  *
- * Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
- * of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
+ * Altitudes are above mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m of
+ * wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
  * ====================================================================================================
  */
 
@@ -2308,9 +2326,10 @@ typedef uint32_t wk_world_kind;
 /** East-north-up at the origin's place, with the curved planet below. */
 #define WK_WORLD_TANGENT 1
 /**
- * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin is the zero point of maps (of
- * local cloud cover, fog patches, waves and lightning), and the place of the sunlight that dries a simulated ground
- * (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+ * Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin (latitude_deg, longitude_deg
+ * and altitude_m of wk_context_desc) is not the host's (0, 0, 0): it is the zero point of maps (of local cloud cover,
+ * fog patches, waves and lightning), and the place whose sunlight dries a simulated ground (WK_GROUND_SIMULATED).
+ * Altitudes are heights above the ellipsoid less geoid_height_m.
  */
 #define WK_WORLD_ECEF 2
 
@@ -2356,11 +2375,19 @@ typedef struct wk_context_desc {
     wk_world_kind world_kind;
     /** Directions of the host's axes. Default WK_AXES_Z_UP. */
     wk_axes axes;
-    /** Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50. */
+    /**
+     * Latitude of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, degrees north. Range [-90, 90], default 50.
+     */
     double latitude_deg;
-    /** Longitude of the host's (0, 0, 0), degrees east. Range [-360, 360], default 10. */
+    /**
+     * Longitude of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, degrees east. Range [-360, 360], default
+     * 10.
+     */
     double longitude_deg;
-    /** Altitude of the host's (0, 0, 0) above mean sea level, m. Range [-1e4, 1e9], default 0. */
+    /**
+     * Altitude above mean sea level of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, m. Range [-1e4, 1e9],
+     * default 0.
+     */
     double altitude_m;
     /** Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0. */
     double grid_bearing_deg;
@@ -2385,9 +2412,9 @@ typedef struct wk_context_desc {
     /**
      * Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
      * planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
-     * drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
-     * each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
-     * Default NULL: no files.
+     * drawn weather and those of wk_context_build_sky, 2 MB each. The newest 32 stay in the directory, whichever
+     * program wrote them. If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read
+     * during the call. Default NULL: no files.
      */
     const char *cache_dir;
     /**
@@ -2442,7 +2469,7 @@ wk_status wk_context_create(wk_device *device,
  * Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
  * call; NULL means the Earth. Light and queries use the new planet at once, without blending. The sky's tables follow
  * as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
- * top or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
+ * top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
  * stays as it was.
@@ -2462,8 +2489,8 @@ WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve cu
  * the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
  * in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
  * sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
- * Thread: exclusive on the context; with an OpenGL host, the thread where its context is (or can be made) current.
- * While `progress` runs, that context is the host's.
+ * Thread: exclusive on the context; with an OpenGL host, the thread where its OpenGL context is (or can be made)
+ * current. While `progress` runs, the host may use that OpenGL context.
  * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
  */
 WK_API
@@ -2473,7 +2500,8 @@ wk_status wk_context_build_sky(wk_context *context,
 
 /**
  * Destroys a context. NULL does nothing.
- * Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
+ * Thread: any. Where the host's OpenGL context is not (and cannot be made) current, GPU objects are released at a
+ * later call on the device.
  * Errors: WK_ERROR_IN_USE while it has views.
  */
 WK_API wk_status wk_context_destroy(wk_context *context);
@@ -2528,7 +2556,7 @@ typedef struct wk_sky_settings {
     /** Model of the sky. Default WK_SKY_DIRECTIONAL. */
     wk_sky_model model;
     /**
-     * Orders of scattering that are computed one by one; a geometric series stands for the higher ones. Range [3, 16],
+     * Orders of scattering that are computed one by one; a geometric series replaces the higher ones. Range [3, 16],
      * default 5.
      */
     uint32_t orders;
@@ -2550,8 +2578,8 @@ typedef struct wk_sky_settings {
      * Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
      * the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
      * the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
-     * time to build tables grows in proportion, both for a change of air and for a moving sun: five times with 15. The
-     * cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+     * time to build tables grows in proportion, both for a change of air and for a moving sun: with 15 wavelengths it
+     * is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
      */
     uint32_t wavelengths;
 } wk_sky_settings;
@@ -2650,8 +2678,8 @@ wk_status wk_context_set_weather(wk_context *context,
  * leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
  * returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
  * later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
- * After a leap of more than a day, only the last day of the water is simulated; it starts as wet as the weather
- * reports then.
+ * After a leap of more than a day, only the last day of the water is simulated. The ground starts that day as wet as
+ * the weather of that time reports.
  * Thread: exclusive.
  * Returns WK_PENDING, which is no error, while steps remain.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.
@@ -2659,12 +2687,14 @@ wk_status wk_context_set_weather(wk_context *context,
 WK_API wk_status wk_context_update(wk_context *context, double time_s);
 
 /**
- * Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
- * returns WK_PENDING. The difference is the lag of the state. The state's time never decreases, except by
- * wk_context_load.
+ * Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while
+ * wk_context_update returns WK_PENDING. The difference between the two is the lag of the state. The state's time never
+ * decreases, except by wk_context_load.
  * Thread: concurrent.
  */
-WK_API wk_status wk_context_get_state_time(const wk_context *context, double *out_state_time_s);
+WK_API
+wk_status wk_context_get_state_time(const wk_context *context,
+                                    double *out_state_time_s);
 
 /**
  * Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
@@ -2714,8 +2744,8 @@ WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode m
  * weather, weather regions, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve,
  * fog law, cloud map and model, lightning, night sky, shelters, lamps, rain areas, wind grid and wind field, the
  * terrain with its water, snow and soil, the default surface class, the sea with its regions and hulls, and the world,
- * place, seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow
- * and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
+ * place, seed and models of ground and snow that the state belongs to. For the tiles of a wk_terrain the text has the
+ * water, snow and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
  * wk_terrain_drawing), the host's own list of stars, and the images of wk_context_set_occluder_maps, because each
  * channel may have its own.
  * `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
@@ -2732,9 +2762,9 @@ wk_status wk_context_save(const wk_context *context,
 /**
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
  * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
- * geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. A state of an earlier version
- * without planet and tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a
- * wk_terrain stay too: before the call, set them as they were when the state was saved.
+ * geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. If a state of an earlier version
+ * lacks the planet and the tone curve, these must be equal too. Occluder maps stay as they are. Tiles of a wk_terrain
+ * stay too: before the call, set them as they were when the state was saved.
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
  * another format, which the message names (this version reads format 2; save states of format 1 again, because they
@@ -2768,8 +2798,9 @@ wk_status wk_given_direction_init(wk_given_direction *out,
  * ====================================================================================================
  * [fog_law] Fog laws of older simulators
  *
- * Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can
- * draw the laws of older systems instead: linear, exponential or exponential squared, by range or by plane distance.
+ * Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as in an older
+ * simulator, Welkin can draw the older laws instead: linear, exponential or exponential squared, by range or by plane
+ * distance.
  * ====================================================================================================
  */
 
@@ -2795,7 +2826,7 @@ typedef uint32_t wk_fog_distance;
 /** Distance from the camera's plane, as in the oldest systems. */
 #define WK_FOG_DISTANCE_PLANE 1
 
-/** Flags of the optional fields of a wk_fog_law that are set. */
+/** Flags that name the optional fields of a wk_fog_law that the host has set. */
 typedef uint32_t wk_fog_law_has_flags;
 
 /** color */
@@ -2813,7 +2844,7 @@ typedef struct wk_fog_law {
     wk_fog_curve curve;
     /** Measure of distance. Default WK_FOG_DISTANCE_RANGE. */
     wk_fog_distance distance;
-    /** Flags of the optional fields that are set. Default 0. */
+    /** WK_FOG_LAW_HAS_* flags: the optional fields that the host has set. Default 0. */
     wk_fog_law_has_flags has;
     /** Must be 0. */
     uint32_t reserved0;
@@ -2859,7 +2890,8 @@ WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *f
 
 /**
  * Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
- * farther away. The distance is measured as the law measures it, and infinite if the law always leaves more.
+ * farther away. The distance is measured as the law says (wk_fog_distance). It is infinite if the law always leaves
+ * more.
  * Thread: any.
  */
 WK_API
@@ -2905,7 +2937,7 @@ typedef struct wk_conditions {
      * Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
      */
     double extinction_per_m;
-    /** Meteorological optical range of that extinction, m; at most 1e9, which stands for no air at all. */
+    /** Meteorological optical range for extinction_per_m, m; at most 1e9, the value without any air. */
     double visibility_m;
     /** Air temperature at 2 m, degrees Celsius. */
     double temperature_c;
@@ -2925,7 +2957,7 @@ typedef struct wk_conditions {
     double rayleigh_extinction_per_m;
     /** Extinction by particles, at 550 nm and station height, 1/m. */
     double aerosol_extinction_per_m;
-    /** Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent. */
+    /** Exponent of the particles' extinction, which is proportional to (wavelength / 550 nm)^-exponent. */
     double aerosol_angstrom_exponent;
     /** Single-scattering albedo of the particles at 550 nm. */
     double aerosol_single_scattering_albedo;
@@ -2972,9 +3004,9 @@ typedef struct wk_conditions {
     double wind_north_m_s;
     /** Highest 3-second gust at 10 m, m/s. */
     double wind_gust_m_s;
-    /** Standard deviation of speed over its mean, at 10 m. */
+    /** Standard deviation of the wind's speed divided by the mean speed, at 10 m. */
     double wind_turbulence_intensity;
-    /** Half the range over which the direction wanders, degrees: 0 steady, 180 all round. */
+    /** Half the range over which the wind's direction wanders, degrees: 0 steady, 180 all round. */
     double wind_wander_deg;
     /** Roughness length of the land, m. */
     double roughness_length_m;
@@ -3002,11 +3034,11 @@ typedef struct wk_conditions {
     double snow_depth_m;
     /** Ozone column, Dobson units. */
     double ozone_du;
-    /** Part of snow_mm_h that falls as flakes, mm/h of melted water; 0 where none falls. */
+    /** Flakes alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall. */
     double snow_flakes_mm_h;
-    /** Part of snow_mm_h that falls as snow grains, mm/h of melted water; 0 where none falls. */
+    /** Snow grains alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall. */
     double snow_grains_mm_h;
-    /** Part of snow_mm_h that falls as ice crystals, mm/h of melted water; 0 where none falls. */
+    /** Ice crystals alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall. */
     double ice_crystals_mm_h;
 } wk_conditions;
 
@@ -3093,7 +3125,7 @@ typedef struct wk_cloud_slab {
  * (wk_context_set_weather_regions). Precipitation is that at the position itself: it includes the rain areas there
  * (wk_context_set_rain_areas), weighted by their rims, and is zero above the cloud that it falls from. rain_mm_h and
  * drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at. precipitation_extinction_per_m, extinction_per_m and
- * visibility_m include that precipitation. All other fields are those of the station's height unless they say
+ * visibility_m include that precipitation. All other fields are for the station's height unless their descriptions say
  * otherwise.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
@@ -3107,9 +3139,9 @@ wk_status wk_context_get_conditions(const wk_context *context,
 
 /**
  * Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
- * `*out_count` gets their number, at most 16. With capacity 0 nothing else is written, and the call succeeds. If
- * `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
- * header.
+ * The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets their number, at most 16. With
+ * capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
+ * number and fails. `slab_size` is sizeof(wk_cloud_slab) of your header.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
  */
@@ -3132,12 +3164,13 @@ WK_API wk_status wk_conditions_init(wk_conditions *out, uint32_t struct_size);
  * ====================================================================================================
  * [query] Queries: light and visibility
  *
- * These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
- * or future simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or
- * moon that the host has placed stands at that direction at all times. Only wk_context_get_ambient and
- * wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
- * Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
- * is the photometric value.
+ * These functions answer for any place of the host's world. Functions that end in _at take a past or future simulation
+ * time that the timeline of the weather still knows (see wk_context_get_conditions); the others answer for the
+ * present. The answers are in closed form and need no work of the GPU, except those of wk_context_get_ambient and
+ * wk_context_get_ambient_at, which read the sky's tables. If the host has set the direction of the sun or the moon,
+ * that direction holds at all times. Directions are unit vectors (east, north, up) at the queried place. Light is in
+ * lux and cd/m^2, in three channels of linear Rec. 709. The sum of the channels with the weights 0.2126, 0.7152 and
+ * 0.0722 is the photometric value.
  *
  * Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
  * ====================================================================================================
@@ -3157,7 +3190,7 @@ typedef struct wk_celestial {
     double apparent[3];
     /** Direction in the plane of the disc towards the middle of the lit limb; for the moon. */
     double bright_limb[3];
-    /** Illuminance above the air on a surface facing it, lux per channel. */
+    /** Illuminance above the air on a surface facing the body, lux per channel. */
     double illuminance_lux[3];
     /** Azimuth, degrees clockwise from true north, [0, 360). */
     double azimuth_deg;
@@ -3172,7 +3205,8 @@ typedef struct wk_celestial {
     /** Ratio of the disc's vertical to its horizontal diameter. */
     double flattening;
     /**
-     * Share of the body's direct light that passes the clouds above the place, averaged over all places at its height.
+     * Share of the body's direct light that passes the clouds above the place, averaged over all places at the same
+     * height.
      */
     double direct_share;
 } wk_celestial;
@@ -3196,8 +3230,9 @@ typedef struct wk_celestial {
 }
 
 /**
- * Light that arrives at a place, after air, clouds and fog. Light that fog has scattered forward once counts as direct
- * light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof instead.
+ * Light that arrives at a place, after air, clouds and fog. Light that fog has scattered almost straight on is
+ * included in the direct light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof
+ * instead.
  */
 typedef struct wk_ground_light {
     /** Direct sunlight on a surface facing the sun, lux per channel. */
@@ -3297,10 +3332,10 @@ wk_status wk_context_get_moon_at(const wk_context *context,
                                  wk_celestial *out_moon);
 
 /**
- * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Of the clouds,
- * only those above a place count, with their mean effect over all places at its height. `position_size` and
- * `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
- * sizeof(wk_ground_light) of your header for lights.
+ * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
+ * a place dim its light, by their mean over all places at the same height. `position_size` and `light_size` are the
+ * distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
+ * lights.
  * Thread: concurrent.
  */
 WK_API
@@ -3355,9 +3390,9 @@ wk_status wk_context_get_between_at(const wk_context *context,
 
 /**
  * Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
- * along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
- * rain, snow and clouds drawn as a volume leave 5 % of the object's contrast, which is 5 % of the light at 550 nm.
- * Infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
+ * along `direction`, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance 5 % of the
+ * object's contrast is left, because air, fog, rain, snow and clouds drawn as a volume let 5 % of the light at 550 nm
+ * pass. The range is infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
  */
@@ -3369,8 +3404,8 @@ wk_status wk_context_get_visibility_at(const wk_context *context,
                                        double *out_visibility_m);
 
 /**
- * Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
- * frame has done so yet, and waits for the GPU once after every change of the air.
+ * Gets the sky's light on surfaces of any orientation at a place. The call reads the sky's tables. It builds them if
+ * no frame has done so yet, and waits for the GPU once after every change of the air.
  * Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
  */
@@ -3380,8 +3415,8 @@ wk_status wk_context_get_ambient(wk_context *context,
                                  wk_ambient *out_ambient);
 
 /**
- * Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
- * the air in the present tables; its brightness, clouds and fog are those of `time_s`.
+ * Gets the sky's light as wk_context_get_ambient does, at a simulation time. The distribution of the clear sky's light
+ * over directions is that of the present tables. The sky's brightness, clouds and fog are those at `time_s`.
  * Thread: as wk_context_get_ambient.
  * Errors: as wk_context_get_ambient and wk_context_get_conditions.
  */
@@ -3407,14 +3442,14 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  * ====================================================================================================
  * [radiance] Queries: the sky's light by direction
  *
- * For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as a
- * picture shows it in pixels that the host did not draw. It includes the clear air, clouds as the model draws them,
- * fog with precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the
- * discs of sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the
- * host drew.
+ * These functions serve sensors, reflections and lighting that the host computes itself. They give the radiance of the
+ * sky in a direction, as a picture shows it in pixels that the host did not draw. The radiance includes the clear air,
+ * clouds as the model draws them, fog with precipitation, the glow of the night sky, and below the horizon the
+ * planet's own ground. It excludes the discs of sun and moon (wk_context_get_light has their light), stars and
+ * planets, rain areas, and everything that the host drew.
  *
- * The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
- * query in a new state of the air solves the reference, which takes a second or two; other threads that query
+ * The double-precision reference of the sky computes the answers on the calling thread, without work of the GPU. The
+ * first query in a new state of the air solves the reference, which takes a second or two; other threads that query
  * meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
  * states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
  * from pictures.
@@ -3463,9 +3498,10 @@ wk_status wk_context_get_sky_radiance_at(const wk_context *context,
  * ====================================================================================================
  * [wind] Queries: wind and rain
  *
- * Velocity and displacement of the air, precipitation, and rain on surfaces, at any place and any simulation time that
- * the timeline still knows. The answers are in closed form and need no device. Vectors are (east, north, up) at the
- * place. Only wk_context_get_rain_on_at takes shelters into account.
+ * These functions give the velocity and the displacement of the air, the precipitation, and the rain on surfaces. They
+ * answer for any place and for any past or future simulation time that the timeline of the weather still knows (see
+ * wk_context_get_conditions). The answers are in closed form and need no work of the GPU. Vectors are (east, north,
+ * up) at the place. Only wk_context_get_rain_on_at takes shelters into account.
  * ====================================================================================================
  */
 
@@ -3477,14 +3513,14 @@ typedef struct wk_wind {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Velocity of the air at this moment, gusts included, m/s. */
+    /** Velocity of the air at the queried time, gusts included, m/s. */
     double velocity_m_s[3];
     /** Mean velocity, without gusts, m/s. */
     double mean_m_s[3];
     /**
-     * Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move
-     * objects that the air carries by differences of this displacement, never by velocity times time: it stays
-     * continuous through all changes of the weather, and is equal to the last bit on every channel.
+     * Displacement of the air at 10 m since simulation time 0, gusts included, m. It is the same at every place,
+     * continuous through all changes of the weather, and equal bit for bit on all channels of a simulator. Move
+     * objects that the air carries by differences of this displacement, never by velocity times time.
      */
     double displacement_m[3];
     /** Standard deviation of the wind speed along the mean wind, due to gusts, m/s. */
@@ -3516,8 +3552,8 @@ typedef struct wk_rainfall {
     /** Rate of rain and drizzle on level ground, mm/h. */
     double rate_mm_h;
     /**
-     * Number of drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al.
-     * 1968; scaled so that they give the rate).
+     * Number of drops of 0.1 to 6 mm in the air, 1/m^3. The size distributions are those of Marshall and Palmer
+     * (1948), and for showers and drizzle those of Joss et al. (1968). Each is scaled so that its drops give the rate.
      */
     double number_per_m3;
     /** Liquid water in the air, g/m^3. */
@@ -3532,8 +3568,9 @@ typedef struct wk_rainfall {
     double drops_per_m2_s;
     /**
      * Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
-     * less. Render occluder maps along its direction. The drop falls at the speed of Gunn and Kinzer (1949) and moves
-     * with the wind at 10 m.
+     * less. Render occluder maps along this velocity. The drop falls at the speed of Gunn and Kinzer (1949). It moves
+     * with the wind at 10 m, gusts included, or with the wind grid or wind field there (wk_context_set_wind_grid,
+     * wk_context_set_wind_field).
      */
     double fall_velocity_m_s[3];
     /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
@@ -3597,10 +3634,10 @@ typedef struct wk_rain_on {
 /**
  * Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
  * the ground's roughness up to 100 m; above that it grows and veers to the geostrophic wind (docs/clouds.md). Gusts
- * have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
- * station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
- * query the station's altitude plus the height above its own ground. At and below the roughness length there is no
- * wind.
+ * have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Height above ground means the
+ * position's altitude minus the altitude of the weather's station; the reported wind is the wind 10 m above the
+ * station. A host with terrain should therefore query the place at the station's altitude plus the height above the
+ * host's own ground. At and below the roughness length there is no wind.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3611,9 +3648,11 @@ wk_status wk_context_get_wind_at(const wk_context *context,
                                  wk_wind *out_wind);
 
 /**
- * Gets the precipitation at a place of the host's world and a simulation time. Precipitation begins in the lower half
- * of the clouds, at most 500 m above their bases, on average over the clouds that cover the sky. Above that nothing
- * falls.
+ * Gets the precipitation at a place of the host's world and a simulation time. The precipitation of a cloud layer
+ * begins halfway up the layer, but at most 500 m above its base. Where the sky has several layers, precipitation
+ * begins at the mean of these heights, weighted by the share of the sky in which each layer is the lowest; without
+ * clouds, at 2000 m above the station. Above this height the weather's precipitation is 0. Rain areas
+ * (wk_context_set_rain_areas) have tops of their own.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -3624,11 +3663,11 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
                                      wk_rainfall *out_rainfall);
 
 /**
- * Gets the rain on surfaces at a simulation time, at most wk_caps.max_batch of them. Drops of each size arrive along
- * their own slant, in the wind at 10 m with its gusts and relative to the moving surface. A windscreen at 25 m/s meets
- * far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm in front of
- * the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
- * sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
+ * Gets the rain on at most wk_caps.max_batch surfaces at a simulation time. Drops of each size arrive in their own
+ * direction: it follows from their fall speed, the wind with its gusts, and the velocity of the surface. A windscreen
+ * at 25 m/s meets far more drops than the ground does. Boxes (wk_context_set_shelters) keep rain off where they
+ * shelter a point 5 cm in front of the surface; occluder maps have no effect here. `surface_size` and `on_size` are
+ * sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
  */
@@ -3732,31 +3771,33 @@ typedef uint32_t wk_color_space;
 
 /**
  * Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
- * depth that may be written. Without these, both values give the same picture.
+ * depth that may be written. Without sea and terrain, both values give the same picture.
  */
 typedef uint32_t wk_depth_access;
 
-/** Welkin reads the depth and leaves every bit as it is. It draws nothing opaque of its own. */
+/** Welkin reads the depth, leaves every bit of it as it is, and draws nothing opaque of its own. */
 #define WK_DEPTH_ACCESS_READ 0
 /**
  * Welkin tests and writes the depth where it draws opaque things: the sea, and terrain (stage SURFACE, before the
- * water on surfaces). Stencil stays. Needs depth that can be attached: a depth format, as many samples as the colour,
- * and in Vulkan DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several
- * samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
+ * water on surfaces). The stencil stays as it is. The depth must have a depth format, as many samples as the colour,
+ * and in Vulkan the usage DEPTH_STENCIL_ATTACHMENT. This access is not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of
+ * several samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
  */
 #define WK_DEPTH_ACCESS_READ_WRITE 1
 
 /**
  * A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
- * from black over blue, green, yellow and red to white. The call with the quantity's stage draws it; other calls of
- * the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity, all is black.
+ * from black over blue, green, yellow and red to white. In the descriptions of the quantities, "a step" leads from one
+ * of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture, and
+ * other calls of the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity,
+ * all is black.
  */
 typedef uint32_t wk_diagnostic;
 
 /** The picture itself, not in false colours. */
 #define WK_DIAGNOSTIC_NONE 0
 /**
- * Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
+ * Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more and for the sky.
  * Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_DISTANCE 1
@@ -3796,7 +3837,7 @@ typedef struct wk_frame {
     uint64_t frame_id;
     /** Position of the camera in the host's world, m. Default 0, 0, 0. */
     double position_m[3];
-    /** Matrix from world to eye; only its rotation counts. Default identity. */
+    /** Matrix from world to eye, of which only the rotation is used. Default identity. */
     double view[16];
     /** Matrix from eye to clip space; it must be invertible. Default identity. */
     double projection[16];
@@ -3882,9 +3923,7 @@ typedef struct wk_frame_light {
     const void *next;
     /** Unit vector in the host's world towards the sun, or towards the moon where that is brighter. */
     double direction[3];
-    /**
-     * Direct light from that direction on a surface that faces it, after air, clouds and fog; 0 below the horizon.
-     */
+    /** Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 below the horizon. */
     double direct[3];
     /** Light from sky, clouds and fog on level ground. */
     double ambient[3];
@@ -3926,8 +3965,9 @@ typedef struct wk_own_target {
      */
     const wk_texture *mask;
     /**
-     * Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
-     * default. R8_UNORM or the like, as large as `color`. Default NULL.
+     * Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
+     * or the context's default. WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM or WK_FORMAT_BGRA8_UNORM, as large as
+     * `color`. Default NULL.
      */
     const wk_texture *surface_classes;
     /**
@@ -3952,8 +3992,9 @@ typedef struct wk_own_target {
 }
 
 /**
- * Gets the light with which the host should light its own objects in a frame; call it before you draw them. It reads
- * the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the target.
+ * Gets the light with which the host should light its own objects in a frame. Call this function before you draw the
+ * objects. It reads the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the
+ * target.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
  */
@@ -4044,13 +4085,13 @@ typedef uint32_t wk_stage_flags;
 /**
  * Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
  * display-linear values, other formats get sRGB-encoded ones. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB
- * the host has done all that, and TONE does nothing, alone or with other stages.
+ * the host has done these steps, and TONE does nothing, alone or with other stages.
  */
 #define WK_STAGE_TONE 64
 /** Everything in one call. */
 #define WK_STAGE_ALL 127
 
-/** Flags of the optional fields of a wk_report that are set. */
+/** Flags that say which optional fields of a wk_report are set. */
 typedef uint32_t wk_report_flags;
 
 /** wk_report.ms. */
@@ -4061,7 +4102,7 @@ typedef uint32_t wk_report_flags;
 #define WK_REPORT_HAS_REPORTED_MS 4
 /** wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged. */
 #define WK_REPORT_HAS_PREDICTED_ERROR 8
-/** wk_report.checked_error_bound and checked_error: the picture was gauged again afterwards. */
+/** wk_report.checked_error_bound and checked_error: the gauge has measured a picture whose error was predicted. */
 #define WK_REPORT_HAS_CHECKED_ERROR 16
 
 /** Costs and contents of a view's last frame. */
@@ -4085,7 +4126,7 @@ typedef struct wk_report {
     double exposure;
     /** GPU memory that the view uses for itself, bytes. */
     uint64_t bytes;
-    /** Flags of the following fields that are set. */
+    /** Flags that say which of the optional fields are set. */
     wk_report_flags has;
     /** Always 0. */
     uint32_t reserved0;
@@ -4094,7 +4135,7 @@ typedef struct wk_report {
      * (WK_FRAME_MEASURE).
      */
     double ms;
-    /** Predicted time of the weather in this frame, ms, from the times reported before it. */
+    /** Predicted time of the weather in this frame, ms, from the times reported before this frame. */
     double predicted_ms;
     /** Time that the host reported for this frame, ms. */
     double reported_ms;
@@ -4103,21 +4144,29 @@ typedef struct wk_report {
      * pixels.
      */
     double predicted_error;
-    /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
+    /** Upper end of the 95 % confidence interval of the percentile in predicted_error over all pixels. */
     double predicted_error_bound;
     /** Error bound that was predicted for the last gauged picture. */
     double checked_error_bound;
-    /** Error that the gauge then measured in that picture. */
+    /** Error that the gauge measured in the picture of checked_error_bound. */
     double checked_error;
     /** Number of drops and hailstones around the camera; those inside the picture were drawn. */
     uint32_t drops;
     /** Number of flakes around the camera; those inside the picture were drawn. 0 if none were. */
     uint32_t flakes;
-    /** Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any. */
+    /**
+     * Number of drops that each drawn drop represented: 1 unless more fell than wk_rain.most_drops; 0 without drops.
+     */
     double drop_weight;
-    /** Rate of splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops. */
+    /**
+     * Rate of splashes, 1/(m^2 s) on level ground, that were left out because the largest number of splashes was
+     * reached. They are those of the smallest drops.
+     */
     double splashes_left_out_per_m2_s;
-    /** Rate of stones that did not bounce for lack of room, 1/(m^2 s) on level ground: the smallest ones. */
+    /**
+     * Rate of stones, 1/(m^2 s) on level ground, that did not bounce because the largest number of bouncing stones was
+     * reached. They are the smallest ones.
+     */
     double stones_left_out_per_m2_s;
     /** Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn. */
     double contrast_gain;
@@ -4178,7 +4227,7 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_PARTICLES 8
 /** Water and snow on surfaces, and the sea and terrain that Welkin draws. */
 #define WK_EFFECT_SURFACE 9
-/** Water on the windscreen: its steps (after the sky's tables) and the lens. */
+/** Water on the windscreen: its simulation steps, which run after the sky's tables, and the stage LENS. */
 #define WK_EFFECT_WINDSCREEN 10
 
 /** Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead. */
@@ -4190,7 +4239,7 @@ typedef struct wk_effect_cost {
     /** Name of the effect in English; lives as long as the library. */
     const char *name;
     /**
-     * Wall time around a submission that is waited for, including the CPU's part, ms. 0 if the effect did not run.
+     * Wall time around a submission that is waited for, including the CPU's share, ms. 0 if the effect did not run.
      */
     double ms;
 } wk_effect_cost;
@@ -4223,21 +4272,22 @@ wk_status wk_view_record(wk_view *view,
 
 /**
  * Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
- * and hardly any later frame waits for one. Each weather is drawn during the change from the weather before it (for
- * the first, the context's own), after the change, and with the sun at several heights. Call this function behind a
- * loading screen, before the view's first frame: the next frame begins as a view's first one does. Afterwards the
- * context is as before.
+ * and hardly any later frame waits for one. Each weather is drawn during the change from the previous weather of the
+ * list (for the first, from the context's own), after the change, and with the sun at several heights. Call this
+ * function behind a loading screen, before the view's first frame: the next frame begins as a view's first one does.
+ * Afterwards the context is as before.
  *
- * `frame` stands for the later frames: it has their settings, and images with their formats, samples and usages.
+ * `frame` describes the later frames: give it their settings, and images of the same formats, samples and usages.
  * Welkin neither draws into these images nor waits for them. `calls` has the stages of each wk_view_record of one
  * frame, in order: 1 to 7 elements; NULL with `call_count` 0 means one call with WK_STAGE_ALL. `weathers` has 0 to 64
  * elements, `weather_stride` bytes apart; each may have a wk_weather_overrides in its chain. One call draws for about
- * `most_s`, in [0, 3600] s, and at least one moment of a weather. It returns WK_PENDING, which is no error, while
- * moments remain: call it again with the same weathers. Other weathers start from the beginning.
+ * `most_s`, in [0, 3600] s, but at least one case: one weather at one time of its change and one height of the sun.
+ * The call returns WK_PENDING, which is no error, while cases remain: call it again with the same weathers. With other
+ * weathers the drawing starts from the beginning.
  * Thread: exclusive on the view and on its context.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
  * WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
- * as before, and the same call continues with the moment that failed.
+ * as before, and the same call continues with the case that failed.
  */
 WK_API
 wk_status wk_view_prepare(wk_view *view,
@@ -4339,7 +4389,7 @@ typedef uint32_t wk_shading_language;
 /**
  * Gets the native textures of the veil. From the first call on, each frame's MEDIUM stage fills them. They belong to
  * the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
- * between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
+ * between wk_view_record calls with MEDIUM. Call this function after each frame to get that frame's light_scale.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
@@ -4396,8 +4446,8 @@ typedef struct wk_environment {
     /** Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces. */
     double cd_m2_per_unit;
     /**
-     * Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these are the host's
-     * units, in the display spaces display values before the tone curve.
+     * Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these values are in the
+     * host's units. In the display spaces they are display values before the tone curve.
      */
     double light_scale;
 } wk_environment;
@@ -4415,10 +4465,10 @@ typedef struct wk_environment {
 }
 
 /**
- * Gets the native texture of the cube map. From the first call on, the first call of each frame with
- * WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
- * same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
- * wk_view_record call. Call this after each frame for its scales.
+ * Gets the native texture of the cube map. Once you have called this function, the first wk_view_record of each frame
+ * with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays
+ * the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
+ * wk_view_record. Call this function after each frame to get the frame's scales.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
@@ -4437,27 +4487,28 @@ wk_status wk_environment_init(wk_environment *out,
  * [plan] Plan and budget of a view
  *
  * With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
- * with everything and without each part of the weather, and reads the differences back some frames later, without
- * waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
- * matter. Under a budget of time, further parts fade out until the reported times fit, starting with the parts that
- * save the most time for the least visible loss. They come back when there is time again. After a jump of camera, sun
- * or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+ * with everything, and again without each part of the weather. It reads the differences back some frames later,
+ * without waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again
+ * when they matter. Under a budget of time, further parts fade out until the reported times fit, starting with the
+ * parts that save the most time for the least visible loss. They come back when there is time again. After a jump of
+ * camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
  * A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
  * rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
  * wk_view_get_part_plan their names.
  *
- * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white), where Y' and Y are luminances after exposure
- * with and without parts left out, as the 95th percentile over the picture's pixels. A tolerance also limits the error
- * of the worst pixel, to ten times the tolerance.
+ * Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white). Y is the luminance of a pixel in the
+ * complete picture, Y' its luminance where parts are left out, and white the luminance that the exposure shows as
+ * white. The error of a picture is the 95th percentile over its pixels. A tolerance also limits the error of the worst
+ * pixel, to ten times the tolerance.
  *
  * Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
- * Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
+ * Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with a plan
  * that another view found (wk_view_save_plan, wk_view_load_plan).
  * ====================================================================================================
  */
 
-/** Flags of the optional fields of a wk_budget that are set. */
+/** Flags that say which optional fields of a wk_budget are set. */
 typedef uint32_t wk_budget_has_flags;
 
 /** tolerance */
@@ -4465,7 +4516,7 @@ typedef uint32_t wk_budget_has_flags;
 /** milliseconds */
 #define WK_BUDGET_HAS_MILLISECONDS 2
 
-/** Flags of the optional fields of a wk_part_wish that are set. */
+/** Flags that say which optional fields of a wk_part_wish are set. */
 typedef uint32_t wk_part_wish_has_flags;
 
 /** importance */
@@ -4484,7 +4535,8 @@ typedef uint32_t wk_part;
 #define WK_PART_SKY 2
 /**
  * Streaks and splashes of rain, unless the host chose the view's rain model. Rungs: drops (single ones near the
- * camera), cones (in place of drops), none (all rain is a veil; without WK_PART_FOG no rain is drawn at all).
+ * camera), cones (in place of drops), none (all rain is extinction in the air; without WK_PART_FOG no rain is drawn at
+ * all).
  */
 #define WK_PART_RAIN 3
 /** Stars, planets and the glow of the night sky between them. Rungs: all, none (a uniform sky of the same light). */
@@ -4492,8 +4544,8 @@ typedef uint32_t wk_part;
 /** Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK). */
 #define WK_PART_CLOUDS 5
 /**
- * Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is a veil;
- * without WK_PART_FOG no snow is drawn at all).
+ * Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is extinction in
+ * the air; without WK_PART_FOG no snow is drawn at all).
  */
 #define WK_PART_SNOW 6
 
@@ -4606,11 +4658,13 @@ typedef struct wk_plan {
     wk_gave_way gave_way;
     /** Error of everything left out together: 95th percentile over the gauged pixels. */
     double error;
-    /** Upper end of the 95 % confidence interval of that percentile over all pixels. */
+    /** Upper end of the 95 % confidence interval of the percentile in `error` over all pixels. */
     double error_bound;
     /** Error of the worst gauged pixel. */
     double worst;
-    /** Work of the picture as planned, in units of one pixel without any part; 0 before the first gauge. */
+    /**
+     * Work of the picture as planned, in units of the work of one pixel without any part; 0 before the first gauge.
+     */
     double work;
     /** Work of the picture with everything, in the same units. */
     double work_of_everything;
@@ -4663,12 +4717,13 @@ typedef struct wk_part_plan {
     wk_plan_reason reason;
     /** Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part. */
     uint32_t rung;
-    /** Number of its rungs. */
+    /** Number of the part's rungs. */
     uint32_t rung_count;
     /** Always 0. */
     uint32_t reserved;
     /**
-     * Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
+     * Name of the part in saved plans and messages, UTF-8. This text, rung_name and reason_text live as long as the
+     * process.
      */
     const char *name;
     /** Name of the rung. */
@@ -4687,8 +4742,7 @@ typedef struct wk_part_plan {
     /** Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge. */
     double worst;
     /**
-     * Work that the whole part adds, or would add, to this picture with everything, in units of one pixel without any
-     * part.
+     * Work that the whole part adds, or would add, to this picture with everything, in the units of wk_plan.work.
      */
     double work;
 } wk_part_plan;
@@ -4720,9 +4774,9 @@ typedef struct wk_part_plan {
 WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
 
 /**
- * Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure it as you chose the budget: with
- * a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses the median of the last
- * five reports.
+ * Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure the time in the same way as you
+ * chose the budget: with a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses
+ * the median of the last five reports.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
  */
@@ -4742,9 +4796,9 @@ WK_API wk_status wk_view_get_plan(wk_view *view, wk_plan *out_plan);
 WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan *out_part);
 
 /**
- * Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
- * settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
- * else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
+ * Writes the view's plan as UTF-8 text: the rung of each part, and the settings of the sky. wk_view_load_plan reads
+ * the text, on other channels or on another day. `*out_size` gets the bytes needed in any case. If `capacity` is too
+ * small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
  * each jump of camera, sun or weather.
@@ -4755,9 +4809,9 @@ WK_API wk_status wk_view_save_plan(wk_view *view, void *buffer, size_t capacity,
  * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
  * budget stays; wk_view_set_budget removes the pins.
  * Thread: exclusive on the view.
- * Errors: WK_ERROR_PARSE for bytes that are no saved plan or one of another version, naming line and column or the
- * field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error
- * the view's plan stays as it was.
+ * Errors: WK_ERROR_PARSE for bytes that are no saved plan, or that are a plan of another version, naming line and
+ * column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs.
+ * After an error the view's plan stays as it was.
  */
 WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
@@ -4792,8 +4846,8 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  * WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
  * drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
  * so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
- * host's depth hides them; sky, ground, sun and lamps light them. They splash on the surfaces that the picture shows
- * within ten metres.
+ * host's depth hides them; sky, ground, sun and lamps light them. Drops splash on the surfaces that the picture shows
+ * within ten metres of the camera.
  *
  * Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
  * drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
@@ -4854,7 +4908,7 @@ typedef struct wk_rain {
      */
     double shutter_s;
     /**
-     * Largest number of drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or
+     * Largest number of drops to draw; if more fall, each drawn drop represents several. Range [1000, 8 000 000], or
      * 0, the default: 400 000, and 100 000 on a software driver.
      */
     uint32_t most_drops;
@@ -5020,7 +5074,7 @@ typedef struct wk_snow {
     double shutter_s;
     /**
      * Largest number of flakes to draw. A larger number lets flakes reach farther from the camera, up to 16 m. If more
-     * flakes fall than may be drawn, a drawn flake stands for several. Range [1000, 8 000 000], or 0, the default:
+     * flakes fall than may be drawn, each drawn flake represents several. Range [1000, 8 000 000], or 0, the default:
      * 1 000 000, and 60 000 on a software driver.
      */
     uint32_t most_flakes;
@@ -5055,13 +5109,14 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * ====================================================================================================
  * [area] Rain areas
  *
- * Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
- * area's rain replaces the weather's rain and drizzle; the change is smooth over the rim, a band inside the region's
- * border. Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each
- * place has as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans
- * because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
- * ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
- * above it. wk_context_save keeps the areas.
+ * Rain areas have rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside an area its
+ * rain replaces the weather's rain and drizzle. The change is smooth over the rim, a band inside the area's border.
+ * Where areas overlap, a later one in the list covers the earlier ones. Around a camera in or near a rim, the number
+ * of drops varies from place to place with the rain rate. From outside, an area is a shaft with falling curtains; it
+ * leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so
+ * does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area
+ * with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save keeps the
+ * areas.
  * ====================================================================================================
  */
 
@@ -5078,7 +5133,7 @@ typedef uint32_t wk_area_rain;
 /** Motion of a rain area. */
 typedef uint32_t wk_area_motion;
 
-/** Motion with the wind at 10 m, gusts included (its displacement). */
+/** Motion by the displacement of the wind at 10 m, gusts included. */
 #define WK_AREA_MOTION_WITH_WIND 0
 /** Motion at the area's own velocity. */
 #define WK_AREA_MOTION_OWN 1
@@ -5086,7 +5141,7 @@ typedef uint32_t wk_area_motion;
 /** Kind of snow in a rain area. */
 typedef uint32_t wk_area_snow;
 
-/** None. */
+/** No snow. */
 #define WK_AREA_SNOW_NONE 0
 /** Flakes. Not in this version. */
 #define WK_AREA_SNOW_FLAKES 1
@@ -5095,7 +5150,7 @@ typedef uint32_t wk_area_snow;
 /** Snow pellets. Not in this version. */
 #define WK_AREA_SNOW_PELLETS 3
 
-/** A region with rain of its own. */
+/** An area with rain of its own. */
 typedef struct wk_rain_area {
     /** sizeof(wk_rain_area) of your header. */
     uint32_t struct_size;
@@ -5109,13 +5164,14 @@ typedef struct wk_rain_area {
      */
     double center_m[3];
     /**
-     * Half extents of the ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+     * Half extents of the ellipse to the right of the heading and along the heading, m. Range [10, 1e6], default 2000,
+     * 2000.
      */
     double semi_axes_m[2];
     /**
-     * Corners of a polygon that replaces the ellipse, in either direction around it. Each corner is two numbers: the
-     * distance from the centre to the right of the heading, and along it, m, within 1e6. The region must be convex and
-     * larger than 1 m^2. Default 0.
+     * Corners of a polygon that replaces the ellipse, in clockwise or counter-clockwise order. Each corner is two
+     * numbers: its distances from the centre to the right of the heading and along the heading, m, within 1e6. The
+     * polygon must be convex and larger than 1 m^2. Default 0.
      */
     double corners_m[16];
     /** Number of corners of the polygon, [3, 8], or 0, the default, for the ellipse. */
@@ -5132,8 +5188,8 @@ typedef struct wk_rain_area {
     /** Rain rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10. */
     double rate_mm_h;
     /**
-     * Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
-     * the weather's falls. Range [-1000, 20 000], default 1500.
+     * Altitude of the cloud base above mean sea level (not above the ground), m. Above it no rain falls inside the
+     * area: neither the area's nor, except in the rim, the weather's. Range [-1000, 20 000], default 1500.
      */
     double top_m;
     /** Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0. */
@@ -5191,17 +5247,17 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * ====================================================================================================
  * [region] Weather regions
  *
- * Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
- * ground plan, a perimeter outside it over which its weather fades into the weather around, and a wk_weather. The
- * region's field `has` names the parts of that weather that the region takes. At each place, every query and the
- * picture of a camera there see the merged weather. Queries between two points integrate the extinction of all regions
- * on the way. Regions move at their own velocity, never with the wind; a host may also set them again in every frame.
- * wk_context_save keeps them, and they are the same on every channel.
+ * Weather regions have a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a
+ * shape on the ground plan, a perimeter outside it over which its weather fades into the weather around, and a
+ * wk_weather. The region's field `has` lists the parts of that weather that hold in the region. At each place, every
+ * query and the picture of a camera there see the merged weather. Queries between two points integrate the extinction
+ * of all regions on the way. Regions move at their own velocity, never with the wind; a host may also set them again
+ * in every frame. wk_context_save keeps them, and they are the same on all channels of a simulator.
  *
- * Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
- * them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
- * weights. A camera's picture shows the fog of all regions; the rest of its weather is that at the camera.
- * docs/regions.md has the rules, and a table of what differs by place and what does not yet.
+ * Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that both
+ * regions merge are averaged by the regions' weights. The averages are those of extinction (not visibility), rates,
+ * temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its weather is that at
+ * the camera. docs/regions.md has the rules, and a table of what differs by place and what does not yet.
  * ====================================================================================================
  */
 
@@ -5255,14 +5311,14 @@ typedef struct wk_weather_region {
     /** Parts of `weather` that the region has. Default 0. */
     wk_weather_part_flags has;
     /**
-     * Parts that are averaged with those of earlier regions that merge them too. In all other parts the region covers
-     * what is before it in the list. Default 0.
+     * Parts that are averaged with those of earlier regions that merge them too. In all other parts the region
+     * replaces the earlier regions of the list. Default 0.
      */
     wk_weather_part_flags merges;
     /**
-     * Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights
-     * count from the station of the weather outside; station_altitude_m, the runway visual range and the ozone column
-     * have no effect. Read during the call only.
+     * Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights are
+     * above the station of the weather outside; station_altitude_m, the runway visual range and the ozone column have
+     * no effect. Read during the call only.
      */
     const wk_weather *weather;
     /**
@@ -5271,16 +5327,16 @@ typedef struct wk_weather_region {
      */
     double center_m[3];
     /**
-     * Half extents of an ellipse or a rectangle to the right of the heading and along it, m. Range [1, 1e6], default
-     * 2000, 2000.
+     * Half extents of an ellipse or a rectangle to the right of the heading and along the heading, m. Range [1, 1e6],
+     * default 2000, 2000.
      */
     double half_size_m[2];
     /** Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0. */
     double corner_radius_m;
     /**
-     * Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance
-     * from the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch
-     * others, and the polygon must be larger than 1 m^2. Default 0.
+     * Corners of a polygon, in clockwise or counter-clockwise order, convex or not. Each corner is two numbers: its
+     * distances from the centre to the right of the heading and along the heading, m, within 1e6. The sides must not
+     * cross or touch others, and the polygon must be larger than 1 m^2. Default 0.
      */
     double corners_m[32];
     /** Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0. */
@@ -5355,8 +5411,8 @@ wk_status wk_weather_region_init(wk_weather_region *out,
  * ====================================================================================================
  * [air] Air at a height
  *
- * Temperature, humidity and pressure at any place and altitude, by the laws of the standard atmosphere from what the
- * weather has at the station.
+ * Welkin computes temperature, humidity and pressure at any place and altitude from the weather's values at the
+ * station, by the laws of the standard atmosphere.
  * ====================================================================================================
  */
 
@@ -5369,7 +5425,8 @@ typedef struct wk_air {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Temperature, degrees Celsius: 6.5 K/km less than at the station up to 11 km above sea level, constant above.
+     * Temperature, degrees Celsius. From that of the station it falls by 6.5 K/km up to 11 km above sea level, and is
+     * constant above.
      */
     double temperature_c;
     /**
@@ -5395,8 +5452,8 @@ typedef struct wk_air {
 
 /**
  * Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
- * there. The altitude of the position counts. Heights up to 1 km below the station follow the same laws; lower ones
- * have the air of 1 km below it.
+ * there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; positions below
+ * that have the air of 1 km below the station.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -5456,7 +5513,7 @@ typedef struct wk_wind_grid {
     wk_wind_grid_kind kind;
     /**
      * Three numbers for each node (east, north, up), m/s, each vector of at most 300 m/s. Nodes run from west to east,
-     * rows from south to north, layers upwards. Copied by the call.
+     * rows from south to north, levels upwards. Copied by the call.
      */
     const float *velocities_m_s;
     /** Number of nodes in velocities_m_s: the product of `nodes`. */
@@ -5497,10 +5554,10 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * ====================================================================================================
  * [wind_field] Wind round terrain and buildings
  *
- * A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
- * round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
- * wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field acts where a wind grid of
- * your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and windscreens, and
+ * A context can solve for the wind in a box of air about a place. The weather's wind enters the box, flows round the
+ * terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of wk_context_set_shelters,
+ * including moving ones, and leaves on the downwind side. As a wind grid of your own does (wk_context_set_wind_grid),
+ * the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and
  * on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
  * ====================================================================================================
  */
@@ -5509,13 +5566,13 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
 typedef uint32_t wk_wind_field_mode;
 
 /**
- * The mean wind. It is solved in the first moments after the wind or an obstacle has changed; after that it rests at
- * no cost. The weather's gusts are scaled in proportion to the local mean wind.
+ * The mean wind. The field is solved for in the first seconds of simulation time after the wind or an obstacle has
+ * changed. Afterwards it rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
  */
 #define WK_WIND_FIELD_STEADY 0
 /**
  * The wind with its gusts and eddies, and with the eddies that obstacles shed, stepped all the time.
- * docs/wind-field.md has the sizes that a CPU core can keep up with.
+ * docs/wind-field.md says how much time a step takes on one CPU core.
  */
 #define WK_WIND_FIELD_RUNNING 1
 
@@ -5524,15 +5581,15 @@ typedef uint32_t wk_wind_walls;
 
 /** Terrain and boxes slow the air, by the weather's roughness length. */
 #define WK_WIND_WALLS_ROUGH 0
-/** Air slides along them without friction. */
+/** Air slides along terrain and boxes without friction. */
 #define WK_WIND_WALLS_SMOOTH 1
 
 /** Scheme by which the air of a wind field carries its own velocity. src/flow/mod.rs has the errors of each. */
 typedef uint32_t wk_wind_scheme;
 
 /**
- * Half a step, a projection, a reflection about the projected field, another half step and a projection (Zehnder et
- * al. 2018), with limited cubic interpolation: eddies keep their energy.
+ * Half a step of advection, a projection, a reflection about the projected field, another half step and a projection
+ * (Zehnder et al. 2018). The interpolation is cubic and limited. Eddies keep their energy.
  */
 #define WK_WIND_SCHEME_REFLECTION 0
 /**
@@ -5555,8 +5612,8 @@ typedef uint32_t wk_wind_pressure;
 #define WK_WIND_PRESSURE_RELAXATION 1
 
 /**
- * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
- * top it blends into the weather's wind.
+ * A box of air in which the wind is solved for: level and aligned to true north. Within four cells of the box's sides
+ * and top, the solved wind blends into the weather's wind.
  */
 typedef struct wk_wind_field {
     /** sizeof(wk_wind_field) of your header. */
@@ -5567,7 +5624,7 @@ typedef struct wk_wind_field {
     const void *next;
     /**
      * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
-     * ground that matters. When it moves, the field follows by whole cells. Default 0, 0, 0.
+     * ground that matters. When this point moves, the field follows by whole cells. Default 0, 0, 0.
      */
     double floor_center_m[3];
     /**
@@ -5593,8 +5650,8 @@ typedef struct wk_wind_field {
     /** A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state. */
     wk_wind_pressure pressure;
     /**
-     * Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], in one projection. 0,
-     * the default, means 50 V-cycles or 5 iterations.
+     * Largest number of V-cycles in one projection, [0, 1000]; with WK_WIND_PRESSURE_RELAXATION, largest number of
+     * iterations, [0, 1000000]. 0, the default, means 50 V-cycles or 5 iterations.
      */
     uint32_t most_iterations;
     /** Must be 0. */
@@ -5635,7 +5692,7 @@ typedef struct wk_wind_field_report {
     const void *next;
     /**
      * 1: there is a field. 0: none is set, its start time has not come, or its first steady state is still being
-     * solved for; all other fields are 0 then.
+     * solved for. While this field is 0, all others are 0 too.
      */
     uint32_t present;
     /** 1: the field is steady and rests; nothing is stepped. */
@@ -5674,10 +5731,12 @@ typedef struct wk_wind_field_report {
 
 /**
  * Sets a wind field from simulation time `start_time_s` on, [-1e10, 1e10] s, not before the last update or change;
- * NULL ends the field at that time. A field with the same size, mode, walls, scheme and pressure method at another
- * place moves there by whole cells; any other field begins anew. wk_context_update advances it in steps on a grid
- * anchored at time 0, whatever is drawn, so it is the same on every channel. It begins with the steady field of its
- * first moment. Part of the saved state. Unchanged after an error.
+ * NULL ends the field at that time. If only the place differs from that of the present field, by less than half of the
+ * cells along each axis, the field moves there by whole cells. If it moves farther, or if the size, mode, walls,
+ * scheme or pressure method differs, the field begins anew. A new field begins with the steady wind at the time of its
+ * first step. wk_context_update advances the field in steps that end at multiples of wk_wind_field_report.step_s,
+ * whatever is drawn, so it is the same on all channels of a simulator. Part of the saved state. Unchanged after an
+ * error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
  */
@@ -5711,13 +5770,13 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
  * ====================================================================================================
  * [occluder] Maps of objects that keep rain off
  *
- * For shelter that boxes cannot describe, give up to four depth images of your world, with standing or moving objects,
- * seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
+ * For shelter that boxes cannot describe, pass at most four depth images of your world, with standing or moving
+ * objects, seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
  *
  * A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s, the path of
  * the median drop. Then the hidden parts do not matter for half of the rain, and matter little for the other half.
- * Where objects stand below others (a pier below a deck), add maps along slower drops: the same wind with fall speeds
- * of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
+ * Where objects stand below others (a pier below a deck), add maps along the paths of slower drops, with the same wind
+ * and fall speeds of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
  *
  * Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
  * issued) before the call. Afterwards the image is yours again.
@@ -5727,12 +5786,12 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
 /** Flags of a map. */
 typedef uint32_t wk_occluder_map_flags;
 
-/** Its depth is reversed: 1 is near, 0 is far. */
+/** The map's depth is reversed: 1 is near, 0 is far. */
 #define WK_OCCLUDER_MAP_DEPTH_REVERSED 1
 /** The first row of the image lies at clip y = -1. In OpenGL this is always so, and the flag need not be set. */
 #define WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y 2
 
-/** A depth image of objects that keep rain off: one sample, from 8 to 4096 texels along either side. */
+/** A depth image of objects that keep rain off: one sample in each texel, and 8 to 4096 texels along each side. */
 typedef struct wk_occluder_map {
     /** sizeof(wk_occluder_map) of your header. */
     uint32_t struct_size;
@@ -5766,7 +5825,9 @@ typedef struct wk_occluder_map {
     uint32_t width;
     /** Height of an OpenGL host's image, texels; must equal the image's own. Default 0. */
     uint32_t height;
-    /** For an OpenGL host's image: increase it when you create an object again under an old name. Default 0. */
+    /**
+     * For an OpenGL host's image: increase this number when you create an object again under an old name. Default 0.
+     */
     uint64_t generation;
 } wk_occluder_map;
 
@@ -5884,7 +5945,7 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
  * ====================================================================================================
  */
 
-/** Flags of the settings in a wk_stars. */
+/** Flags of a wk_stars. */
 typedef uint32_t wk_stars_flags;
 
 /** stars and star_count: the host's own stars replace the catalogue's. */
@@ -5903,8 +5964,8 @@ typedef struct wk_stars {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Flags of the settings that are set. Default 0: the stars of the catalogue and the planets, at their positions
-     * over the Earth.
+     * WK_STARS_ flags: the settings that replace the defaults. Default 0: the stars of the catalogue and the planets,
+     * at their positions over the Earth.
      */
     wk_stars_flags flags;
     /** Number of stars in `stars`, at most 1 000 000. Default 0. */
@@ -5912,7 +5973,7 @@ typedef struct wk_stars {
     /**
      * With WK_STARS_OWN: four numbers for each star: right ascension, degrees in [-1e6, 1e6], and declination, degrees
      * in [-90, 90], both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a
-     * black body, K, in [1000, 100000]. Copied. Default NULL.
+     * black body, K, in [1000, 100000]. Copied by the call. Default NULL.
      */
     const double *stars;
     /**
@@ -5970,14 +6031,15 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
  * [cloud_map] Cloud map
  *
  * A map of where cloud layers stand over the ground: a storm ahead of the runway, a clearing over the harbour. The map
- * applies to pictures, shadows, the light at a place and all queries about clouds. docs/clouds.md has an example.
+ * applies to pictures, shadows, and queries of light, radiance and visibility, but not to wk_context_get_conditions
+ * and wk_context_get_cloud_slabs. docs/clouds.md has an example.
  * ====================================================================================================
  */
 
 /**
- * Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
- * layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
- * Clouds drift across it with their wind, and grow and dissolve until the cover is that of the map. Values are
+ * Cover of cloud layers over each place of the ground, as a share of the cover that the weather gives the layers. For
+ * a layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
+ * Clouds drift across the map with their wind, and grow and dissolve until the cover is that of the map. Values are
  * interpolated linearly between the centres of cells, and constant beyond the outermost centres.
  */
 typedef struct wk_cloud_map {
@@ -6026,8 +6088,8 @@ typedef struct wk_cloud_map {
 }
 
 /**
- * Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
- * state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+ * Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. Part of the
+ * saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -6069,7 +6131,7 @@ typedef uint32_t wk_cloud_model;
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
-/** Flags of the optional effects of clouds in a view. */
+/** Flags of a wk_clouds. */
 typedef uint32_t wk_clouds_flags;
 
 /**
@@ -6122,7 +6184,7 @@ wk_status wk_context_set_cloud_model(wk_context *context,
 /**
  * Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
  * place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at exactly
- * this place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
+ * this place is sun_lux * s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
  * mean, wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some
  * tenths of a second.
  * Thread: concurrent.
@@ -6153,7 +6215,8 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
  * [cloud_shadow] Shadows of clouds as a texture
  *
  * A native texture for the host's own materials: the share of the direct light of the sun or moon that broken clouds
- * let through, for all places around the camera. The published sampling function, in GLSL and WGSL, looks it up.
+ * let through, for all places around the camera. The function from wk_get_cloud_shadow_snippet, in GLSL or WGSL,
+ * samples the texture.
  * ====================================================================================================
  */
 
@@ -6180,14 +6243,14 @@ typedef struct wk_cloud_shadows {
     /** Height, texels; equal to the width. */
     uint32_t height;
     /**
-     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
-     * For single precision, subtract the camera's position (x0, y0, z0) from the place. In each row (p, q, r, s), then
-     * replace s by p x0 + q y0 + r z0 + s, computed in double precision.
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give the texture
+     * coordinates u and v of the place. For single precision, subtract the camera's position (x0, y0, z0) from the
+     * place. In each row (p, q, r, s), then replace s by p x0 + q y0 + r z0 + s, computed in double precision.
      */
     double uv_from_world[2][4];
     /** Row of a matrix, used like uv_from_world: it gives the height of a place above the plane, m. */
     double height_from_world[4];
-    /** u and v of the point of the plane below the camera of the last frame. */
+    /** Texture coordinates u and v of the point of the plane that was below the camera in the last frame. */
     double camera_uv[2];
     /**
      * Mean over all places of the share in `texture`. The direct light from wk_context_get_light includes it already:
@@ -6254,9 +6317,10 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  *
  * A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
  * km by 20 km. The host may set another rate, and the places of the storm cells. Every flash is a function of the
- * context's seed, the time, the rate and the storm cells: all channels see the same flashes, and any time can be shown
- * again. Views draw the lightning channels, the glow of clouds and air, and the light of flashes on rain and wet
- * ground. The host queries flashes to play thunder, and their light to light its own scene:
+ * context's seed, the time, the rate and the storm cells. All channels of a simulator therefore show the same flashes,
+ * and any time can be shown again. Views draw the paths of flashes, the glow of clouds and air, and the light of
+ * flashes on rain and wet ground. The host queries flashes to play thunder, and queries their light to light its own
+ * scene:
  *
  * wk_flash flashes[16];
  * uint32_t count = 0;
@@ -6264,15 +6328,17 @@ wk_status wk_cloud_shadows_init(wk_cloud_shadows *out,
  * for (uint32_t i = 0; i < count; i++)
  *     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
  *
- * A frame has the light of flashes from the time of the view's previous frame to its own: no flash is missed or
- * doubled, whatever the frame rate.
+ * A frame contains the light of flashes from the time of the view's previous frame to the frame's own time. No flash
+ * is missed or drawn twice, whatever the frame rate. A frame contains the light of the last 1/60 s alone if it is the
+ * view's first one, if it has WK_FRAME_CUT or WK_FRAME_NO_HISTORY, or if time has jumped by more than 0.5 s or
+ * backwards.
  * ====================================================================================================
  */
 
-/** Flags of the settings in a wk_lightning. */
+/** Flags of a wk_lightning. */
 typedef uint32_t wk_lightning_flags;
 
-/** flashes_per_minute: the host's rate replaces the weather's. */
+/** The host's rate, flashes_per_minute, replaces the weather's. */
 #define WK_LIGHTNING_RATE 1
 
 /** Flicker of flashes in a picture. */
@@ -6281,9 +6347,9 @@ typedef uint32_t wk_flicker;
 /** Flicker as in nature: many changes of luminance a second. */
 #define WK_FLICKER_AS_IN_NATURE 0
 /**
- * Limited flicker, for viewers whom flicker may harm: at most three changes of luminance a second. Each drawn flash
- * rises once and fades, and the next one comes a second later at the earliest. Queries of flashes and of their light
- * do not change.
+ * Limited flicker, for viewers whom flicker may harm: at most three changes of luminance in any second. A drawn flash
+ * rises once and fades, which is two changes. The next drawn flash begins a second later at the earliest; flashes in
+ * between are not drawn. Queries return all flashes and all of their light.
  */
 #define WK_FLICKER_LIMITED 1
 
@@ -6295,27 +6361,32 @@ typedef struct wk_lightning {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Flags of the settings that are set. Default 0: the rate of the weather. */
+    /** WK_LIGHTNING_* flags. Default 0: the weather gives the rate. */
     wk_lightning_flags flags;
     /** Flicker of the drawn flashes. Default WK_FLICKER_AS_IN_NATURE. */
     wk_flicker flicker;
     /**
-     * Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
-     * 60], default 0.
+     * Flashes a minute in each square of 20 km by 20 km, whatever the weather. The rate is used with
+     * WK_LIGHTNING_RATE, and only if there are no `cells`, which have rates of their own. Range [0, 60], default 0.
      */
     double flashes_per_minute;
-    /** Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0. */
+    /**
+     * Number of storm cells in `cells`, at most 16. If there are any, they replace the weather's storm cells. Default
+     * 0.
+     */
     uint32_t cell_count;
     /** Number of tall objects in `masts`, at most 64. Default 0. */
     uint32_t mast_count;
     /**
-     * Five numbers for each cell: its middle in the host's world, m (the height does not matter); the distance from it
-     * within which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+     * Five numbers for each cell. The first three are its middle in the host's world, m; the height has no effect. The
+     * fourth is the horizontal distance from the middle within which two thirds of the cell's flashes start, m, in [0,
+     * 1e5]. The fifth is the number of flashes a minute, in [0, 60]. Copied by the call. Default NULL.
      */
     const double *cells;
     /**
-     * Three numbers for each mast: its tip in the host's world, m. Masts attract ground flashes; so do the tops of
-     * shelters. Copied. Default NULL.
+     * Three numbers for each mast: its tip in the host's world, m. Masts and the tops of shelters
+     * (wk_context_set_shelters) attract ground flashes, except those that the host triggers. Copied by the call.
+     * Default NULL.
      */
     const double *masts;
 } wk_lightning;
@@ -6334,12 +6405,12 @@ typedef struct wk_lightning {
     /* masts */ NULL \
 }
 
-/** Place where a flash ends. */
+/** Place where a flash ends: on the ground or in the cloud. */
 typedef uint32_t wk_flash_kind;
 
-/** To the ground. */
+/** The flash strikes the ground. */
 #define WK_FLASH_KIND_TO_GROUND 0
-/** Within the cloud. */
+/** The flash stays within the cloud. */
 #define WK_FLASH_KIND_IN_CLOUD 1
 
 /** A flash that the host triggers. */
@@ -6350,14 +6421,14 @@ typedef struct wk_flash_trigger {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Simulation time of its first stroke, s, not before the present. Range [-1e10, 1e10], default 0. */
+    /** Simulation time of the flash's first stroke, s, not before the present. Range [-1e10, 1e10], default 0. */
     double time_s;
     /**
-     * Place where it strikes in the host's world, m; a flash within the cloud passes over it. A shelter in its path
-     * ends it. Default 0, 0, 0.
+     * Position in the host's world, m, that a ground flash strikes, or over which a flash within the cloud passes. A
+     * flash that meets a shelter on its way ends there. Default 0, 0, 0.
      */
     double position_m[3];
-    /** Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random. */
+    /** Largest peak current of the flash's strokes, kA. Range [1, 500], or 0, the default: random. */
     double peak_ka;
     /** Place where the flash ends. Default WK_FLASH_KIND_TO_GROUND. */
     wk_flash_kind kind;
@@ -6383,23 +6454,25 @@ typedef struct wk_flash_trigger {
 typedef struct wk_flash {
     /** Number that identifies the flash within the context. */
     uint64_t id;
-    /** Simulation time of its first stroke, s. */
+    /** Simulation time of the flash's first stroke, s. */
     double time_s;
-    /** Place where it ends. */
+    /** Place where the flash ends. */
     wk_flash_kind kind;
-    /** Number of strokes; for a flash within the cloud, number of steps of its light. */
+    /** Number of strokes. For a flash within the cloud: number of pulses of light. */
     uint32_t strokes;
-    /** Largest peak current of its strokes, kA. */
+    /** Largest peak current of the flash's strokes or pulses, kA. */
     double peak_ka;
-    /** Position where it struck, or of the middle of its path in the cloud, in the host's world, m. */
+    /**
+     * Point that a ground flash struck, or middle of the path of a flash within the cloud, in the host's world, m.
+     */
     double position_m[3];
-    /** Distance to the nearest point of its channel, m. */
+    /** Distance from the queried place to the nearest point of the flash's path, m. */
     double distance_m;
     /** Unit vector towards position_m, (east, north, up) at the queried place. */
     double direction[3];
     /**
-     * Time from the flash to the beginning of its thunder, s: distance_m / (331.3 + 0.606 t), with the air's
-     * temperature t in degrees Celsius.
+     * Time from time_s to the beginning of the thunder at the queried place, s: distance_m / (331.3 + 0.606 t), with
+     * the air's temperature t in degrees Celsius.
      */
     double thunder_delay_s;
 } wk_flash;
@@ -6412,12 +6485,15 @@ typedef struct wk_flash_light {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Illuminance on surfaces that face the sources, summed over all sources, lux per channel. */
+    /**
+     * Illuminance that each source gives to a surface facing it, summed over all sources, lux for each of red, green
+     * and blue (linear Rec. 709).
+     */
     double facing_lux[3];
     /** Illuminance on level ground, lux. */
     double level_lux;
     /**
-     * Unit vector towards the middle of the light, (east, north, up) at the place; straight up where there is no
+     * Mean direction towards the light: unit vector (east, north, up) at the place. Straight up where there is no
      * light.
      */
     double direction[3];
@@ -6442,22 +6518,21 @@ typedef struct wk_flash_light {
 WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightning *lightning);
 
 /**
- * Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after it; there are at most
- * 64 such flashes at a time. Unchanged after an error.
+ * Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after its time_s. At most
+ * 64 triggered flashes are kept at a time. Unchanged after an error.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or for too many flashes; WK_ERROR_WRONG_ORDER for
- * a time before the present.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or if there are too many flashes;
+ * WK_ERROR_WRONG_ORDER for a time before the present.
  */
-WK_API
-wk_status wk_context_trigger_flash(wk_context *context,
-                                   const wk_flash_trigger *flash);
+WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
 
 /**
- * Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
- * 3600 s apart. Only flashes within the horizontal distance `most_distance_m`, in [0, 50000] m, of the position count.
- * `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and the call fails;
- * with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline
- * has dropped, the earliest weather that it still has applies.
+ * Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. The two
+ * times are at most 3600 s apart. Flashes that start farther from the position than `most_distance_m`, in [0, 50000]
+ * m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0 nothing else
+ * is written, and the call succeeds. If `capacity` is too small, the call writes only the number and fails.
+ * `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the call
+ * uses the earliest weather that the timeline knows.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
@@ -6473,9 +6548,9 @@ wk_status wk_context_get_flashes(const wk_context *context,
                                  uint32_t *out_count);
 
 /**
- * Gets the light of flashes at a place of the host's world, averaged over the time `exposure_s`, in [0, 1] s, that
- * ends at `time_s`; with 0, at that instant. Use it to light the host's own scene, with the time since its last frame
- * as exposure.
+ * Gets the light of flashes at a place of the host's world, averaged from `time_s` - `exposure_s` to `time_s`.
+ * `exposure_s` is in [0, 1] s; with 0 the call gets the light at `time_s` itself. Use the answer to light the host's
+ * own scene, and pass the time since the host's last frame as `exposure_s`.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
@@ -6514,16 +6589,16 @@ wk_status wk_flash_light_init(wk_flash_light *out,
  *
  * A view may look through a window. Rain lands on it at the rate and speed with which the window meets the drops.
  * Beads merge, run down by gravity or up with the air, are wiped, and refract the picture behind them. Mist on the
- * inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws this
- * over everything drawn so far, inside the window only; pixels of the mask stay. In a call with TONE, the glass is
- * drawn before the tone curve if the target is a float one, else after it.
+ * inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws
+ * water, mist and snow over everything drawn so far, inside the window only. Masked pixels stay the host's. In a call
+ * with TONE, the glass is drawn before the tone curve if the target is a float one, else after it.
  *
- * The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
- * WK_STAGE_PREPARE or the first stage after it. The water does not depend on the frame rate, and views of one seed and
- * history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second
- * after the one before, the water takes the default state of that moment: a function of seed, time and rain. With
- * WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
- * nothing.
+ * The water is part of the view. It moves in steps of 1/60 s, counted from simulation time 0. Each frame computes its
+ * steps when it records WK_STAGE_PREPARE or, without that, its first later stage. The water does not depend on the
+ * frame rate, and views of one seed and history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a
+ * frame comes more than half a second after the one before, the water takes the default state of that time: a function
+ * of seed, time and rain. With WK_FRAME_NO_HISTORY it always has that state. LENS costs nothing without a windscreen,
+ * or while the whole of it is dry and clear.
  * ====================================================================================================
  */
 
@@ -6544,8 +6619,8 @@ typedef struct wk_wiper_arm {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Position of the pivot along the glass, m right of and above the lower left corner of the pane or of its bounds.
-     * Range [-4, 12] each. Default 0, 0.
+     * Position of the pivot along the glass, m to the right of and above the lower left corner of the pane's bounding
+     * rectangle. Range [-4, 12] each. Default 0, 0.
      */
     double pivot_m[2];
     /** Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6. */
@@ -6596,9 +6671,9 @@ typedef struct wk_windscreen {
     uint32_t arm_count;
     /**
      * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
-     * left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
-     * edges in [0.05, 8] m, within 20 m. Its slope relative to gravity follows from the frame's view matrix. Default 1
-     * m x 0.6 m across the view, 0.7 m away.
+     * left, lower right, upper right, upper left as seen from the camera. The window is flat within 2 % of its
+     * diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
+     * relative to gravity follows from the frame's view matrix. Default 1 m x 0.6 m across the view, 0.7 m away.
      */
     double corners_m[12];
     /** Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6. */
@@ -6609,8 +6684,8 @@ typedef struct wk_windscreen {
      */
     double velocity_m_s[3];
     /**
-     * Speed of the air along the glass at the drops' height, upwards, m/s; it drives the beads. About 0.7 of the
-     * vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+     * Speed of the air along the glass, upwards, as close to the glass as a bead is high, m/s. It drives the beads.
+     * About 0.7 of the vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
      */
     double airflow_m_s;
     /**
@@ -6632,8 +6707,8 @@ typedef struct wk_windscreen {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Heat that wires in the glass or a blower give to it, W/m^2. It melts snow once it exceeds the loss to cold air.
-     * A heated windscreen has about 600. Range [0, 3000], default 0.
+     * Heat that wires in the glass or a blower give to the glass, W/m^2. It melts snow once it exceeds the loss to
+     * cold air. A heated windscreen has about 600. Range [0, 3000], default 0.
      */
     double heat_w_m2;
 } wk_windscreen;
@@ -6707,8 +6782,8 @@ wk_status wk_view_set_windscreen(wk_view *view,
 
 /**
  * Gets the amount of water on the view's windscreen as of its last frame, and the rate at which it lands. The call
- * reads the state back and waits for the GPU: use it now and then, not in every frame. All 0 without a windscreen or
- * before the view's first frame.
+ * reads the state back and waits for the GPU: use it now and then, not in every frame. All fields are 0 without a
+ * windscreen or before the view's first frame.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_DEVICE_LOST.
  */
@@ -6744,8 +6819,9 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. The mirrored picture is the sky's. Of
  * the host's objects, only shelters and occluder maps appear in it, as dark shapes.
  *
- * Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
- * wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
+ * Wetness follows the present weather (wk_conditions.wetness, .puddles). With WK_GROUND_SIMULATED, set by a
+ * wk_simulation_desc in wk_context_desc.next, it is instead a state that fills, drains and dries over time, and that
+ * wk_context_save keeps.
  * ====================================================================================================
  */
 
@@ -6822,8 +6898,8 @@ typedef struct wk_ground {
 typedef uint32_t wk_ground_model;
 
 /**
- * The weather of the moment: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as
- * the rain ends.
+ * The present weather: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as the
+ * rain ends.
  */
 #define WK_GROUND_REPORTED 0
 /**
@@ -6837,7 +6913,7 @@ typedef uint32_t wk_ground_model;
 /** Source of the lying snow. */
 typedef uint32_t wk_lying_snow_model;
 
-/** The weather of the moment: snow as deep as it reports (wk_conditions.snow_depth_m), everywhere. */
+/** The present weather: snow as deep as reported (wk_conditions.snow_depth_m), everywhere. */
 #define WK_LYING_SNOW_REPORTED 0
 /**
  * A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
@@ -6915,18 +6991,19 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
  * ====================================================================================================
  * [ground_grid] Water on the host's terrain
  *
- * Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
- * standing boxes (wk_context_set_shelters) determine the rain that each cell receives. Water runs off and fills the
- * terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
- * wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
- * wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the hollows.
+ * Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas, and
+ * boxes that stand still (wk_context_set_shelters), determine the rain that each cell receives. Water runs off and
+ * fills the terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the
+ * water, and wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a
+ * state, which wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the
+ * hollows.
  * ====================================================================================================
  */
 
 /**
- * Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
- * cell around it; water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which
- * the picture blends over two cells.
+ * Heights of the host's terrain on a grid that is level and aligned to true north. Each node is the middle of a square
+ * cell. Water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which the picture
+ * blends over two cells.
  */
 typedef struct wk_ground_grid {
     /** sizeof(wk_ground_grid) of your header. */
@@ -6936,8 +7013,8 @@ typedef struct wk_ground_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Position of the south-western node in the host's world, m, within 1e12 m of the origin; the heights count from
-     * its height. Default 0, 0, 0.
+     * Position of the south-western node in the host's world, m, within 1e12 m of the origin. The values of heights_m
+     * are above its height. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear. */
@@ -6992,22 +7069,21 @@ typedef struct wk_ground_cell {
     /** Standing water, mm. */
     float standing_mm;
     /**
-     * Share of the cell under ice, 0 to 1, by the weather of the moment. Where standing boxes keep freezing rain off,
-     * it leaves no ice.
+     * Share of the cell under ice, 0 to 1, by the present weather. Freezing rain leaves no ice where boxes that stand
+     * still keep it off.
      */
     float ice;
 } wk_ground_cell;
 
 /**
- * Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before; NULL leaves
- * level ground everywhere. Setting the same grid again keeps its water, even with other classes; a different grid
- * starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an error.
+ * Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. With NULL
+ * the ground is level everywhere. Setting the same grid again keeps its water, even with other classes; a different
+ * grid starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an
+ * error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API
-wk_status wk_context_set_ground_grid(wk_context *context,
-                                     const wk_ground_grid *ground_grid);
+WK_API wk_status wk_context_set_ground_grid(wk_context *context, const wk_ground_grid *ground_grid);
 
 /**
  * Copies the water of the cells of a wk_ground_grid as of wk_context_get_state_time, in the order of the heights. For
@@ -7073,9 +7149,9 @@ typedef struct wk_ground_texture {
     /** Height, texels: the number of nodes of a grid to the north, or 512 for tiles. */
     uint32_t height;
     /**
-     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
-     * (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
-     * includes the camera's position.
+     * Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give the texture
+     * coordinates u and v of the place. (0, 0) is the south-western corner of the first texel. For single precision,
+     * see uv_from_world of wk_cloud_shadows.
      */
     double uv_from_world[2][4];
     /**
@@ -7101,12 +7177,13 @@ typedef struct wk_ground_texture {
 }
 
 /**
- * Gets the native texture of the water on a wk_ground_grid, up to date: call it after each wk_context_update. It costs
- * nothing if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a
- * wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue or context. The
- * texture belongs to the context and stays the same until you set or load another grid, or none; before you do so,
- * wait for GPU work that samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
- * calls, and you may copy from it. It has no mipmaps; choose filter and wrap yourself.
+ * Gets the native texture of the water on a wk_ground_grid, up to date. Call this function after each
+ * wk_context_update; the call costs nothing if nothing has changed. Changes come at most once every 10 s of simulation
+ * time. This call, or a wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue
+ * or context. The texture belongs to the context and stays the same until you set or load another grid, or none;
+ * before you do so, wait for GPU work that samples the texture. In Vulkan it is in
+ * VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It has no mipmaps; choose filter
+ * and wrap yourself.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_UNSUPPORTED on an own device, where the host has no
  * shaders.
@@ -7119,9 +7196,9 @@ wk_status wk_context_get_ground_texture(wk_context *context,
  * Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
  * The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
  * middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
- * neither water nor snow. Call it after each wk_context_update; with several cameras, call it before you draw each
- * one. The call costs nothing if nothing has changed; after a move it uploads the whole window. Both textures stay the
- * same as long as the context lives.
+ * neither water nor snow. Call this function after each wk_context_update; with several cameras, call it before you
+ * draw the picture of each one. The call costs nothing if nothing has changed; after a move it uploads the whole
+ * window. Both textures stay the same as long as the context lives.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
  * window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
@@ -7152,8 +7229,8 @@ wk_status wk_ground_texture_init(wk_ground_texture *out,
  * ====================================================================================================
  * [snowpack] Lying snow
  *
- * The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it
- * (wk_weather.surface_snow_depth_m), on surfaces that face up: first in patches, then everywhere. With
+ * The stage SURFACE draws snow onto the host's surfaces that face up, as deep as the weather reports it
+ * (wk_weather.surface_snow_depth_m). Shallow snow lies in patches, deeper snow everywhere. With
  * WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a simulated state: it falls, settles, drifts, slides,
  * melts into the ground's water and refreezes. The state covers level, open ground and each cell of the host's terrain
  * (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it. Standing boxes
@@ -7288,12 +7365,12 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * ====================================================================================================
  * [terrain] Terrain in tiles
  *
- * The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
- * aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
- * and removed, and rectangles of their cells changed. The cost of a change grows with the rectangle, so an excavator's
- * bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
- * has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
- * ground. A context has either tiles or one wk_ground_grid.
+ * The host can describe its terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is
+ * horizontal and aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole.
+ * Tiles can be added and removed, and rectangles of their cells changed. The cost of a change grows with the
+ * rectangle, so an excavator's bucket may dig in every frame. Water, the wind field and queries read the tiles. With
+ * WK_GROUND_SIMULATED each cell has its own water, and hollows join across the borders of tiles; with
+ * WK_GROUND_REPORTED tiles are as wet as level ground. A context has either tiles or one wk_ground_grid.
  *
  * The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
  * queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
@@ -7316,7 +7393,7 @@ typedef struct wk_terrain {
     const void *next;
     /**
      * Position of the south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin. Heights
-     * of cells count from its height. Default 0, 0, 0.
+     * of cells are relative to the height of this position. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between cells, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear. */
@@ -7424,13 +7501,13 @@ typedef struct wk_terrain_drawing {
     const void *next;
     /**
      * Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
-     * default 1. It sets the distance that each level of detail reaches, in [40, 160] sides of its squares. Ground so
-     * rough that it would need a longer reach is drawn with a larger error.
+     * default 1. It sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the
+     * level's squares. Ground so rough that it would need a longer reach is drawn with a larger error.
      */
     double error_px;
     /**
      * Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
-     * [100, 1e5], default 1e4. Nearer shadows are sharper the shorter it is. A view with shadows holds up to 34 MB
+     * [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to 34 MB
      * more.
      */
     double shadows_to_m;
@@ -7449,7 +7526,7 @@ typedef struct wk_terrain_drawing {
 typedef struct wk_terrain_point {
     /**
      * Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
-     * four cells is split from its south-western to its north-eastern cell. 0 where there is none.
+     * four cells is split from its south-western to its north-eastern cell. 0 where there is no ground.
      */
     double height_m;
     /** Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground. */
@@ -7468,16 +7545,20 @@ typedef struct wk_terrain_point {
 } wk_terrain_point;
 
 /**
- * Sets the lattice of a terrain in tiles, at first without tiles. It replaces all tiles or the wk_ground_grid set
- * before; NULL leaves no tiles. Setting the present lattice again keeps its tiles. Unchanged after an error.
+ * Sets the lattice of a terrain in tiles, at first without tiles. The lattice replaces all tiles or the wk_ground_grid
+ * set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles. Unchanged
+ * after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API wk_status wk_context_set_terrain(wk_context *context, const wk_terrain *terrain);
+WK_API
+wk_status wk_context_set_terrain(wk_context *context,
+                                 const wk_terrain *terrain);
 
 /**
  * Adds a tile, or replaces the values of all cells of an existing tile. A new tile begins as wet as level ground; an
- * existing one keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+ * existing one keeps its water. The call takes some tens of milliseconds for 256 x 256 cells. Unchanged after an
+ * error.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
  * cells than a terrain may have.
@@ -7496,7 +7577,7 @@ wk_status wk_context_update_terrain(wk_context *context,
                                     const wk_terrain_cells *terrain_cells);
 
 /**
- * Removes a tile and the water on it. Where it was, water of the other tiles runs off.
+ * Removes a tile and the water on it. Water of the other tiles runs off where the tile was.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
  */
@@ -7591,7 +7672,7 @@ wk_status wk_terrain_cells_init(wk_terrain_cells *out,
  * ====================================================================================================
  */
 
-/** Flags of the optional fields of a wk_sea that are set. */
+/** Flags that say which optional fields of a wk_sea are set. */
 typedef uint32_t wk_sea_has_flags;
 
 /** fetch_m */
@@ -7657,7 +7738,7 @@ typedef struct wk_sea_swell {
     double height_m;
     /** Peak period, s. Range [1, 30], default 10. */
     double period_s;
-    /** Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0. */
+    /** Direction that the swell comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double from_deg;
     /** Directional width, degrees. Range [1, 60]; 0, the default, means 15. */
     double spread_deg;
@@ -7683,8 +7764,9 @@ typedef struct wk_sea_wave {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Height from trough to crest, m. Range [0, 40], default 0. The steepnesses of all such waves together are at most
-     * 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
+     * Height from trough to crest, m. Range [0, 40], default 0. The steepness of a wave is height / length / tanh(2 pi
+     * depth / length). The sum of the steepnesses of all single waves is at most 0.142: steeper waves break (Miche
+     * 1944).
      */
     double height_m;
     /** Wave length, m. Range [0.1, 2000]; 0, the default, if you set period_s instead. */
@@ -7836,7 +7918,7 @@ typedef struct wk_sea {
 /** Kind of water inside a region. */
 typedef uint32_t wk_sea_region_kind;
 
-/** No water: inside a hull or an empty dock. Such a region counts before all others. */
+/** No water: inside a hull or an empty dock. Such a region takes precedence over all others. */
 #define WK_SEA_REGION_DRY 0
 /** The sea with lower waves: a harbour. */
 #define WK_SEA_REGION_SHELTERED 1
@@ -7852,9 +7934,9 @@ typedef struct wk_sea_region {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Corners of the outline, in either direction around it. Each corner is two numbers: the distance from the centre
-     * to the right of the heading, and along it, m, within 1e6. The outline must not cross or touch itself. Read
-     * during the call only.
+     * Corners of the outline, in clockwise or counter-clockwise order. Each corner is two numbers: its distances from
+     * the centre to the right of the heading and along the heading, m, within 1e6. The outline must not cross or touch
+     * itself. Read during the call only.
      */
     const double (*corners_m)[2];
     /** Number of corners, [3, 64]. Default 0; must be given. */
@@ -7912,8 +7994,9 @@ typedef struct wk_sea_region {
 }
 
 /**
- * A hull that moves through the water and raises a wake: waves of its bow and its stern by its length, beam, draught
- * and speed (Michell 1898), and the foam of its wash. It goes on at its speed and rate of turn until it is set anew.
+ * A hull that moves through the water and raises a wake. The waves of its bow and stern follow from its length, beam,
+ * draught and speed (Michell 1898); the wake also has the foam of its wash. The hull goes on at its speed and rate of
+ * turn until it is set anew.
  */
 typedef struct wk_sea_hull {
     /** sizeof(wk_sea_hull) of your header. */
@@ -7924,7 +8007,7 @@ typedef struct wk_sea_hull {
     const void *next;
     /** Your number for the hull; no two hulls of a list have the same. Default 0. */
     uint32_t id;
-    /** 0. */
+    /** Must be 0. */
     uint32_t reserved0;
     /** Length of the waterline, m. Range [1, 500], default 30. */
     double length_m;
@@ -8006,7 +8089,7 @@ typedef struct wk_sea_state {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Level without waves, m above mean sea level: the mean level and the tide. */
+    /** Level without waves, m above mean sea level: the mean level plus the tide. */
     double level_m;
     /**
      * Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
@@ -8073,8 +8156,8 @@ wk_status wk_context_set_sea(wk_context *context,
 
 /**
  * Replaces the list of regions, at most 64; count 0 removes all. Regions move at their velocity and rate of turn by
- * themselves: set them again when these change. Where regions overlap, the later one in the list counts, but a dry one
- * counts before all others. Part of the saved state. Unchanged after an error.
+ * themselves: set them again when these change. Where regions overlap, the last one in the list applies, but a dry one
+ * takes precedence over all others. Part of the saved state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for an outline that crosses itself.
  */
@@ -8086,10 +8169,11 @@ wk_status wk_context_set_sea_regions(wk_context *context,
 
 /**
  * Replaces the list of hulls that raise wakes; count 0 removes all. At most 64. A hull goes on at its speed and rate
- * of turn: set the list again when these change, in every frame if you like. A hull whose id was in the list before
- * goes on with its track, unless it stands more than two of its lengths beside it. The waves of a hull that is no
- * longer in the list stay until they have faded, after 240 s at most. Wakes are in the picture and in the answers of
- * wk_context_get_sea_at; there, a hull inside a dry region does not feel its own. Keep water out of the hull by a dry
+ * of turn: set the list again when these change, in every frame if you like. A hull whose id was in the previous list
+ * continues its track, unless its new position is more than two of its lengths from where that track would have led.
+ * The waves of a hull that is no longer in the list stay until they have faded, after 240 s at most. Wakes are in the
+ * picture and in the answers of wk_context_get_sea_at. In the answers for a place inside a dry region, the wake of the
+ * hull at this place is left out, so that a hull does not float by its own waves. Keep water out of the hull by a dry
  * region (wk_context_set_sea_regions). Part of the state that wk_context_save keeps. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for two hulls with the same id.
@@ -8102,14 +8186,14 @@ wk_status wk_context_set_sea_hulls(wk_context *context,
 
 /**
  * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
- * them. The height of a position does not count. There is no water where the terrain's tiles lie above the surface,
- * except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of the
- * water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of the
- * shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+ * them. The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of
+ * the sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those
+ * of the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length
+ * of the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
  * `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
- * of your header for points. The first call for a time costs some milliseconds; the sums of the last two times are
- * kept, and each place then costs some microseconds. No device is needed, and nothing is allocated after the first
- * calls.
+ * of your header for points. The first call for a time costs some milliseconds; the results for the last two times are
+ * kept, and each place then costs some microseconds. No work of the GPU is needed, and nothing is allocated after the
+ * first calls.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
  * wk_context_get_conditions.
@@ -8171,15 +8255,15 @@ WK_API wk_status wk_sea_state_init(wk_sea_state *out, uint32_t struct_size);
  * ====================================================================================================
  * [soil] Soil
  *
- * Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
- * undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind use
- * the sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond
- * it, heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by
+ * Soil is ground that tools dig, carry, heap and press, on the host's tiles (wk_context_set_terrain). The tiles are
+ * the undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind
+ * use the sum. Mass is counted in whole micrograms and never lost. Walls up to their critical height stand, and higher
+ * ones fall. Heaps rest at their angle of repose. Rain and frost change the ground. The state is advanced by
  * wk_context_update, saved and hashed with the context. It depends on the timed poses of the tools, not on the frame
  * rate: send each pose before the update that reaches its time.
  *
- * A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
- * are 1/64 s long. docs/soil.md shows how to dig.
+ * A host with physics or a network of its own gets the changes of the ground from wk_context_get_soil_changes. The
+ * steps of the soil are 1/64 s long. docs/soil.md shows how to dig.
  * ====================================================================================================
  */
 
@@ -8251,9 +8335,12 @@ typedef struct wk_soil_kind {
  */
 typedef uint32_t wk_soil_kind_id;
 
-/** Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees. */
+/**
+ * Moist sand: density of the bank (undisturbed soil) 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa,
+ * friction 28 degrees.
+ */
 #define WK_SOIL_SAND 0
-/** Dry gravel, with the same five values: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
+/** Dry gravel, with its values in the same order: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees. */
 #define WK_SOIL_GRAVEL 1
 /** Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees. */
 #define WK_SOIL_CLAY 2
@@ -8278,7 +8365,7 @@ typedef struct wk_soil {
     uint32_t own_kind_count;
     /** Bytes from one kind to the next: sizeof(wk_soil_kind) of your header, which is the default. */
     uint32_t own_kind_stride;
-    /** Your own kinds; their numbers follow those of the built-in ones. Copied. Default NULL. */
+    /** Your own kinds; their numbers follow those of the built-in ones. Copied by the call. Default NULL. */
     const wk_soil_kind *own_kinds;
     /** Number of layers, at most 8. Default 0: 0.3 m of topsoil on loam. */
     uint32_t horizon_count;
@@ -8286,10 +8373,10 @@ typedef struct wk_soil {
     uint32_t reserved0;
     /**
      * Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
-     * 1000. Copied. Default NULL.
+     * 1000. Copied by the call. Default NULL.
      */
     const double *horizon_tops_m;
-    /** Kind of each layer, a wk_soil_kind_id. Copied. Default NULL. */
+    /** Kind of each layer, a wk_soil_kind_id. Copied by the call. Default NULL. */
     const wk_soil_kind_id *horizon_kinds;
     /**
      * Share of the pores of the bank that water fills before rain and sun change it. Range [0, 1], default 0.3, moist.
@@ -8322,9 +8409,9 @@ typedef uint32_t wk_soil_tool_shape;
 #define WK_SOIL_TOOL_BLADE 1
 /** Bed of a truck: catches what falls into it, carries and pours, but does not cut. */
 #define WK_SOIL_TOOL_BED 2
-/** Wheel: its edge is the line of contact, across its track. */
+/** Wheel: its edge is the line of contact with the ground, across the wheel's width. */
 #define WK_SOIL_TOOL_WHEEL 3
-/** Crawler track: its edge is the line under its middle, across its track. */
+/** Crawler track: its edge is the line under the track's middle, across its width. */
 #define WK_SOIL_TOOL_TRACK 4
 
 /** A tool that works the soil. */
@@ -8425,17 +8512,17 @@ typedef struct wk_soil_tool_report {
     const void *next;
     /** Simulation time of the tool's pose, s. */
     double time_s;
-    /** Mass held, kg. */
+    /** Mass of the soil in the tool, kg. */
     double mass_kg;
-    /** Bulk volume held, m^3. */
+    /** Bulk volume of the soil in the tool, m^3. */
     double bulk_m3;
-    /** Bulk volume held over the rated volume with its heap. */
+    /** Ratio of bulk_m3 to the rated volume of the tool with its heap. */
     double fill;
-    /** Centre of the soil held, in the host's world, m. */
+    /** Centre of the soil in the tool, in the host's world, m. */
     double centre_m[3];
-    /** Mass of each kind held, kg, by the kind's number. */
+    /** Mass of each kind of soil in the tool, kg, by the kind's number. */
     double kinds_kg[16];
-    /** Share of the pores of the held soil that water fills, 0 to 1; 0 when empty. */
+    /** Share of the pores of the soil in the tool that water fills, 0 to 1; 0 if the tool is empty. */
     double saturation;
     /** Mean depth of the cut, m. */
     double cut_depth_m;
@@ -8444,11 +8531,11 @@ typedef struct wk_soil_tool_report {
     /** Kind that makes up most of the soil that was cut. */
     wk_soil_kind_id cut_kind;
     /**
-     * 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
-     * from sinkage numbers that hold for a small range only; else 0.
+     * 1 if the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or if it
+     * comes from sinkage numbers that hold for a small range only; else 0.
      */
     uint32_t sinkage_is_beyond_range;
-    /** 1 where the edge met frozen ground, which it cannot cut; else 0. */
+    /** 1 if the edge met frozen ground, which it cannot cut; else 0. */
     uint32_t is_stopped_by_frost;
     /** Always 0. */
     uint32_t reserved0;
@@ -8514,11 +8601,14 @@ typedef struct wk_cutting_force {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation of Reece and McKyes. */
+    /**
+     * Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation at
+     * wk_context_get_soil_resistance.
+     */
     double force_n;
-    /** Part of the whole force against the motion, N. */
+    /** Component of the total force against the motion, N. */
     double horizontal_n;
-    /** Part that pulls the blade down, N; negative where soil lifts it. */
+    /** Component of the total force that pulls the blade down, N; negative where soil lifts it. */
     double vertical_n;
     /** Angle of the plane of failure to the horizontal, degrees. */
     double failure_deg;
@@ -8547,7 +8637,7 @@ typedef struct wk_soil_point {
     double loose_kg_m3;
     /** Revision of the terrain at the last change by soil near this place; 0 where nothing was dug. */
     uint64_t revision;
-    /** Kind on the surface. */
+    /** Kind of soil on the surface. */
     wk_soil_kind_id kind;
     /** 1 if the cell has ground; all other fields are 0 otherwise. */
     uint32_t has_ground;
@@ -8640,8 +8730,9 @@ wk_status wk_context_add_soil_tool(wk_context *context,
  * with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
  * after the last one. Its edge must stay over tiles. Unchanged after an error.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
- * that has ended, without soil, and while steps of an update remain.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for a pose that is not
+ * later than the last pose and the last update, for a tool that has ended, without soil, and while steps of an update
+ * remain.
  */
 WK_API
 wk_status wk_context_move_soil_tool(wk_context *context,
@@ -8649,8 +8740,8 @@ wk_status wk_context_move_soil_tool(wk_context *context,
                                     const wk_soil_pose *pose);
 
 /**
- * Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and counts as taken
- * (wk_soil_balance).
+ * Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and is added to
+ * wk_soil_balance.taken_ug.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
  * and while steps of an update remain.
@@ -8668,7 +8759,7 @@ wk_status wk_context_get_soil_tool(const wk_context *context,
                                    wk_soil_tool_report *out_report);
 
 /**
- * Gets the force on the edge of a tool that cuts as deep as in the last step, in the soil that it met there: P = w
+ * Gets the force of the soil on the edge of a tool, for the depth of the cut and the soil of the last step: P = w
  * (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
  * depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
  * the physics of your machine; 0 where the tool does not cut.
@@ -8697,7 +8788,7 @@ wk_status wk_context_bring_soil(wk_context *context,
                                 uint32_t *out_lands);
 
 /**
- * Gets the ground of the nearest cell at places of the host's world, at most wk_caps.max_batch of them.
+ * Gets the ground of the cells nearest to places of the host's world, at most wk_caps.max_batch of them.
  * `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
  * sizeof(wk_soil_point) of your header for points.
  * Thread: concurrent.

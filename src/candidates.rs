@@ -26,7 +26,7 @@ use crate::{
     stars::candidates::StarMethod,
 };
 
-/// Effects that can be drawn. New rooms add to the list.
+/// Effects that can be drawn. A room with a new effect adds a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Clear air with haze: the sky behind and the air in front of objects.
@@ -90,13 +90,13 @@ pub enum Method {
 /// One way to draw an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Effect that it draws.
+    /// Effect that the candidate draws.
     pub effect: Effect,
     /// Name, unique within the effect: lower case with hyphens.
     pub name: &'static str,
     /// Method with its settings.
     pub method: Method,
-    /// Work of drawing it.
+    /// Work of drawing by this method.
     pub work: Work,
 }
 

@@ -1,8 +1,8 @@
 //! The list of effects: the state that a context holds for each, and the part of a view that draws each.
 //!
-//! Besides the front room and the C boundary, only this file may name the effects' rooms from above them. A new effect
-//! adds a field to [`Effects`], a line in [`Effects::each`] and [`Effects::all`], and its parts to [`PARTS`]. An effect
-//! with simulation state also adds a field to [`Held`], with a line in its two lists.
+//! Of all code above the effects' rooms, only this file, the front room and the C boundary may name those rooms. A new
+//! effect adds a field to [`Effects`], a line in [`Effects::each`] and [`Effects::all`], and its parts to [`PARTS`]. An
+//! effect with simulation state also adds a field to [`Held`], with a line in [`Held::each`] and [`Held::all`].
 
 #[cfg(test)]
 pub(crate) mod plane;
@@ -244,7 +244,7 @@ pub const PARTS: &[Part] = &[
     snow::candidates::SNOW,
 ];
 
-/// Returns two parts that cost extra work where both are drawn, and this work under the lamps of a scene.
+/// Returns the two parts that cost extra work where both are drawn, and that extra work under the lamps of `scene`.
 pub(crate) fn together(scene: &Scene) -> ([&'static Part; 2], StepWork) {
     ([&sky::candidates::AIR, &fog::candidates::FOG], sky::candidates::air_before_fog_work(scene.lamps()))
 }

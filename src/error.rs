@@ -131,8 +131,8 @@ impl Error {
         self
     }
 
-    /// Returns the error as one about the text or bytes in which it was found, which were given as `parameter`. The
-    /// field inside the text stays in the sentence only.
+    /// Returns the error as one about `parameter`, the text or bytes in which the error was found. The field inside the
+    /// text stays in the sentence only.
     #[must_use]
     pub fn in_text(self, parameter: &str) -> Self {
         let inner = self
@@ -159,8 +159,8 @@ impl Error {
     /// Joins a list of errors into one error about the first one's field; returns `Ok` for an empty list.
     ///
     /// # Errors
-    /// The first error. Its sentence is followed by those of the others, or by their number where these would make it
-    /// too long.
+    /// The first error. Its sentence is followed by those of the other errors. A sentence that would become too long
+    /// ends with the number of errors left out.
     pub fn all(errors: impl IntoIterator<Item = Self>) -> Result<()> {
         let mut errors = errors.into_iter();
         let Some(mut all) = errors.next() else { return Ok(()) };
@@ -196,8 +196,8 @@ const MOST_JOINED: usize = 1500;
 /// Largest number of characters of a numeral; [`short_numerals`] rewrites longer ones.
 const MOST_NUMERAL: usize = 24;
 
-/// Rewrites long numerals of a sentence with an exponent: written out, the smallest number has 326 characters and the
-/// largest 309.
+/// Rewrites the long numerals of a sentence in exponent form: written out, the smallest number has 326 characters and
+/// the largest 309.
 fn short_numerals(sentence: String) -> String {
     let is_numeral = |c: char| c.is_ascii_digit() || c == '.';
     if !sentence.split(|c| !is_numeral(c)).any(|run| run.len() > MOST_NUMERAL) {
@@ -265,7 +265,7 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     format!("TOML parse error at line {line}, column {column}: {}", toml_message(e))
 }
 
-/// Returns the parser's message. For a number that is too large, the parser names no range; then the message is that
+/// Returns the parser's message. For a number that is too large, the parser names no range. The message then gives the
 /// range.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
     let says = |words: &str| e.message().contains(words);

@@ -51,7 +51,7 @@
 //! | noun | what it is |
 //! |---|---|
 //! | [`gpu::Device`] | a GPU, the host's own or one that Welkin opens; [`gpu`] has the kinds of host |
-//! | [`context::Context`] | weather, time, place and simulated state: the same on every channel |
+//! | [`context::Context`] | weather, time, place and simulated state, shared by all views |
 //! | [`weather::Weather`] | description of the weather, from a report, a preset or fields in SI units |
 //! | [`frame::View`] | one camera, with the data that it keeps from frame to frame |
 //! | [`frame::Frame`] | one picture: camera, the host's images, meaning of colour and depth |

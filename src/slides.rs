@@ -1,12 +1,12 @@
 //! Edge flux between the cells of a height field: how much of a granular material slides across each edge in a sweep.
 //!
-//! Material lies at rest up to the gradient tan(repose). Rules that let a cell slide to its neighbours wherever the
-//! drop between two cells is too steep judge the slope along eight directions only, and heaps become polygons: their
-//! radius is off by 7 to 33 % by azimuth. Here each edge is judged by the full gradient: with `a` the drop across the
-//! edge and `b` the mean of the four drops beside it, both over one cell, the slope is `s = sqrt(a^2 + b^2)`. Where it
-//! exceeds the gradient `t` at which the higher cell's material rests, `RATE (s - t) a / s` slides across the edge.
-//! Heaps are then round within 1 %. No pattern of cells escapes the rule, as a checkerboard escapes gradients at cells'
-//! corners.
+//! Material lies at rest up to a gradient, the tangent of its angle of repose. Rules that let a cell slide to its
+//! neighbours wherever the drop between two cells is too steep judge the slope along eight directions only, and heaps
+//! become polygons: their radius is off by 7 to 33 %, depending on the azimuth. Here each edge is judged by the full
+//! gradient: with `a` the drop across the edge and `b` the mean of the four drops beside it, both over one cell, the
+//! slope is `s = sqrt(a^2 + b^2)`. Where it exceeds the gradient `t` at which the higher cell's material rests,
+//! `RATE (s - t) a / s` slides across the edge. Heaps are then round within 1 %. No pattern of cells escapes the rule,
+//! as a checkerboard escapes gradients at cells' corners.
 //!
 //! Heights and flows are whole numbers of units in f64. Flows are truncated to whole units, so that sums are exact, and
 //! the material comes to rest. The caller moves the material, because only it knows what the material consists of.

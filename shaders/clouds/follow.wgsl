@@ -25,7 +25,7 @@ struct FollowedSquare {
 // Deviation from a plane through neighbouring squares, as a share of their range, up to which a picture counts as
 // smooth.
 const SMOOTH: f32 = 0.03;
-// Deviation from which on a picture counts as structured.
+// Deviation at which a picture counts as fully structured.
 const SHAPED: f32 = 0.1;
 
 // Degree, 0 to 1, to which luminance (x) and transmittance (y) have no structure finer than these squares. Where it is

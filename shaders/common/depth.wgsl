@@ -1,11 +1,11 @@
 // Converts a depth sample and a pixel to a ray and a distance along it. src/scene/depth.rs has the f64 reference and
-// the derivation. It also computes the constants, in f64.
+// the derivation, and computes the constants in f64.
 
 // Range of a pixel in which nothing was drawn, m.
 const RANGE_SKY: f32 = 1e12;
 
-// Kinds of depth that a pipeline must read, one bit each: 1 perspective, 2 parallel rays, 4 logarithmic. It serves
-// software drivers, which execute the code of all kinds in the shader.
+// Kinds of depth that a pipeline must read, one bit each: 1 perspective, 2 parallel rays, 4 logarithmic. The constant
+// helps software drivers, which execute the code of all kinds in the shader.
 override DEPTH_KINDS: u32 = 7u;
 
 // Rays of a camera and the inverse of its depth buffer's mapping (ViewRays in src/scene/depth.rs).
@@ -101,7 +101,8 @@ fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     return select(vec2f(clip_w - nearer / slant, slant), vec2f(distance - nearer, 1.0), parallel);
 }
 
-// Share of an object that the host's picture leaves visible at a pixel: 0 from 1/8 m behind the shown surface on.
+// Share of an object that the host's picture leaves visible at a pixel: 0 if the object is 1/8 m or more behind the
+// shown surface.
 fn share_before(shown: f32, depth: vec2f) -> f32 {
     return clamp((shown - depth.x) * (4.0 * depth.y) + 0.5, 0.0, 1.0);
 }

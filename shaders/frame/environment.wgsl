@@ -8,7 +8,7 @@ struct EnvironmentFace {
     // The face's middle, and the vectors from there to its right and lower edges (`right`, `down`); axes are east,
     // north, up.
     forward: vec3f,
-    // Texels per cd/m^2.
+    // Value of a texel per cd/m^2 of light.
     scale: f32,
     right: vec3f,
     pad0: f32,

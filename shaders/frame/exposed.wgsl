@@ -2,7 +2,7 @@
 //!include "frame/color_space.wgsl"
 //!include "between/air.wgsl"
 
-// Exposed luminance, 1 = white. For a scene-linear host it is that before the tone curve.
+// Exposed luminance, 1 = white. For a scene-linear host it is the luminance before the tone curve.
 fn exposed(host: vec3f, veil: Veil) -> f32 {
     var light = veil.light * frame.exposure;
     var behind = linear_host(host);

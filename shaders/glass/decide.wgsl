@@ -1,5 +1,5 @@
-// First half of a step: decides where each bead goes. A larger bead that touches it takes it in. Otherwise it runs if
-// gravity and air overcome the retention, and leaves small beads behind.
+// First half of a step: decides where each bead goes. A larger bead takes in a bead that it touches. Otherwise the bead
+// runs if gravity and air overcome the retention, and leaves small beads behind.
 //!include "glass/cells.wgsl"
 
 // Returns whether the bead `larger`, `offset` away, takes in the bead of `radius` (both in 1/256 cell): the two touch,

@@ -13,7 +13,7 @@ const GENTLE: f32 = 0.81;
 const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
 // Cosine of the slope above which dug soil counts as a wall; `WALL` of src/land/cells.rs is its tangent.
 const WALL: f32 = 0.78;
-// Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of it.
+// Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of this albedo.
 const DUG_VARIES: vec2f = vec2f(0.14, 0.09);
 // Index of the class of soil, of rock, and of grass.
 const SOIL: u32 = 1u;

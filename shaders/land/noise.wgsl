@@ -12,8 +12,8 @@ fn key_number(key: u32) -> f32 {
     return f32(h >> 8u) / 8388608.0 - 1.0;
 }
 
-// Value noise of four cells of a level lattice. `low` and `high` are the parts of the cells' keys by axis; `rest` is
-// that of the other axis and the seed.
+// Value noise of four cells of a level lattice. `low` and `high` are the keys of the lower and the upper cells along
+// two axes. `rest` is the key along the third axis, combined with the seed.
 fn level_noise(low: vec2u, high: vec2u, rest: u32, share: vec2f) -> f32 {
     return mix(
         mix(key_number(low.x ^ low.y ^ rest), key_number(high.x ^ low.y ^ rest), share.x),
@@ -39,11 +39,11 @@ fn octave_share(octave: Octave, footprint: f32) -> f32 {
 
 // Cell of an octave's lattice with a place in it.
 struct OctaveCell {
-    // Keys of the cell and of the next one by axis.
+    // Keys of the cell, and of the next cell along each axis.
     key: vec3u,
     next: vec3u,
     seed: u32,
-    // Place in the cell, 0 to 1, and the share of the next cell there, by axis.
+    // Place in the cell, 0 to 1, and the weight of the next cell there, along each axis.
     part: vec3f,
     share: vec3f,
 }
@@ -56,7 +56,7 @@ fn octave_cell(octave: Octave, place: vec3f) -> OctaveCell {
     return OctaveCell(key, key + AXES, u32(octave.cell.w), part, part * part * (3.0 - 2.0 * part));
 }
 
-// Octaves of clods: those of the fine noise but the longest.
+// Number of octaves of clods: all those of the fine noise but the longest.
 const CLOD_OCTAVES: u32 = 3u;
 // Height of clods over their length. The heights then have a standard deviation of 2.3 cm, a random roughness between
 // that of harrowed and of ploughed soil (Renard et al. 1997, chapter 5).

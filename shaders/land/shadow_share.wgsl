@@ -3,18 +3,18 @@
 //!include "land/uniform.wgsl"
 //!include "land/shadow_block.wgsl"
 
-// Radii of the disc in a map, texels, between which the next coarser map takes over.
+// Radii of the disc in a map, texels, between which the next coarser map replaces the map.
 const COARSER: vec2f = vec2f(6.0, 8.0);
-// Distances from a map's centre, as shares of half of its side, between which the next map takes over.
+// Distances from a map's centre, as shares of half of its side, between which the next coarser map replaces the map.
 const OUTER: vec2f = vec2f(0.85, 0.97);
 // Least cosine between a triangle and the light for which depths are compared along the triangle's plane. Below it the
 // ground is about to face away.
 const GRAZING: f32 = 0.05;
 // Distance that the ground may be off in a map that is older than the picture, texels.
 const OLDER: f32 = 0.6;
-// Comparisons across a wide penumbra.
+// Number of comparisons across a wide penumbra.
 const COMPARISONS: u32 = 16u;
-// Places at which the depth of what hides the light is read.
+// Number of places at which the depth of what hides the light is read.
 const PLACES: u32 = 10u;
 // Cosine and sine of the golden angle, and of 60 degrees.
 const GOLDEN: vec2f = vec2f(-0.73736888, 0.67549029);
@@ -50,7 +50,8 @@ fn compared(layer: u32, at: ShadowPlace, off: vec2f) -> f32 {
     return textureSampleCompareLevel(shadow_compared, shadow_sampler, at.uv + step, layer, depth);
 }
 
-// Depth of what hides the light from the plane in the middle of a texel, and 1; 0, 0 where nothing does.
+// Depth of the ground that hides the light from the triangle's plane in the middle of a texel, and 1; (0, 0) if nothing
+// hides it.
 fn hidden_by(layer: u32, at: ShadowPlace, texel: vec2i) -> vec2f {
     let side = vec2i(textureDimensions(shadow_depths));
     let depth = textureLoad(shadow_depths, clamp(texel, vec2i(0), side - 1), layer, 0).r;
@@ -102,8 +103,8 @@ fn wide_share(layer: u32, at: ShadowPlace, radius: f32, turns: u32) -> f32 {
     return sum / f32(COMPARISONS);
 }
 
-// Depths of what hides the light within a radius, texels, and their number: one in the middle, six on the rim, three
-// halfway. `turns` is PLACES, or 0 for none.
+// Sum of the depths of what hides the light within a radius, texels, and their number. They are read at one place in
+// the middle, six on the rim and three halfway. `turns` is PLACES, or 0 for none.
 fn hidden_around(layer: u32, at: ShadowPlace, radius: f32, turns: u32) -> vec2f {
     var found = vec2f(0.0);
     var towards = vec2f(radius, 0.0);
@@ -117,7 +118,7 @@ fn hidden_around(layer: u32, at: ShadowPlace, radius: f32, turns: u32) -> vec2f 
 }
 
 // Share of the disc in view, and the radius of the disc in the map as seen past what hides it, texels. Drivers that run
-// both sides of a branch pass over a loop of no turns: what a place does not need is such a loop.
+// both sides of a branch skip a loop of no turns, so each part that a place does not need gets 0 turns.
 fn map_share(layer: u32, map: Cascade, at: ShadowPlace) -> vec2f {
     let most = map.texel.z * (shadow_top(layer, at.uv) - at.depth);
     let is_near = most > 0.5;

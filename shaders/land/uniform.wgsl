@@ -1,5 +1,5 @@
-// Uniform block of the drawn terrain. Axes of the lattice are east, north and up at the terrain's origin; cells count
-// from the one below the eye.
+// Uniform block of the drawn terrain. Axes of the lattice are east, north and up at the terrain's origin; cells are
+// counted from the cell below the eye.
 
 const MATERIALS: u32 = 7u;
 const OCTAVES: u32 = 8u;
@@ -18,7 +18,7 @@ struct Octave {
     cell: vec4i,
     // Place of the eye in this cell, and cells per metre.
     place: vec4f,
-    // Cosine and sine of the octave's angle; footprints between which it fades out, m.
+    // Cosine and sine of the octave's angle; footprints of a pixel between which the octave fades out, m.
     turn: vec4f,
 }
 
@@ -32,8 +32,8 @@ struct Cascade {
     u: vec4f,
     v: vec4f,
     depth: vec4f,
-    // Distance between depth 0 and 1, m; square of the map's side over this distance; 1 over 1.2 times half of the
-    // side, 1/m; distance from the centre, along the light, at depth 0, m.
+    // x: distance between depth 0 and 1, m. y: square of the map's side, divided by this distance, m. z: 1 / (1.2 x
+    // half of the side), 1/m. w: distance from the centre, along the light, at depth 0, m.
     size: vec4f,
     // Side of a texel, in texture coordinates and in depth; radius, texels, of the disc of the light past something at
     // a depth of 1 above a place; depth per metre.
@@ -43,7 +43,8 @@ struct Cascade {
 // Constants of the shadows.
 struct LandShadow {
     cascades: array<Cascade, 4>,
-    // Light that the maps are for: 1, 0 for the sun, 0, 1 for the moon, 0, 0 without maps; number of maps.
+    // xy: light for which the maps are drawn: (1, 0) for the sun, (0, 1) for the moon, (0, 0) without maps. z: number
+    // of maps.
     shaded: vec4f,
 }
 

@@ -36,7 +36,7 @@ struct Column {
     near: f32,
     // Number of corners of a polygon; 0 for an ellipse.
     corners: u32,
-    // Later columns that may overlap it: bit `j` is set for column `j`.
+    // Later columns that may overlap this one: bit `j` is set for column `j`.
     later: u32,
     // Radius of a circle around the plan, m.
     radius: f32,

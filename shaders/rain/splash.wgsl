@@ -188,7 +188,7 @@ fn next_look(look: Look, landing: Landing) -> vec2f {
     return seen_at(vec3f(landing.xy, look.search.z)).xy;
 }
 
-// Returns the look after the depth at `ndc` has been read.
+// Returns the search for the ground after the depth at `ndc` has been read.
 fn looked(look: Look, landing: Landing, ndc: vec2f, depth: f32) -> Look {
     let seen = surface_of(ndc, depth);
     let gap = gap_of(vec3f(landing.xy, look.search.z), ndc, seen);

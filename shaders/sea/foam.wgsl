@@ -1,17 +1,17 @@
-// Foam of the sea: the share of a pixel that it covers, and how white that makes the pixel. src/sea/foam.rs has the law
+// Foam of the sea: the share of a pixel that foam covers, and how white it makes the pixel. src/sea/foam.rs has the law
 // of the share, src/sea/lace.rs the pattern by which a share is laid out.
 //!include "sea/surface.wgsl"
 
 // Reflectance of dense foam (Koepke 1984).
 const FOAM_WHITE: f32 = 0.55;
-// Mean over the area of foam of how much of the light of dense foam it has, for waves that break now and for what they
-// left: a quarter of the first and the rest of the second have 0.4, which is Koepke's mean over all ages, 0.22, over
-// 0.55.
+// Light of foam as a share of the light of dense foam, in the mean over the area of foam: for waves that break now, and
+// for the foam that they left. With a quarter of the first and three quarters of the second the mean is 0.4, which is
+// Koepke's mean over all ages, 0.22, divided by 0.55.
 const FOAM_FRESH_MEAN: f32 = 0.8;
 const FOAM_LEFT_MEAN: f32 = 0.26667;
 // Least area that a unit of the surface at rest keeps where it is compressed.
 const SEA_LEAST_AREA: f32 = 0.1;
-// Least share of a pixel under foam that is looked at.
+// Least share of a pixel under foam with which the foam is drawn.
 const FOAM_LEAST: f32 = 1e-3;
 
 // Lengths of the two patterns, m, and cosine and sine of the turn of the coarse one.
@@ -21,7 +21,7 @@ const LACE_TURN: vec2f = vec2f(0.8, 0.6);
 // Length and width of the pattern of streaks, m.
 const STREAK_LONG: f32 = 120.0;
 const STREAK_WIDE: f32 = 12.0;
-// Octaves of texels in a metre of each pattern, across streaks.
+// Binary logarithm of the texels per metre of each pattern; for streaks, across them.
 const LACE_FINE_OCTAVES: f32 = 5.321928;
 const LACE_COARSE_OCTAVES: f32 = 3.887287;
 const STREAK_OCTAVES: f32 = 4.415037;
@@ -32,8 +32,8 @@ const STREAK_FADES: vec2f = vec2f(3.5, 5.5);
 // between texels flatten them.
 const LACE_FADES: vec2f = vec2f(1.5, 4.0);
 
-// Share under foam of waves that break now, where the compression is beyond the threshold. The compression is what the
-// pixel shows, and a normal distribution for what it does not.
+// Share under foam of waves that break now, where the compression is beyond the threshold. The compression is the part
+// that the pixel shows, plus a normal distribution for the part that it does not show.
 fn breaking_share(shown: SeaSlopes) -> f32 {
     let area = compressed_area(shown.compression, sqrt(sea.compression * shown.hidden));
     return min(area / max(1.0 - shown.compression, SEA_LEAST_AREA), 1.0);
@@ -68,8 +68,8 @@ fn streak_factor(at: vec2f, octaves: f32) -> f32 {
     return mix(1.0, density, gathered);
 }
 
-// Rank of a place in the pattern: foam of a share covers the places of lower rank. It is the product of two ranks,
-// made even again, so that neither pattern shows how it repeats.
+// Rank of a place in the pattern: foam of a share covers the places of lower rank. The rank is the product of two
+// ranks, made even again, so that neither pattern shows how it repeats.
 fn lace_rank(at: vec2f, octaves: f32) -> f32 {
     let fine = sea.foam.lace.xy + at / LACE_FINE;
     let coarse = sea.foam.lace.zw + to_tile(LACE_TURN, at) / LACE_COARSE;
@@ -81,7 +81,7 @@ fn lace_rank(at: vec2f, octaves: f32) -> f32 {
 
 // Foam of a pixel.
 struct FoamCover {
-    // Share that it covers.
+    // Share of the pixel that foam covers.
     share: f32,
     // How much of the light of dense foam the pixel has.
     white: f32,

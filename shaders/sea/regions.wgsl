@@ -35,7 +35,8 @@ fn outline_place(row: u32, corners: u32, p: vec2f) -> OutlinePlace {
 // Water at a place.
 struct SeaPlace {
     has_sea: bool,
-    // Height of the waves over that on the open sea; without the sea's water that of the waves around.
+    // Ratio of the waves' height to that on the open sea. At a place without the sea's water it is that of the waves
+    // around.
     share: f32,
 }
 
@@ -54,7 +55,7 @@ fn sea_place(at: vec2f) -> SeaPlace {
             continue;
         }
         if region.kind == SHELTERED_REGION {
-            // Without a sea around it the region has no rim.
+            // A region without sea around it has no rim.
             let has_rim = place.has_sea && region.rim > 0.0;
             let deep = select(1.0, smoothstep(0.0, max(region.rim, 1e-3), sqrt(found.distance2)), has_rim);
             place.share *= mix(1.0, region.wave_share, deep);

@@ -51,7 +51,7 @@ fn footprint_at(at: vec2f) -> Footprint {
     return Footprint(toward, across / min(tilted, 1.0), across);
 }
 
-// Wave number, turns per metre, from which on no single wave is told apart in a pixel.
+// Wave number, turns per metre, above which no single wave is told apart in a pixel.
 fn last_turns(footprint: Footprint) -> f32 {
     return 0.39 / max(footprint.across, footprint.along / SEA_MOST_LENGTHENED);
 }
@@ -77,7 +77,7 @@ struct SeaVertex {
     // displacement (xx, xy, yy).
     slope: vec2f,
     squeeze: vec3f,
-    // Share under foam that waves left which broke in the last seconds.
+    // Share under foam left by waves that broke in the last seconds.
     left: f32,
 }
 
@@ -87,8 +87,8 @@ fn upper_tail(x: f32) -> f32 {
     return 1.0 / (1.0 + exp(clamp(y, -80.0, 80.0)));
 }
 
-// Area of what is compressed beyond the threshold of foam, over its area at rest, where a normal distribution of some
-// deviation is added to a known compression.
+// Area of the surface that is compressed beyond the threshold of foam, per area of the surface at rest. The compression
+// is `compression` plus a normal distribution with the deviation `deviation`.
 fn compressed_area(compression: f32, deviation: f32) -> f32 {
     let wide = max(deviation, SEA_LEAST_DEVIATION);
     let x = (sea.foam_from - compression) / wide;
@@ -96,8 +96,9 @@ fn compressed_area(compression: f32, deviation: f32) -> f32 {
     return max((1.0 - compression) * upper_tail(x) - wide * density, 0.0);
 }
 
-// Compression of the surface by a wave at four ages, for its amplitude, and sine and cosine of its phase now and of the
-// phase of a step of age. The cosines of equal steps follow from the two before (Chebyshev).
+// Compression of the surface by a wave of the amplitude `size` at four ages. `turn` has the sine and the cosine of the
+// wave's phase now, `step` those of the phase of a step of age. The cosines of equal steps follow from the two before
+// (Chebyshev).
 fn past_compression(size: f32, turn: vec2f, step: vec2f) -> vec4f {
     let double = 2.0 * step.y;
     let a = turn.y * step.y - turn.x * step.x;
@@ -120,7 +121,7 @@ fn near_turn(turns: f32) -> vec2f {
     return curve * (0.775 + 0.225 * abs(curve));
 }
 
-// Sum of the single waves, whose heights have a share of those on the open sea.
+// Sum of the single waves. `height_share` is the ratio of their heights to those on the open sea.
 fn single_waves(at: vec2f, distance: f32, footprint: Footprint, height_share: f32) -> SeaVertex {
     var out: SeaVertex;
     // Compression at four ages, and the variance of what it has of all waves.
@@ -257,7 +258,7 @@ struct SeaSlopes {
     left: vec3f,
     // Variance of the shown slopes that do not move the mesh.
     mapped: f32,
-    // Octaves of the pixel's width on the surface over a metre.
+    // Binary logarithm of the pixel's width on the surface, m.
     octaves: f32,
 }
 
@@ -280,8 +281,8 @@ fn seen_place(footprint: Footprint) -> vec2f {
     return vec2f((column + 0.5) / SEA_SEEN.x, seen_row(footprint.toward) + 0.5 / SEA_SEEN.y);
 }
 
-// Adds the single waves that the vertices have not, and the tiles, to what the vertices have of a pixel. Waves have a
-// share of their height on the open sea.
+// Slopes that a pixel shows: those at its vertices, plus those of the tiles and of the single waves that the vertices
+// lack. `height_share` is the ratio of the waves' height to that on the open sea.
 fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f, height_share: f32) -> SeaSlopes {
     let footprint = footprint_at(at);
     let along = footprint.toward * footprint.along;

@@ -22,12 +22,12 @@ struct SeaTile {
     lowering: f32,
     // 1 for a tile with waves, 0 for one without.
     is_there: f32,
-    // Octaves between a texel and a metre.
+    // Binary logarithm of the texels per metre.
     octaves: f32,
 }
 
 struct SeaFoam {
-    // Share of its first area that foam of each age has.
+    // Area of foam at each age, as a share of its first area.
     kept: vec4f,
     // Texture coordinates of the anchor in the fine pattern, and in the coarse one.
     lace: vec4f,
@@ -40,7 +40,7 @@ struct SeaFoam {
 }
 
 struct SeaUniform {
-    // From camera-relative (east, north, up) to clip space.
+    // Matrix from camera-relative (east, north, up) to clip space.
     clip: mat4x4f,
     // Place of the sea's level below the camera, camera-relative, m.
     foot: vec3f,
@@ -69,7 +69,7 @@ struct SeaUniform {
     most: f32,
     // Variance of slopes that stands for the disc of sun or moon.
     disc2: f32,
-    // Towards the sun or the moon, and its light on a surface that faces it, lux.
+    // Unit vector towards the sun or the moon, and its light on a surface that faces it, lux.
     to_lamp: vec3f,
     index: f32,
     lamp_lux: vec3f,
@@ -110,7 +110,7 @@ struct SeaWave {
 }
 
 @group(2) @binding(0) var<uniform> sea: SeaUniform;
-// From long to short.
+// Single waves, from long to short.
 @group(2) @binding(1) var<uniform> sea_waves: array<SeaWave, 512>;
 // B-spline coefficients of height and displacement along a tile's axes, m.
 @group(2) @binding(2) var sea_shapes: texture_2d_array<f32>;
@@ -139,7 +139,7 @@ struct SeaRegion {
     turn: vec4f,
     // Number of corners.
     corners: u32,
-    // Height of waves over that around the region.
+    // Ratio of the height of waves to that around the region.
     wave_share: f32,
     // Width of the band over which waves become lower, m.
     rim: f32,
@@ -153,16 +153,16 @@ struct SeaRegion {
 
 // A wake of a hull.
 struct SeaWake {
-    // Middle of a circle around all of it, and the square of its radius, m^2.
+    // Middle of a circle around the whole wake, and the square of its radius, m^2.
     middle: vec2f,
     reach2: f32,
-    // Number of states of its hull.
+    // Number of states of the wake's hull.
     states: u32,
     // Hull: length and beam of the waterline and draught, m.
     length: f32,
     beam: f32,
     draught: f32,
-    // Ages of its newest and oldest waves, s.
+    // Ages of the wake's newest and oldest waves, s.
     newest: f32,
     oldest: f32,
     // Wave number of the longest waves, turns per metre.
@@ -189,14 +189,14 @@ struct HullState {
 
 // Blocks of the mesh that are drawn together.
 struct SeaBand {
-    // Single waves that their pixels sum: index of the first, and of the one after the last.
+    // Single waves that the pixels of the blocks sum: index of the first, and of the one after the last.
     first: u32,
     last: u32,
-    // Number of regions that may lie in them.
+    // Number of regions that may lie in the blocks.
     regions: u32,
     // 1 if there is sea outside regions, 0 if not.
     is_open: u32,
-    // Number of wakes that may lie in them.
+    // Number of wakes that may lie in the blocks.
     wakes: u32,
     pad_a: u32,
     pad_b: u32,

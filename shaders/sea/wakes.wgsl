@@ -20,7 +20,7 @@ const BROKEN_SHARE: f32 = 0.6;
 const WASH_SHARE: f32 = 0.75;
 const WASH_DECAY: f32 = 10.0;
 const WASH_WIDTH: f32 = 0.45;
-// Age from which on the wash counts as gone, s.
+// Age at which the wash is taken as gone, s.
 const WASH_LASTS: f32 = 60.0;
 const WASH_SPEEDS: vec2f = vec2f(0.5, 5.0);
 const WAKE_FADES: vec2f = vec2f(0.2, 3.0);
@@ -62,14 +62,14 @@ struct HullEnd {
     age: f32,
 }
 
-// Bow or stern, which is so far ahead of the hull's middle.
+// Bow or stern, which is `off_middle` m ahead of the hull's middle.
 fn end_of(state: HullState, off_middle: f32) -> HullEnd {
     let velocity = state.velocity + vec2f(-state.ahead.y, state.ahead.x) * (state.turn * off_middle);
     let place = state.place + state.ahead * off_middle;
     return HullEnd(place, velocity, vec2f(-velocity.y, velocity.x) * state.turn, state.age);
 }
 
-// S of a place for a state, and its slope by age; passages that meet in the state have the same.
+// S of a place for a state, and the derivative of S by age. Passages that meet in the state have the same values.
 fn s_of(end: HullEnd, at: vec2f) -> vec2f {
     let to_place = at - end.place;
     let along = dot(end.velocity, to_place);

@@ -5,10 +5,10 @@
 
 // Steepest slope against the map's plane (85 degrees) at which neighbouring texels count as one surface.
 const STEEPEST: f32 = 12.0;
-// Range of a texel without a surface, which no path crosses.
+// Range of a texel without a surface: no path crosses this range.
 const NOTHING: vec2f = vec2f(1e12, -1e12);
 
-// View of a host's map, and the part of the table that it fills.
+// Camera of a host's map, and the rectangle of the table that the map fills.
 struct MapUniform {
     // Rays and depth mapping of the map.
     depth: DepthUniform,

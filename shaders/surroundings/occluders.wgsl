@@ -2,8 +2,8 @@
 // texel holds the range of distances that its surface spans, each cell of 8 x 8 and of 64 x 64 texels the range of all
 // texels in it (surroundings/occluder_map.wgsl). The path is traced from cell to cell and descends only into cells
 // whose range it meets: a path before or behind all surfaces of a cell crosses none of them. A map does not contain
-// what its surfaces hide, so a path may pass behind an edge. A map that is taken along the drops' direction of fall
-// hides nothing that they could meet.
+// surfaces that lie behind others, so a path may pass behind an edge. If a map is taken along the drops' direction of
+// fall, drops meet none of the hidden surfaces.
 
 // Whether there are any maps.
 override MAPS: bool = false;
@@ -16,15 +16,15 @@ const MAP_STEPS: u32 = 192u;
 // One map.
 struct Occluder {
     // Rows of a transform of (east, north, up, 1), relative to the camera, m. `w` gives the clip w. `x` and `y` give w
-    // times the column and w times the row in the table of ranges, texels. `distance` gives the distance from the plane
-    // of the map's camera, m.
+    // times the column and w times the row in the table of ranges, texels. `distance` gives the distance along the axis
+    // of the map's camera, m: from the middle of its near plane for parallel rays, from its position in perspective.
     x: vec4f,
     y: vec4f,
     w: vec4f,
     distance: vec4f,
     // Velocity of the map's content, (east, north, up), m/s; w is 1 if the content moves, else 0.
     velocity: vec4f,
-    // Part of the table that the map fills: its lowest corner (x, y) and its highest (z, w), texels.
+    // Rectangle of the table that the map fills: its lowest corner (x, y) and its highest corner (z, w), texels.
     part: vec4f,
 }
 

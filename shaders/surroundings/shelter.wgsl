@@ -12,7 +12,7 @@ const MAX_CUTS: u32 = 512u;
 
 // One box.
 struct Shelter {
-    // Rows of the matrix from camera-relative east, north, up (m) to the box's own space, where it spans -1 to 1.
+    // Rows of the matrix from camera-relative east, north, up (m) to the box's own space, where the box spans -1 to 1.
     rows: array<vec4f, 3>,
     // Velocity, (east, north, up), m/s; w is 1 for a box that moves, 0 for one that stands still.
     velocity: vec4f,

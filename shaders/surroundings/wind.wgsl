@@ -1,7 +1,7 @@
 // Wind that varies in space: a texture with one texel per node (src/surroundings/wind.rs). w: share of the weather's
-// wind that it replaces, 0 to 1. xyz: its velocity (east, north, up) times this share, m/s. Sample the texture at
-// `wind_place` with its sampler (linear, clamped), and pass the result to `wind_at`, which returns xyz + (1 - w)
-// weathers.
+// wind that the node's own wind replaces, 0 to 1. xyz: the node's own velocity (east, north, up) times this share, m/s.
+// Sample the texture at `wind_place` with its sampler (linear, clamped), and pass the result to `wind_at`, which
+// returns xyz + (1 - w) weathers.
 
 // Mapping from camera-relative positions to the texture.
 struct WindMap {

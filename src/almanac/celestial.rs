@@ -35,7 +35,7 @@ fn mean_obliquity_deg(t: f64) -> f64 {
 pub fn mean_sidereal_time(utc: Utc) -> f64 {
     let days = utc.julian_date() - 2_451_545.0;
     let t = days / 36_525.0;
-    // Each whole day is a whole turn and is dropped: with it the angle would grow to millions of degrees and lose ten
+    // Whole days are whole turns and are dropped. With them the angle would grow to millions of degrees and lose ten
     // bits.
     let turns = 360.0 * days.rem_euclid(1.0) + 0.985_647_366_29 * days;
     (280.460_618_37 + turns + t * t * (0.000_387_933 - t / 38_710_000.0)).rem_euclid(360.0).to_radians()

@@ -56,9 +56,9 @@ impl Geocentric {
     }
 }
 
-/// Spacing h of the knots, s. Between the middle two of four knots a cubic differs from f by at most 9/384 h^4 f''''.
-/// For the moon, whose fastest large term has a period of 9.6 days and whose mean motion has one of 27.3, that is below
-/// 1e-8 degrees (tested).
+/// Spacing h of the knots, s. Between the middle two of four knots a cubic differs from the interpolated function f by
+/// at most 9/384 h^4 f''''. The moon's fastest large term has a period of 9.6 days and its mean motion one of 27.3
+/// days, so the difference is below 1e-8 degrees (tested).
 const STEP_S: f64 = 1800.0;
 
 /// Interpolated [`Geocentric`] as a function of time; keeps the knots of the last call.

@@ -1,8 +1,8 @@
 //! Series for the position of the moon relative to the Earth's centre.
 //!
 //! After Meeus, Astronomical Algorithms (2nd ed., 1998), chapter 47, with the leading terms of Chapront's ELP 2000-82;
-//! the terms left out add up to less than 0.01 degrees and 60 km. Its arguments are D, the moon's mean elongation from
-//! the sun, M and M', the mean anomalies of sun and moon, and F, the moon's argument of latitude.
+//! the terms left out add up to less than 0.01 degrees and 60 km. The arguments of the series are D, the moon's mean
+//! elongation from the sun, M and M', the mean anomalies of sun and moon, and F, the moon's argument of latitude.
 
 use std::f64::consts::TAU;
 

@@ -27,7 +27,7 @@ pub struct MoonPosition {
     pub angular_radius: f64,
     /// Angle sun - moon - observer, rad: 0 at full moon, pi at new moon.
     pub phase_angle: f64,
-    /// Lit part of the disc, 0 to 1.
+    /// Lit share of the disc, 0 to 1.
     pub illuminated: f64,
     /// Unit vector in the plane of the disc towards the middle of the lit limb, (east, north, up).
     pub bright_limb: DVec3,

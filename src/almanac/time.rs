@@ -11,8 +11,8 @@ const JD_UNIX_EPOCH: f64 = 2_440_587.5;
 const FIRST_YEAR: f64 = -2000.0;
 const LAST_YEAR: f64 = 6000.0;
 
-/// Range of the sun's series, the years -2000 to 6000, in seconds since 1970. It ends 16 hours before the year 6000
-/// does, because terrestrial time, in which the series counts, is then 57,245 s ahead of universal time.
+/// Range of the sun's series, the years -2000 to 6000, in seconds since 1970. It ends 57,600 s (16 hours) before the
+/// year 6000 does, because the series counts in terrestrial time, which is then some 57,270 s ahead of universal time.
 pub(crate) const UTC_RANGE_S: [f64; 2] = [-125_281_123_200.0, 127_206_057_600.0];
 
 /// Years between which the difference between terrestrial and universal time is fitted to observations and simulations.
@@ -83,11 +83,12 @@ impl Utc {
         (self.julian_date() + self.delta_t_s() / 86_400.0 - 2_451_545.0) / 36_525.0
     }
 
-    /// Returns TT - UT1, s, without a step anywhere in the range: 69.1 s in 2026. For the years -500 to 3000 it comes
-    /// from the crate `solar-positioning`: the polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until
-    /// 2015, then a quartic through the observations of IERS until the middle of 2026, and a quadratic through
-    /// simulations (Agnew 2026) after that. Before and after these years it continues as the parabola of Morrison and
-    /// Stephenson (2004), 32 s per century squared for tidal friction, shifted to meet the fit.
+    /// Returns TT - UT1, s: 69.1 s in 2026. For the years -500 to 3000 it comes from the crate `solar-positioning`: the
+    /// polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a quartic through the
+    /// observations of IERS until the middle of 2026, and a quadratic through simulations (Agnew 2026) after that.
+    /// These curves meet within 0.4 s. Before and after these years the difference continues as the parabola of
+    /// Morrison and Stephenson (2004), 32 s per century squared for tidal friction, shifted to meet the fit without a
+    /// step.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
         let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);

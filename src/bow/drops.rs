@@ -11,7 +11,7 @@ use crate::{
     weather::{Conditions, Falling, GroundLayer},
 };
 
-/// Ratio of direct light to all light on level ground below which no bow shows.
+/// Largest ratio of direct light to all light on level ground with which no bow shows.
 const LEAST_DIRECT: f64 = 1e-3;
 
 /// Returns the extinction of rain by each class of drops, 1/m, where drops fall `factor` times as fast as at sea level.

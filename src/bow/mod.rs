@@ -1,5 +1,5 @@
-//! Rainbow and fogbow: two bows of light that drops send back from the sun or the moon, round the point opposite to it
-//! (the antisolar point).
+//! Rainbow and fogbow: two bows of sunlight or moonlight that drops send back, around the point opposite to the sun or
+//! the moon (the antisolar point).
 //!
 //! # Model
 //! A ray meets a drop at b radii from the drop's middle and is reflected k times inside it. The drop turns the ray by
@@ -10,9 +10,9 @@
 //! its inside.
 //!
 //! Light is a wave: the two rays that leave a drop in one direction interfere. Near the minimum their light follows
-//! Airy (1838): the smaller the drop, the wider the bow. [`mod@reference`] computes that in f64; tests compare it with
-//! Mie's theory. A [`Table`] over the angle from the antisolar point sums it over drop sizes, wavelengths and the disc
-//! of the sun or the moon.
+//! Airy (1838): the smaller the drop, the wider the bow. [`mod@reference`] computes this light in f64; tests compare it
+//! with Mie's theory. A [`Table`] over the angle from the antisolar point sums this light over drop sizes, wavelengths
+//! and the disc of the sun or the moon.
 //!
 //! The smooth phase functions of the veil already contain the light of both bows. The table therefore holds the bows
 //! less a smooth function with the same sum over all directions: a bow moves light and adds none. Fog and rain compute

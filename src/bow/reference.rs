@@ -62,7 +62,7 @@ impl Rays {
     }
 
     /// Returns the optical path, in radii, relative to that through the middle of a drop of index 1. From one ray to
-    /// the next it changes by b dD, where D is the turn.
+    /// its neighbour the path changes by b dD, where D is the turn.
     fn path(&self, b: f64) -> f64 {
         let [ci, cr] = self.cosines(b);
         2.0 * (f64::from(self.inside) + 1.0) * self.index * cr - 2.0 * ci
@@ -125,7 +125,7 @@ impl Rays {
     /// of that angle.
     ///
     /// The bright side uses the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
-    /// Nussenzveig 1974). Near the bow and on its dark side Airy's (1838) is used.
+    /// Nussenzveig 1974). Near the bow and on its dark side Airy's approximation (1838) is used.
     pub fn intensity(&self, size: f64, angle: f64, pair: Option<&Pair>) -> f64 {
         let Some(pair) = pair else {
             let (b, bend) = (self.least(), self.bend());

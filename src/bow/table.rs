@@ -41,7 +41,7 @@ pub(super) const RAIN_EDGES_MM: [f64; CLASSES] = [0.1, 0.2, 0.4, 0.8, 1.6, 6.0];
 
 /// Returns the drops of a class. Class 0 is fog: a gamma distribution with a mean diameter of 15 micrometres by
 /// extinction and an effective variance of 0.1 (Hansen and Travis 1974). The others are rain, spread evenly over the
-/// logarithm of the class's diameters, of the largest class up to 3.2 mm.
+/// logarithm of the class's diameters. In the largest class the drops are spread up to 3.2 mm only.
 fn class(i: usize) -> Class {
     if i == 0 {
         let radii_um = [4.0, 5.8, 7.5, 9.4, 12.0];
@@ -73,8 +73,9 @@ static RAYS: LazyLock<Vec<RayTable>> = LazyLock::new(|| {
     WAVELENGTHS_NM.iter().map(|nm| RayTable { wavelength_nm: *nm, bows: [of(*nm, 1), of(*nm, 2)] }).collect()
 });
 
-/// Returns the phase function of the bows of drops of a radius, micrometres, at one wavelength, 1/sr, without smoothing
-/// by the light's disc. It is relative to the whole extinction, half of which is diffraction.
+/// Returns the phase function, 1/sr, of the bows of drops with the radius `radius_um`, micrometres, at one wavelength
+/// and fine angle `j`, without smoothing by the light's disc. It is relative to the whole extinction, half of which is
+/// diffraction.
 fn bows_of(rays: &RayTable, radius_um: f64, j: usize) -> f64 {
     let size = 2.0 * PI * radius_um * 1e3 / rays.wavelength_nm;
     let of = |(rays, pairs): &(Rays, Vec<Option<Pair>>)| rays.intensity(size, fine_angle(j), pairs[j].as_ref());
@@ -125,7 +126,7 @@ fn class_table(i: usize) -> Table {
     table.map(|v| v.to_array())
 }
 
-/// Returns the table of drops in which each class has a share of the extinction.
+/// Returns the table of drops of all classes, each with its share of the extinction in `shares`.
 pub(super) fn mixed(shares: &[f64; CLASSES]) -> Table {
     static TABLES: [OnceLock<Table>; CLASSES] = [const { OnceLock::new() }; CLASSES];
     let mut sum = [[0.0; 3]; ENTRIES];

@@ -22,9 +22,10 @@ pub(crate) struct BowView {
     /// Shares of each class of drops in the extinction of the low air and of rain areas; `None` without drops.
     drops: [Option<[f64; CLASSES]>; 2],
     is_lit: bool,
-    /// Cache of each class's extinction, by rain and factor of fall speed ([`in_rain`]). `tables` caches tables by the
-    /// shares of the classes. Most frames need the same entries.
+    /// Cache of each class's extinction, by rain and factor of fall speed ([`in_rain`]). Most frames need the same
+    /// entries.
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
+    /// Cache of tables, by the shares of the classes.
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// Tables of the last draw: for the low air and for rain areas.
     shown: Box<[BowTable; 2]>,

@@ -1,4 +1,4 @@
-//! Tables of the C interface for its tests: they compare these tables with a C compiler's and with the committed lists.
+//! Tables of the C interface for its tests, which compare them with those of a C compiler and with the committed lists.
 //! Not part of the API.
 
 use super::boundary::{
@@ -17,7 +17,7 @@ pub fn functions() -> &'static [&'static str] {
 /// Name of a field, its offset and its size, bytes.
 pub type Span = (&'static str, usize, usize);
 
-/// Returns every struct of the header: name, size and alignment, bytes, and its fields.
+/// Returns every struct of the header: name, size in bytes, alignment in bytes, and fields.
 pub fn structs() -> Vec<(&'static str, usize, usize, Vec<Span>)> {
     let fields =
         |s: &'static layout::StructInfo| s.fields.iter().map(|f| (f.name, f.offset, f.count * f.kind.size())).collect();
@@ -55,17 +55,18 @@ pub fn last_status() -> i32 {
     call::last_status()
 }
 
-/// Makes the next call of this thread that reaches a device panic there.
+/// Injects a panic into the next call of this thread that reaches a device.
 pub fn panic_in_next_call() {
     call::inject(call::Injected::Panic);
 }
 
-/// Makes the next call of this thread that reaches a device find it lost, as after a reset of the driver.
+/// Injects the loss of the device, as after a reset of the driver, into the next call of this thread that reaches a
+/// device.
 pub fn lose_in_next_call() {
     call::inject(call::Injected::Loss);
 }
 
-/// Makes the next call of this thread that reaches a device log a message there.
+/// Injects a log message into the next call of this thread that reaches a device.
 pub fn log_in_next_call() {
     call::inject(call::Injected::Message);
 }

@@ -1,7 +1,7 @@
 //! Air at a height
 //!
-//! Temperature, humidity and pressure at any place and altitude, by the laws of the standard atmosphere from what the
-//! weather has at the station.
+//! Welkin computes temperature, humidity and pressure at any place and altitude from the weather's values at the
+//! station, by the laws of the standard atmosphere.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -28,7 +28,8 @@ pub struct wk_air {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Temperature, degrees Celsius: 6.5 K/km less than at the station up to 11 km above sea level, constant above.
+    /// Temperature, degrees Celsius. From that of the station it falls by 6.5 K/km up to 11 km above sea level, and is
+    /// constant above.
     pub temperature_c: f64,
     /// Relative humidity over water, 0 to 1. The density of water vapour falls by a factor e every 2 km (ITU-R P.835).
     pub relative_humidity: f64,
@@ -51,8 +52,8 @@ impl wk_air {
 }
 
 /// Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
-/// there. The altitude of the position counts. Heights up to 1 km below the station follow the same laws; lower ones
-/// have the air of 1 km below it.
+/// there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; positions below
+/// that have the air of 1 km below the station.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

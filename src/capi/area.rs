@@ -1,12 +1,13 @@
 //! Rain areas
 //!
-//! Regions with rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside a region the
-//! area's rain replaces the weather's rain and drizzle; the change is smooth over the rim, a band inside the region's
-//! border. Where areas overlap, a later one in the list covers the earlier ones. Around a camera inside an area, each
-//! place has as many drops as its own rain rate gives. From outside, an area is a shaft with falling curtains; it leans
-//! because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so does the
-//! ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area has cloud
-//! above it. wk_context_save keeps the areas.
+//! Rain areas have rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside an area its
+//! rain replaces the weather's rain and drizzle. The change is smooth over the rim, a band inside the area's border.
+//! Where areas overlap, a later one in the list covers the earlier ones. Around a camera in or near a rim, the number
+//! of drops varies from place to place with the rain rate. From outside, an area is a shaft with falling curtains; it
+//! leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so
+//! does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area
+//! with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save keeps the
+//! areas.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -35,7 +36,7 @@ pub const WK_AREA_RAIN_DRIZZLE: wk_area_rain = 2;
 
 /// Kind of snow in a rain area.
 pub type wk_area_snow = u32;
-/// None.
+/// No snow.
 pub const WK_AREA_SNOW_NONE: wk_area_snow = 0;
 /// Flakes. Not in this version.
 pub const WK_AREA_SNOW_FLAKES: wk_area_snow = 1;
@@ -46,12 +47,12 @@ pub const WK_AREA_SNOW_PELLETS: wk_area_snow = 3;
 
 /// Motion of a rain area.
 pub type wk_area_motion = u32;
-/// Motion with the wind at 10 m, gusts included (its displacement).
+/// Motion by the displacement of the wind at 10 m, gusts included.
 pub const WK_AREA_MOTION_WITH_WIND: wk_area_motion = 0;
 /// Motion at the area's own velocity.
 pub const WK_AREA_MOTION_OWN: wk_area_motion = 1;
 
-/// A region with rain of its own.
+/// An area with rain of its own.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_area {
@@ -64,11 +65,12 @@ pub struct wk_rain_area {
     /// Centre in the host's world at the time at_s, m, within 1e12 m of the origin; the height has no effect. Default
     /// 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Half extents of the ellipse to the right of the heading and along it, m. Range [10, 1e6], default 2000, 2000.
+    /// Half extents of the ellipse to the right of the heading and along the heading, m. Range [10, 1e6], default 2000,
+    /// 2000.
     pub semi_axes_m: [f64; 2],
-    /// Corners of a polygon that replaces the ellipse, in either direction around it. Each corner is two numbers: the
-    /// distance from the centre to the right of the heading, and along it, m, within 1e6. The region must be convex and
-    /// larger than 1 m^2. Default 0.
+    /// Corners of a polygon that replaces the ellipse, in clockwise or counter-clockwise order. Each corner is two
+    /// numbers: its distances from the centre to the right of the heading and along the heading, m, within 1e6. The
+    /// polygon must be convex and larger than 1 m^2. Default 0.
     pub corners_m: [f64; 16],
     /// Number of corners of the polygon, [3, 8], or 0, the default, for the ellipse.
     pub corner_count: u32,
@@ -81,8 +83,8 @@ pub struct wk_rain_area {
     pub rim_m: f64,
     /// Rain rate at the ground, mm/h; 0 makes a dry hole. Range [0, 500], default 10.
     pub rate_mm_h: f64,
-    /// Altitude of the cloud base above mean sea level (not above the ground), m. Above it neither the area's rain nor
-    /// the weather's falls. Range [-1000, 20 000], default 1500.
+    /// Altitude of the cloud base above mean sea level (not above the ground), m. Above it no rain falls inside the
+    /// area: neither the area's nor, except in the rim, the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
     /// Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0.
     pub velocity_m_s: [f64; 2],

@@ -1,7 +1,8 @@
 //! Cloud map
 //!
 //! A map of where cloud layers stand over the ground: a storm ahead of the runway, a clearing over the harbour. The map
-//! applies to pictures, shadows, the light at a place and all queries about clouds. docs/clouds.md has an example.
+//! applies to pictures, shadows, and queries of light, radiance and visibility, but not to wk_context_get_conditions
+//! and wk_context_get_cloud_slabs. docs/clouds.md has an example.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -19,9 +20,9 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
 
-/// Cover of cloud layers over each part of the ground, as a share of the cover that they have in the weather. For a
-/// layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
-/// Clouds drift across it with their wind, and grow and dissolve until the cover is that of the map. Values are
+/// Cover of cloud layers over each place of the ground, as a share of the cover that the weather gives the layers. For
+/// a layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
+/// Clouds drift across the map with their wind, and grow and dissolve until the cover is that of the map. Values are
 /// interpolated linearly between the centres of cells, and constant beyond the outermost centres.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -65,8 +66,8 @@ impl wk_cloud_map {
     };
 }
 
-/// Sets the map of cloud cover, in place of the one before; NULL removes it. Clouds change at once. Part of the saved
-/// state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+/// Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. Part of the
+/// saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -1,7 +1,8 @@
 //! Shadows of clouds as a texture
 //!
 //! A native texture for the host's own materials: the share of the direct light of the sun or moon that broken clouds
-//! let through, for all places around the camera. The published sampling function, in GLSL and WGSL, looks it up.
+//! let through, for all places around the camera. The function from wk_get_cloud_shadow_snippet, in GLSL or WGSL,
+//! samples the texture.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -47,13 +48,13 @@ pub struct wk_cloud_shadows {
     pub width: u32,
     /// Height, texels; equal to the width.
     pub height: u32,
-    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
-    /// For single precision, subtract the camera's position (x0, y0, z0) from the place. In each row (p, q, r, s), then
-    /// replace s by p x0 + q y0 + r z0 + s, computed in double precision.
+    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give the texture
+    /// coordinates u and v of the place. For single precision, subtract the camera's position (x0, y0, z0) from the
+    /// place. In each row (p, q, r, s), then replace s by p x0 + q y0 + r z0 + s, computed in double precision.
     pub uv_from_world: [[f64; 4]; 2],
     /// Row of a matrix, used like uv_from_world: it gives the height of a place above the plane, m.
     pub height_from_world: [f64; 4],
-    /// u and v of the point of the plane below the camera of the last frame.
+    /// Texture coordinates u and v of the point of the plane that was below the camera in the last frame.
     pub camera_uv: [f64; 2],
     /// Mean over all places of the share in `texture`. The direct light from wk_context_get_light includes it already:
     /// multiply that light by the place's own share / mean_share.

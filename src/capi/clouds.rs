@@ -57,7 +57,7 @@ pub unsafe extern "C" fn wk_context_set_cloud_model(
 
 /// Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
 /// place, in [0, 1]: low in the shadow of a cloud, high between two. With this share s, the direct sunlight at exactly
-/// this place is sun_lux s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
+/// this place is sun_lux * s / direct_share (wk_ground_light, wk_celestial). With WK_CLOUD_MODEL_DECK the share is the
 /// mean, wk_celestial.direct_share. The first call builds the noise field from which clouds are cut, which takes some
 /// tenths of a second.
 /// Thread: concurrent.
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
     })
 }
 
-/// Flags of the optional effects of clouds in a view.
+/// Flags of a wk_clouds.
 pub type wk_clouds_flags = u32;
 /// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
 /// shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map

@@ -38,7 +38,7 @@ pub struct wk_conditions {
     pub next: *const c_void,
     /// Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
     pub extinction_per_m: f64,
-    /// Meteorological optical range of that extinction, m; at most 1e9, which stands for no air at all.
+    /// Meteorological optical range for extinction_per_m, m; at most 1e9, the value without any air.
     pub visibility_m: f64,
     /// Air temperature at 2 m, degrees Celsius.
     pub temperature_c: f64,
@@ -58,7 +58,7 @@ pub struct wk_conditions {
     pub rayleigh_extinction_per_m: f64,
     /// Extinction by particles, at 550 nm and station height, 1/m.
     pub aerosol_extinction_per_m: f64,
-    /// Exponent of the particles' extinction: (wavelength / 550 nm)^-exponent.
+    /// Exponent of the particles' extinction, which is proportional to (wavelength / 550 nm)^-exponent.
     pub aerosol_angstrom_exponent: f64,
     /// Single-scattering albedo of the particles at 550 nm.
     pub aerosol_single_scattering_albedo: f64,
@@ -103,9 +103,9 @@ pub struct wk_conditions {
     pub wind_north_m_s: f64,
     /// Highest 3-second gust at 10 m, m/s.
     pub wind_gust_m_s: f64,
-    /// Standard deviation of speed over its mean, at 10 m.
+    /// Standard deviation of the wind's speed divided by the mean speed, at 10 m.
     pub wind_turbulence_intensity: f64,
-    /// Half the range over which the direction wanders, degrees: 0 steady, 180 all round.
+    /// Half the range over which the wind's direction wanders, degrees: 0 steady, 180 all round.
     pub wind_wander_deg: f64,
     /// Roughness length of the land, m.
     pub roughness_length_m: f64,
@@ -133,11 +133,11 @@ pub struct wk_conditions {
     pub snow_depth_m: f64,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
-    /// Part of snow_mm_h that falls as flakes, mm/h of melted water; 0 where none falls.
+    /// Flakes alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall.
     pub snow_flakes_mm_h: f64,
-    /// Part of snow_mm_h that falls as snow grains, mm/h of melted water; 0 where none falls.
+    /// Snow grains alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall.
     pub snow_grains_mm_h: f64,
-    /// Part of snow_mm_h that falls as ice crystals, mm/h of melted water; 0 where none falls.
+    /// Ice crystals alone, which snow_mm_h includes, mm/h of melted water; 0 where none fall.
     pub ice_crystals_mm_h: f64,
 }
 
@@ -299,7 +299,7 @@ impl wk_cloud_slab {
 /// (wk_context_set_weather_regions). Precipitation is that at the position itself: it includes the rain areas there
 /// (wk_context_set_rain_areas), weighted by their rims, and is zero above the cloud that it falls from. rain_mm_h and
 /// drizzle_mm_h add up to rate_mm_h of wk_context_get_rainfall_at. precipitation_extinction_per_m, extinction_per_m and
-/// visibility_m include that precipitation. All other fields are those of the station's height unless they say
+/// visibility_m include that precipitation. All other fields are for the station's height unless their descriptions say
 /// otherwise.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
@@ -323,9 +323,9 @@ pub unsafe extern "C" fn wk_context_get_conditions(
 }
 
 /// Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
-/// `*out_count` gets their number, at most 16. With capacity 0 nothing else is written, and the call succeeds. If
-/// `capacity` is too small, the call writes only the number and fails. `slab_size` is sizeof(wk_cloud_slab) of your
-/// header.
+/// The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets their number, at most 16. With
+/// capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
+/// number and fails. `slab_size` is sizeof(wk_cloud_slab) of your header.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
 #[unsafe(no_mangle)]

@@ -9,8 +9,8 @@
 //! usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
 //! degrees clockwise from true north.
 //!
-//! Altitudes count from mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m
-//! of wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
+//! Altitudes are above mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m of
+//! wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
 
 use std::{
     ffi::{c_char, c_void},
@@ -50,9 +50,10 @@ pub type wk_world_kind = u32;
 pub const WK_WORLD_FLAT: wk_world_kind = 0;
 /// East-north-up at the origin's place, with the curved planet below.
 pub const WK_WORLD_TANGENT: wk_world_kind = 1;
-/// Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin is the zero point of maps (of
-/// local cloud cover, fog patches, waves and lightning), and the place of the sunlight that dries a simulated ground
-/// (WK_GROUND_SIMULATED). Altitudes are heights above the ellipsoid less geoid_height_m.
+/// Earth-centred, Earth-fixed (WGS 84). Axes and grid bearing have no effect. The origin (latitude_deg, longitude_deg
+/// and altitude_m of wk_context_desc) is not the host's (0, 0, 0): it is the zero point of maps (of local cloud cover,
+/// fog patches, waves and lightning), and the place whose sunlight dries a simulated ground (WK_GROUND_SIMULATED).
+/// Altitudes are heights above the ellipsoid less geoid_height_m.
 pub const WK_WORLD_ECEF: wk_world_kind = 2;
 
 /// Directions of the host's axes in flat and tangent worlds.
@@ -96,11 +97,13 @@ pub struct wk_context_desc {
     pub world_kind: wk_world_kind,
     /// Directions of the host's axes. Default WK_AXES_Z_UP.
     pub axes: wk_axes,
-    /// Latitude of the host's (0, 0, 0), degrees north. Range [-90, 90], default 50.
+    /// Latitude of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, degrees north. Range [-90, 90], default 50.
     pub latitude_deg: f64,
-    /// Longitude of the host's (0, 0, 0), degrees east. Range [-360, 360], default 10.
+    /// Longitude of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, degrees east. Range [-360, 360], default
+    /// 10.
     pub longitude_deg: f64,
-    /// Altitude of the host's (0, 0, 0) above mean sea level, m. Range [-1e4, 1e9], default 0.
+    /// Altitude above mean sea level of the host's (0, 0, 0), or of the origin of WK_WORLD_ECEF, m. Range [-1e4, 1e9],
+    /// default 0.
     pub altitude_m: f64,
     /// Bearing of the world's north axis, degrees clockwise from true north. Range [-360, 360], default 0.
     pub grid_bearing_deg: f64,
@@ -120,9 +123,9 @@ pub struct wk_context_desc {
     pub utc_at_zero_s: f64,
     /// Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
     /// planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
-    /// drawn weather and those of wk_context_build_sky: the newest 32 of all programs that name the directory (2 MB
-    /// each). If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read during the call.
-    /// Default NULL: no files.
+    /// drawn weather and those of wk_context_build_sky, 2 MB each. The newest 32 stay in the directory, whichever
+    /// program wrote them. If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read
+    /// during the call. Default NULL: no files.
     pub cache_dir: *const c_char,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
     /// m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature it varies by some
@@ -258,7 +261,7 @@ pub unsafe extern "C" fn wk_context_create(
 /// Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
 /// call; NULL means the Earth. Light and queries use the new planet at once, without blending. The sky's tables follow
 /// as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
-/// top or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
+/// top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
 /// stays as it was.
@@ -296,8 +299,8 @@ pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: 
 /// the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
 /// in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
 /// sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
-/// Thread: exclusive on the context; with an OpenGL host, the thread where its context is (or can be made) current.
-/// While `progress` runs, that context is the host's.
+/// Thread: exclusive on the context; with an OpenGL host, the thread where its OpenGL context is (or can be made)
+/// current. While `progress` runs, the host may use that OpenGL context.
 /// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_build_sky(
@@ -317,7 +320,8 @@ pub unsafe extern "C" fn wk_context_build_sky(
 }
 
 /// Destroys a context. NULL does nothing.
-/// Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
+/// Thread: any. Where the host's OpenGL context is not (and cannot be made) current, GPU objects are released at a
+/// later call on the device.
 /// Errors: WK_ERROR_IN_USE while it has views.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_destroy(context: *mut wk_context) -> wk_status {

@@ -170,7 +170,8 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 
 /// Destroys a device. NULL does nothing.
 /// Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
-/// can be made) current. Elsewhere, or when the context is already gone, Welkin abandons its GPU objects.
+/// can be made) current. Elsewhere, or when the OpenGL context is already gone, Welkin abandons the device's GPU
+/// objects.
 /// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {

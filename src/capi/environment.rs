@@ -45,8 +45,8 @@ pub struct wk_environment {
     pub level_count: u32,
     /// Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces.
     pub cd_m2_per_unit: f64,
-    /// Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these are the host's
-    /// units, in the display spaces display values before the tone curve.
+    /// Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these values are in the
+    /// host's units. In the display spaces they are display values before the tone curve.
     pub light_scale: f64,
 }
 
@@ -63,10 +63,10 @@ impl wk_environment {
     };
 }
 
-/// Gets the native texture of the cube map. From the first call on, the first call of each frame with
-/// WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays the
-/// same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
-/// wk_view_record call. Call this after each frame for its scales.
+/// Gets the native texture of the cube map. Once you have called this function, the first wk_view_record of each frame
+/// with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays
+/// the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
+/// wk_view_record. Call this function after each frame to get the frame's scales.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]

@@ -1,7 +1,8 @@
 //! Fog laws of older simulators
 //!
-//! Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as before, Welkin can
-//! draw the laws of older systems instead: linear, exponential or exponential squared, by range or by plane distance.
+//! Normally fog follows from the weather and is lit by sun and sky. For pictures that must look as in an older
+//! simulator, Welkin can draw the older laws instead: linear, exponential or exponential squared, by range or by plane
+//! distance.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -40,7 +41,7 @@ pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
 /// Distance from the camera's plane, as in the oldest systems.
 pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
 
-/// Flags of the optional fields of a wk_fog_law that are set.
+/// Flags that name the optional fields of a wk_fog_law that the host has set.
 pub type wk_fog_law_has_flags = u32;
 /// color
 pub const WK_FOG_LAW_HAS_COLOR: wk_fog_law_has_flags = 1;
@@ -59,7 +60,7 @@ pub struct wk_fog_law {
     pub curve: wk_fog_curve,
     /// Measure of distance. Default WK_FOG_DISTANCE_RANGE.
     pub distance: wk_fog_distance,
-    /// Flags of the optional fields that are set. Default 0.
+    /// WK_FOG_LAW_HAS_* flags: the optional fields that the host has set. Default 0.
     pub has: wk_fog_law_has_flags,
     /// Must be 0.
     pub reserved0: u32,
@@ -149,7 +150,8 @@ pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_la
 }
 
 /// Gets the distance beyond which a fog law leaves less than 1/255 of an object's colour, m: you need not draw anything
-/// farther away. The distance is measured as the law measures it, and infinite if the law always leaves more.
+/// farther away. The distance is measured as the law says (wk_fog_distance). It is infinite if the law always leaves
+/// more.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, out_distance_m: *mut f64) -> wk_status {

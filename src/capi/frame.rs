@@ -57,23 +57,25 @@ pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
 /// Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
-/// depth that may be written. Without these, both values give the same picture.
+/// depth that may be written. Without sea and terrain, both values give the same picture.
 pub type wk_depth_access = u32;
-/// Welkin reads the depth and leaves every bit as it is. It draws nothing opaque of its own.
+/// Welkin reads the depth, leaves every bit of it as it is, and draws nothing opaque of its own.
 pub const WK_DEPTH_ACCESS_READ: wk_depth_access = 0;
 /// Welkin tests and writes the depth where it draws opaque things: the sea, and terrain (stage SURFACE, before the
-/// water on surfaces). Stencil stays. Needs depth that can be attached: a depth format, as many samples as the colour,
-/// and in Vulkan DEPTH_STENCIL_ATTACHMENT among its usage. Not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of several
-/// samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
+/// water on surfaces). The stencil stays as it is. The depth must have a depth format, as many samples as the colour,
+/// and in Vulkan the usage DEPTH_STENCIL_ATTACHMENT. This access is not possible with WK_OPENGL_MULTISAMPLE_RESOLVE of
+/// several samples, nor on an own device, whose depth is WK_FORMAT_R32_FLOAT.
 pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
 /// A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
-/// from black over blue, green, yellow and red to white. The call with the quantity's stage draws it; other calls of
-/// the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity, all is black.
+/// from black over blue, green, yellow and red to white. In the descriptions of the quantities, "a step" leads from one
+/// of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture, and
+/// other calls of the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity,
+/// all is black.
 pub type wk_diagnostic = u32;
 /// The picture itself, not in false colours.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
-/// Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more, and for the sky.
+/// Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more and for the sky.
 /// Stage MEDIUM.
 pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
 /// Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
@@ -128,7 +130,7 @@ pub struct wk_frame {
     pub frame_id: u64,
     /// Position of the camera in the host's world, m. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// Matrix from world to eye; only its rotation counts. Default identity.
+    /// Matrix from world to eye, of which only the rotation is used. Default identity.
     pub view: [f64; 16],
     /// Matrix from eye to clip space; it must be invertible. Default identity.
     pub projection: [f64; 16],
@@ -209,8 +211,9 @@ pub struct wk_own_target {
     /// Mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
     /// `color`. Default NULL.
     pub mask: *const wk_texture,
-    /// Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
-    /// default. R8_UNORM or the like, as large as `color`. Default NULL.
+    /// Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
+    /// or the context's default. WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM or WK_FORMAT_BGRA8_UNORM, as large as
+    /// `color`. Default NULL.
     pub surface_classes: *const wk_texture,
     /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
     /// formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the
@@ -251,7 +254,7 @@ pub struct wk_frame_light {
     pub next: *const c_void,
     /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
     pub direction: [f64; 3],
-    /// Direct light from that direction on a surface that faces it, after air, clouds and fog; 0 below the horizon.
+    /// Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 below the horizon.
     pub direct: [f64; 3],
     /// Light from sky, clouds and fog on level ground.
     pub ambient: [f64; 3],
@@ -274,8 +277,9 @@ impl wk_frame_light {
     };
 }
 
-/// Gets the light with which the host should light its own objects in a frame; call it before you draw them. It reads
-/// the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the target.
+/// Gets the light with which the host should light its own objects in a frame. Call this function before you draw the
+/// objects. It reads the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the
+/// target.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]

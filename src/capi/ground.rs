@@ -6,8 +6,9 @@
 //! natural and hardly mirrors: mark roads and yards as WK_SURFACE_CLASS_PAVED. The mirrored picture is the sky's. Of
 //! the host's objects, only shelters and occluder maps appear in it, as dark shapes.
 //!
-//! Wetness follows the weather of the moment (wk_conditions.wetness, .puddles). With a wk_simulation_desc in
-//! wk_context_desc.next it is instead a state that fills, drains and dries over time, and that wk_context_save keeps.
+//! Wetness follows the present weather (wk_conditions.wetness, .puddles). With WK_GROUND_SIMULATED, set by a
+//! wk_simulation_desc in wk_context_desc.next, it is instead a state that fills, drains and dries over time, and that
+//! wk_context_save keeps.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -31,8 +32,8 @@ include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
 
 /// Source of the ground's wetness.
 pub type wk_ground_model = u32;
-/// The weather of the moment: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as
-/// the rain ends.
+/// The present weather: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as the
+/// rain ends.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills pores,
 /// film and hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. After a leap of more
@@ -42,7 +43,7 @@ pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
 /// Source of the lying snow.
 pub type wk_lying_snow_model = u32;
-/// The weather of the moment: snow as deep as it reports (wk_conditions.snow_depth_m), everywhere.
+/// The present weather: snow as deep as reported (wk_conditions.snow_depth_m), everywhere.
 pub const WK_LYING_SNOW_REPORTED: wk_lying_snow_model = 0;
 /// A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
 /// and refreezes in steps of 60 s. It is simulated on level, open ground and on each cell of the host's terrain

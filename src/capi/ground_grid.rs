@@ -1,10 +1,11 @@
 //! Water on the host's terrain
 //!
-//! Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas and
-//! standing boxes (wk_context_set_shelters) determine the rain that each cell receives. Water runs off and fills the
-//! terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the water, and
-//! wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a state, which
-//! wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the hollows.
+//! Give the heights of your terrain on a grid, and Welkin computes wetness and puddles cell by cell. Rain areas, and
+//! boxes that stand still (wk_context_set_shelters), determine the rain that each cell receives. Water runs off and
+//! fills the terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the
+//! water, and wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a
+//! state, which wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the
+//! hollows.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -25,9 +26,9 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_ground_grid.rs"));
 
-/// Heights of the host's terrain on a grid that is level and aligned to true north. Each node stands for the square
-/// cell around it; water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which
-/// the picture blends over two cells.
+/// Heights of the host's terrain on a grid that is level and aligned to true north. Each node is the middle of a square
+/// cell. Water is interpolated linearly between nodes. Outside the grid lies the world's ground, into which the picture
+/// blends over two cells.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_grid {
@@ -37,8 +38,8 @@ pub struct wk_ground_grid {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Position of the south-western node in the host's world, m, within 1e12 m of the origin; the heights count from
-    /// its height. Default 0, 0, 0.
+    /// Position of the south-western node in the host's world, m, within 1e12 m of the origin. The values of heights_m
+    /// are above its height. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear.
     pub cell_m: f64,
@@ -88,8 +89,8 @@ pub struct wk_ground_cell {
     pub soaked: f32,
     /// Standing water, mm.
     pub standing_mm: f32,
-    /// Share of the cell under ice, 0 to 1, by the weather of the moment. Where standing boxes keep freezing rain off,
-    /// it leaves no ice.
+    /// Share of the cell under ice, 0 to 1, by the present weather. Freezing rain leaves no ice where boxes that stand
+    /// still keep it off.
     pub ice: f32,
 }
 
@@ -99,9 +100,10 @@ impl wk_ground_cell {
     }
 }
 
-/// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before; NULL leaves
-/// level ground everywhere. Setting the same grid again keeps its water, even with other classes; a different grid
-/// starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an error.
+/// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. With NULL
+/// the ground is level everywhere. Setting the same grid again keeps its water, even with other classes; a different
+/// grid starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an
+/// error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

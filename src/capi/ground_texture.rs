@@ -57,9 +57,9 @@ pub struct wk_ground_texture {
     pub width: u32,
     /// Height, texels: the number of nodes of a grid to the north, or 512 for tiles.
     pub height: u32,
-    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give its u and v.
-    /// (0, 0) is the south-western corner of the first texel. Single precision is enough once the fourth column
-    /// includes the camera's position.
+    /// Two rows of a matrix: multiplied by (x, y, z, 1) of a place in the host's world, m, they give the texture
+    /// coordinates u and v of the place. (0, 0) is the south-western corner of the first texel. For single precision,
+    /// see uv_from_world of wk_cloud_shadows.
     pub uv_from_world: [[f64; 4]; 2],
     /// Texture of the snow on the same grid, an object like `texture`; its channels are depth_m, density_kg_m3, wetness
     /// and albedo of wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation
@@ -82,12 +82,13 @@ impl wk_ground_texture {
     };
 }
 
-/// Gets the native texture of the water on a wk_ground_grid, up to date: call it after each wk_context_update. It costs
-/// nothing if nothing has changed. Changes come at most once every 10 s of simulation time. This call, or a
-/// wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue or context. The
-/// texture belongs to the context and stays the same until you set or load another grid, or none; before you do so,
-/// wait for GPU work that samples the texture. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
-/// calls, and you may copy from it. It has no mipmaps; choose filter and wrap yourself.
+/// Gets the native texture of the water on a wk_ground_grid, up to date. Call this function after each
+/// wk_context_update; the call costs nothing if nothing has changed. Changes come at most once every 10 s of simulation
+/// time. This call, or a wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue
+/// or context. The texture belongs to the context and stays the same until you set or load another grid, or none;
+/// before you do so, wait for GPU work that samples the texture. In Vulkan it is in
+/// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It has no mipmaps; choose filter
+/// and wrap yourself.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_UNSUPPORTED on an own device, where the host has no
 /// shaders.
@@ -112,9 +113,9 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
 /// Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
 /// The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
 /// middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
-/// neither water nor snow. Call it after each wk_context_update; with several cameras, call it before you draw each
-/// one. The call costs nothing if nothing has changed; after a move it uploads the whole window. Both textures stay the
-/// same as long as the context lives.
+/// neither water nor snow. Call this function after each wk_context_update; with several cameras, call it before you
+/// draw the picture of each one. The call costs nothing if nothing has changed; after a move it uploads the whole
+/// window. Both textures stay the same as long as the context lives.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
 /// window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.

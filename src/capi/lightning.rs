@@ -2,9 +2,10 @@
 //!
 //! A thunderstorm (WK_PRECIPITATION_THUNDERSTORM, a report with TS) flashes three times a minute in each square of 20
 //! km by 20 km. The host may set another rate, and the places of the storm cells. Every flash is a function of the
-//! context's seed, the time, the rate and the storm cells: all channels see the same flashes, and any time can be shown
-//! again. Views draw the lightning channels, the glow of clouds and air, and the light of flashes on rain and wet
-//! ground. The host queries flashes to play thunder, and their light to light its own scene:
+//! context's seed, the time, the rate and the storm cells. All channels of a simulator therefore show the same flashes,
+//! and any time can be shown again. Views draw the paths of flashes, the glow of clouds and air, and the light of
+//! flashes on rain and wet ground. The host queries flashes to play thunder, and queries their light to light its own
+//! scene:
 //!
 //! ```c
 //! wk_flash flashes[16];
@@ -14,8 +15,10 @@
 //!     play_thunder_at(flashes[i].time_s + flashes[i].thunder_delay_s, flashes[i].distance_m);
 //! ```
 //!
-//! A frame has the light of flashes from the time of the view's previous frame to its own: no flash is missed or
-//! doubled, whatever the frame rate.
+//! A frame contains the light of flashes from the time of the view's previous frame to the frame's own time. No flash
+//! is missed or drawn twice, whatever the frame rate. A frame contains the light of the last 1/60 s alone if it is the
+//! view's first one, if it has WK_FRAME_CUT or WK_FRAME_NO_HISTORY, or if time has jumped by more than 0.5 s or
+//! backwards.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -35,25 +38,25 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_lightning.rs"));
 
-/// Flags of the settings in a wk_lightning.
+/// Flags of a wk_lightning.
 pub type wk_lightning_flags = u32;
-/// flashes_per_minute: the host's rate replaces the weather's.
+/// The host's rate, flashes_per_minute, replaces the weather's.
 pub const WK_LIGHTNING_RATE: wk_lightning_flags = 1;
 
 /// Flicker of flashes in a picture.
 pub type wk_flicker = u32;
 /// Flicker as in nature: many changes of luminance a second.
 pub const WK_FLICKER_AS_IN_NATURE: wk_flicker = 0;
-/// Limited flicker, for viewers whom flicker may harm: at most three changes of luminance a second. Each drawn flash
-/// rises once and fades, and the next one comes a second later at the earliest. Queries of flashes and of their light
-/// do not change.
+/// Limited flicker, for viewers whom flicker may harm: at most three changes of luminance in any second. A drawn flash
+/// rises once and fades, which is two changes. The next drawn flash begins a second later at the earliest; flashes in
+/// between are not drawn. Queries return all flashes and all of their light.
 pub const WK_FLICKER_LIMITED: wk_flicker = 1;
 
-/// Place where a flash ends.
+/// Place where a flash ends: on the ground or in the cloud.
 pub type wk_flash_kind = u32;
-/// To the ground.
+/// The flash strikes the ground.
 pub const WK_FLASH_KIND_TO_GROUND: wk_flash_kind = 0;
-/// Within the cloud.
+/// The flash stays within the cloud.
 pub const WK_FLASH_KIND_IN_CLOUD: wk_flash_kind = 1;
 
 /// Rate and places of flashes, and how views draw them.
@@ -66,22 +69,25 @@ pub struct wk_lightning {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Flags of the settings that are set. Default 0: the rate of the weather.
+    /// WK_LIGHTNING_* flags. Default 0: the weather gives the rate.
     pub flags: wk_lightning_flags,
     /// Flicker of the drawn flashes. Default WK_FLICKER_AS_IN_NATURE.
     pub flicker: wk_flicker,
-    /// Flashes a minute in each square of 20 km by 20 km, whatever the weather; used with WK_LIGHTNING_RATE. Range [0,
-    /// 60], default 0.
+    /// Flashes a minute in each square of 20 km by 20 km, whatever the weather. The rate is used with
+    /// WK_LIGHTNING_RATE, and only if there are no `cells`, which have rates of their own. Range [0, 60], default 0.
     pub flashes_per_minute: f64,
-    /// Number of storm cells in `cells`, at most 16; they replace the weather's. Default 0.
+    /// Number of storm cells in `cells`, at most 16. If there are any, they replace the weather's storm cells. Default
+    /// 0.
     pub cell_count: u32,
     /// Number of tall objects in `masts`, at most 64. Default 0.
     pub mast_count: u32,
-    /// Five numbers for each cell: its middle in the host's world, m (the height does not matter); the distance from it
-    /// within which two of three flashes start, m, in [0, 1e5]; flashes a minute in [0, 60]. Copied. Default NULL.
+    /// Five numbers for each cell. The first three are its middle in the host's world, m; the height has no effect. The
+    /// fourth is the horizontal distance from the middle within which two thirds of the cell's flashes start, m, in [0,
+    /// 1e5]. The fifth is the number of flashes a minute, in [0, 60]. Copied by the call. Default NULL.
     pub cells: *const f64,
-    /// Three numbers for each mast: its tip in the host's world, m. Masts attract ground flashes; so do the tops of
-    /// shelters. Copied. Default NULL.
+    /// Three numbers for each mast: its tip in the host's world, m. Masts and the tops of shelters
+    /// (wk_context_set_shelters) attract ground flashes, except those that the host triggers. Copied by the call.
+    /// Default NULL.
     pub masts: *const f64,
 }
 
@@ -110,12 +116,12 @@ pub struct wk_flash_trigger {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Simulation time of its first stroke, s, not before the present. Range [-1e10, 1e10], default 0.
+    /// Simulation time of the flash's first stroke, s, not before the present. Range [-1e10, 1e10], default 0.
     pub time_s: f64,
-    /// Place where it strikes in the host's world, m; a flash within the cloud passes over it. A shelter in its path
-    /// ends it. Default 0, 0, 0.
+    /// Position in the host's world, m, that a ground flash strikes, or over which a flash within the cloud passes. A
+    /// flash that meets a shelter on its way ends there. Default 0, 0, 0.
     pub position_m: [f64; 3],
-    /// Largest peak current of its strokes, kA. Range [1, 500], or 0, the default: random.
+    /// Largest peak current of the flash's strokes, kA. Range [1, 500], or 0, the default: random.
     pub peak_ka: f64,
     /// Place where the flash ends. Default WK_FLASH_KIND_TO_GROUND.
     pub kind: wk_flash_kind,
@@ -142,22 +148,22 @@ impl wk_flash_trigger {
 pub struct wk_flash {
     /// Number that identifies the flash within the context.
     pub id: u64,
-    /// Simulation time of its first stroke, s.
+    /// Simulation time of the flash's first stroke, s.
     pub time_s: f64,
-    /// Place where it ends.
+    /// Place where the flash ends.
     pub kind: wk_flash_kind,
-    /// Number of strokes; for a flash within the cloud, number of steps of its light.
+    /// Number of strokes. For a flash within the cloud: number of pulses of light.
     pub strokes: u32,
-    /// Largest peak current of its strokes, kA.
+    /// Largest peak current of the flash's strokes or pulses, kA.
     pub peak_ka: f64,
-    /// Position where it struck, or of the middle of its path in the cloud, in the host's world, m.
+    /// Point that a ground flash struck, or middle of the path of a flash within the cloud, in the host's world, m.
     pub position_m: [f64; 3],
-    /// Distance to the nearest point of its channel, m.
+    /// Distance from the queried place to the nearest point of the flash's path, m.
     pub distance_m: f64,
     /// Unit vector towards position_m, (east, north, up) at the queried place.
     pub direction: [f64; 3],
-    /// Time from the flash to the beginning of its thunder, s: distance_m / (331.3 + 0.606 t), with the air's
-    /// temperature t in degrees Celsius.
+    /// Time from time_s to the beginning of the thunder at the queried place, s: distance_m / (331.3 + 0.606 t), with
+    /// the air's temperature t in degrees Celsius.
     pub thunder_delay_s: f64,
 }
 
@@ -190,11 +196,12 @@ pub struct wk_flash_light {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Illuminance on surfaces that face the sources, summed over all sources, lux per channel.
+    /// Illuminance that each source gives to a surface facing it, summed over all sources, lux for each of red, green
+    /// and blue (linear Rec. 709).
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,
-    /// Unit vector towards the middle of the light, (east, north, up) at the place; straight up where there is no
+    /// Mean direction towards the light: unit vector (east, north, up) at the place. Straight up where there is no
     /// light.
     pub direction: [f64; 3],
 }
@@ -211,7 +218,7 @@ impl wk_flash_light {
 }
 
 /// # Safety
-/// `p` is a `wk_lightning` whose lists are as long as they say.
+/// `p` is NULL or points to a `wk_lightning`; its lists have as many elements as its counts say.
 unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"lightning", p)? };
@@ -265,11 +272,11 @@ pub unsafe extern "C" fn wk_context_set_lightning(
     })
 }
 
-/// Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after it; there are at most
-/// 64 such flashes at a time. Unchanged after an error.
+/// Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after its time_s. At most
+/// 64 triggered flashes are kept at a time. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or for too many flashes; WK_ERROR_WRONG_ORDER for
-/// a time before the present.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or if there are too many flashes;
+/// WK_ERROR_WRONG_ORDER for a time before the present.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_trigger_flash(
     context: *mut wk_context,
@@ -293,11 +300,12 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
     })
 }
 
-/// Gets the flashes that begin between `from_s` and `until_s`, past or future, in order of time. The times are at most
-/// 3600 s apart. Only flashes within the horizontal distance `most_distance_m`, in [0, 50000] m, of the position count.
-/// `*out_count` gets their number in any case. If `capacity` is too small, nothing else is written and the call fails;
-/// with capacity 0 it succeeds. `flash_size` is sizeof(wk_flash) of your header. For times whose weather the timeline
-/// has dropped, the earliest weather that it still has applies.
+/// Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. The two
+/// times are at most 3600 s apart. Flashes that start farther from the position than `most_distance_m`, in [0, 50000]
+/// m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0 nothing else
+/// is written, and the call succeeds. If `capacity` is too small, the call writes only the number and fails.
+/// `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the call
+/// uses the earliest weather that the timeline knows.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]
@@ -333,9 +341,9 @@ pub unsafe extern "C" fn wk_context_get_flashes(
     })
 }
 
-/// Gets the light of flashes at a place of the host's world, averaged over the time `exposure_s`, in [0, 1] s, that
-/// ends at `time_s`; with 0, at that instant. Use it to light the host's own scene, with the time since its last frame
-/// as exposure.
+/// Gets the light of flashes at a place of the host's world, averaged from `time_s` - `exposure_s` to `time_s`.
+/// `exposure_s` is in [0, 1] s; with 0 the call gets the light at `time_s` itself. Use the answer to light the host's
+/// own scene, and pass the time since the host's last frame as `exposure_s`.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]

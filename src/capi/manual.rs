@@ -14,7 +14,7 @@
 //!     each frame:
 //!         wk_context_update(context, time_s);
 //!         ... the host draws its world ...
-//!         wk_view_record(view, &frame, WK_STAGE_ALL);        sky behind it, fog and air before it
+//!         wk_view_record(view, &frame, WK_STAGE_ALL);        sky behind it, fog and air in front of it
 //! ```
 //!
 //! OWNERSHIP

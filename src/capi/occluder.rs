@@ -1,12 +1,12 @@
 //! Maps of objects that keep rain off
 //!
-//! For shelter that boxes cannot describe, give up to four depth images of your world, with standing or moving objects,
-//! seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
+//! For shelter that boxes cannot describe, pass at most four depth images of your world, with standing or moving
+//! objects, seen from any direction. A drop is not drawn if its own slanted path crosses a surface in a map.
 //!
 //! A map does not show what is hidden behind its surfaces. Render it along wk_rainfall.fall_velocity_m_s, the path of
 //! the median drop. Then the hidden parts do not matter for half of the rain, and matter little for the other half.
-//! Where objects stand below others (a pier below a deck), add maps along slower drops: the same wind with fall speeds
-//! of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
+//! Where objects stand below others (a pier below a deck), add maps along the paths of slower drops, with the same wind
+//! and fall speeds of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
 //!
 //! Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
 //! issued) before the call. Afterwards the image is yours again.

@@ -14,12 +14,12 @@ use crate::{rain::Taken, scene::ClipSpace};
 
 /// Flags of a map.
 pub type wk_occluder_map_flags = u32;
-/// Its depth is reversed: 1 is near, 0 is far.
+/// The map's depth is reversed: 1 is near, 0 is far.
 pub const WK_OCCLUDER_MAP_DEPTH_REVERSED: wk_occluder_map_flags = 1;
 /// The first row of the image lies at clip y = -1. In OpenGL this is always so, and the flag need not be set.
 pub const WK_OCCLUDER_MAP_FIRST_ROW_AT_MINUS_Y: wk_occluder_map_flags = 2;
 
-/// A depth image of objects that keep rain off: one sample, from 8 to 4096 texels along either side.
+/// A depth image of objects that keep rain off: one sample in each texel, and 8 to 4096 texels along each side.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_occluder_map {
@@ -51,7 +51,7 @@ pub struct wk_occluder_map {
     pub width: u32,
     /// Height of an OpenGL host's image, texels; must equal the image's own. Default 0.
     pub height: u32,
-    /// For an OpenGL host's image: increase it when you create an object again under an old name. Default 0.
+    /// For an OpenGL host's image: increase this number when you create an object again under an old name. Default 0.
     pub generation: u64,
 }
 

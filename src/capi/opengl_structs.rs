@@ -23,14 +23,14 @@ pub type wk_opengl_make_current_fn = Option<unsafe extern "C" fn(user: *mut c_vo
 /// A context that Welkin asks for.
 pub type wk_opengl_context = u32;
 /// The context that the host draws in. With several windows, this is the context that was current when the host called
-/// Welkin; the host stores it for each thread.
+/// Welkin: the host must remember it for each thread.
 pub const WK_OPENGL_CONTEXT_HOST: wk_opengl_context = 0;
 /// The context that the host made for Welkin, sharing objects with its own.
 pub const WK_OPENGL_CONTEXT_WELKIN: wk_opengl_context = 1;
 
 /// The context that Welkin draws in.
 pub type wk_opengl_mode = u32;
-/// Its own context, which shares objects with the host's.
+/// Welkin's own context, which shares objects with the host's.
 pub const WK_OPENGL_SHARED: wk_opengl_mode = 0;
 /// The host's context, whose state Welkin restores.
 pub const WK_OPENGL_HOST_CONTEXT: wk_opengl_mode = 1;
@@ -39,7 +39,8 @@ pub const WK_OPENGL_HOST_CONTEXT: wk_opengl_mode = 1;
 pub type wk_opengl_handover = u32;
 /// By fences, as the standard requires.
 pub const WK_OPENGL_FENCE: wk_opengl_handover = 0;
-/// By a flush alone: enough, and cheaper, where one queue serves both contexts. Measure before you rely on it.
+/// By a flush alone: enough, and cheaper, where one queue serves both contexts. Check the pictures and the gain on your
+/// driver.
 pub const WK_OPENGL_FLUSH: wk_opengl_handover = 1;
 
 /// Access to a host's OpenGL: its functions, contexts and options.
@@ -102,7 +103,7 @@ pub const WK_OPENGL_FRAMEBUFFER: wk_opengl_image_kind = 3;
 pub struct wk_opengl_image {
     /// Type of the object. Default WK_OPENGL_NONE.
     pub kind: wk_opengl_image_kind,
-    /// Its OpenGL name. Default 0.
+    /// OpenGL name of the object. Default 0.
     pub name: u32,
     /// Target of a texture: GL_TEXTURE_2D (0x0DE1, the default) or GL_TEXTURE_2D_MULTISAMPLE (0x9100).
     pub target: u32,
@@ -135,7 +136,7 @@ pub struct wk_opengl_target {
     pub color: wk_opengl_image,
     /// The host's depth; none (the default) shows the sky in every pixel. If `color` is a framebuffer, use the same
     /// one, else another image. It has as many samples as `color`. If `color` has one sample (a resolved picture),
-    /// depth may have more, except on OpenGL ES; one sample of each pixel then counts.
+    /// depth may have more, except on OpenGL ES; one sample of each pixel is then used.
     pub depth: wk_opengl_image,
     /// A mask of one sample: where red is 1, the host's pixel stays; where it is 0, Welkin draws weather. Default none.
     pub mask: wk_opengl_image,
@@ -149,8 +150,8 @@ pub struct wk_opengl_target {
     pub multisample: wk_opengl_multisample,
     /// Must be 0.
     pub reserved0: u32,
-    /// A texture of one sample with each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use
-    /// wk_ground_grid or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
+    /// A texture of one sample with each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use the
+    /// class of the host's terrain or the context's default. GL_R8, GL_RGB8 or GL_RGBA8. Default none.
     pub surface_classes: wk_opengl_image,
     /// A texture of one sample with unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE):
     /// (n + 1) / 2 in GL_RGB8, GL_RGBA8 and GL_RGB10_A2, n in GL_RGB16F, GL_RGBA16F and GL_RGBA32F. Where a pixel holds

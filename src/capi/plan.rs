@@ -1,22 +1,23 @@
 //! Plan and budget of a view
 //!
 //! With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
-//! with everything and without each part of the weather, and reads the differences back some frames later, without
-//! waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again when they
-//! matter. Under a budget of time, further parts fade out until the reported times fit, starting with the parts that
-//! save the most time for the least visible loss. They come back when there is time again. After a jump of camera, sun
-//! or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//! with everything, and again without each part of the weather. It reads the differences back some frames later,
+//! without waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again
+//! when they matter. Under a budget of time, further parts fade out until the reported times fit, starting with the
+//! parts that save the most time for the least visible loss. They come back when there is time again. After a jump of
+//! camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
 //! rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
 //! wk_view_get_part_plan their names.
 //!
-//! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white), where Y' and Y are luminances after exposure
-//! with and without parts left out, as the 95th percentile over the picture's pixels. A tolerance also limits the error
-//! of the worst pixel, to ten times the tolerance.
+//! Error means the same everywhere in Welkin: |Y' - Y| / (Y + 0.01 white). Y is the luminance of a pixel in the
+//! complete picture, Y' its luminance where parts are left out, and white the luminance that the exposure shows as
+//! white. The error of a picture is the 95th percentile over its pixels. A tolerance also limits the error of the worst
+//! pixel, to ten times the tolerance.
 //!
 //! Leaving parts out changes no simulation: time, weather and state stay the same on all channels of a simulator.
-//! Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with one
+//! Channels that must also leave out the same parts pin their plan: by hand (WK_PART_WISH_HAS_RUNG), or with a plan
 //! that another view found (wk_view_save_plan, wk_view_load_plan).
 
 use std::{
@@ -49,24 +50,25 @@ pub const WK_PART_FOG: wk_part = 1;
 /// The clear sky above the horizon, behind clouds. Rungs: all, none.
 pub const WK_PART_SKY: wk_part = 2;
 /// Streaks and splashes of rain, unless the host chose the view's rain model. Rungs: drops (single ones near the
-/// camera), cones (in place of drops), none (all rain is a veil; without WK_PART_FOG no rain is drawn at all).
+/// camera), cones (in place of drops), none (all rain is extinction in the air; without WK_PART_FOG no rain is drawn at
+/// all).
 pub const WK_PART_RAIN: wk_part = 3;
 /// Stars, planets and the glow of the night sky between them. Rungs: all, none (a uniform sky of the same light).
 pub const WK_PART_STARS: wk_part = 4;
 /// Clouds, where the context draws them as a volume. Rungs: volume, deck (as WK_CLOUD_MODEL_DECK).
 pub const WK_PART_CLOUDS: wk_part = 5;
-/// Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is a veil;
-/// without WK_PART_FOG no snow is drawn at all).
+/// Flakes of falling snow, unless the host chose the view's snow model. Rungs: flakes, none (all snow is extinction in
+/// the air; without WK_PART_FOG no snow is drawn at all).
 pub const WK_PART_SNOW: wk_part = 6;
 
-/// Flags of the optional fields of a wk_part_wish that are set.
+/// Flags that say which optional fields of a wk_part_wish are set.
 pub type wk_part_wish_has_flags = u32;
 /// importance
 pub const WK_PART_WISH_HAS_IMPORTANCE: wk_part_wish_has_flags = 1;
 /// rung
 pub const WK_PART_WISH_HAS_RUNG: wk_part_wish_has_flags = 2;
 
-/// Flags of the optional fields of a wk_budget that are set.
+/// Flags that say which optional fields of a wk_budget are set.
 pub type wk_budget_has_flags = u32;
 /// tolerance
 pub const WK_BUDGET_HAS_TOLERANCE: wk_budget_has_flags = 1;
@@ -196,11 +198,11 @@ pub struct wk_plan {
     pub gave_way: wk_gave_way,
     /// Error of everything left out together: 95th percentile over the gauged pixels.
     pub error: f64,
-    /// Upper end of the 95 % confidence interval of that percentile over all pixels.
+    /// Upper end of the 95 % confidence interval of the percentile in `error` over all pixels.
     pub error_bound: f64,
     /// Error of the worst gauged pixel.
     pub worst: f64,
-    /// Work of the picture as planned, in units of one pixel without any part; 0 before the first gauge.
+    /// Work of the picture as planned, in units of the work of one pixel without any part; 0 before the first gauge.
     pub work: f64,
     /// Work of the picture with everything, in the same units.
     pub work_of_everything: f64,
@@ -238,11 +240,12 @@ pub struct wk_part_plan {
     pub reason: wk_plan_reason,
     /// Rung at which the part is drawn once fading is over; 0, all of it, if the weather does not have the part.
     pub rung: u32,
-    /// Number of its rungs.
+    /// Number of the part's rungs.
     pub rung_count: u32,
     /// Always 0.
     pub reserved: u32,
-    /// Name of the part in saved plans and messages, UTF-8. This text and the other two live as long as the process.
+    /// Name of the part in saved plans and messages, UTF-8. This text, rung_name and reason_text live as long as the
+    /// process.
     pub name: *const c_char,
     /// Name of the rung.
     pub rung_name: *const c_char,
@@ -257,8 +260,7 @@ pub struct wk_part_plan {
     pub error: f64,
     /// Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge.
     pub worst: f64,
-    /// Work that the whole part adds, or would add, to this picture with everything, in units of one pixel without any
-    /// part.
+    /// Work that the whole part adds, or would add, to this picture with everything, in the units of wk_plan.work.
     pub work: f64,
 }
 
@@ -335,9 +337,9 @@ pub unsafe extern "C" fn wk_view_set_budget(view: *mut wk_view, budget: *const w
     })
 }
 
-/// Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure it as you chose the budget: with
-/// a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses the median of the last
-/// five reports.
+/// Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure the time in the same way as you
+/// chose the budget: with a GPU timer, or around a call whose end you wait for. Under a budget of time the plan uses
+/// the median of the last five reports.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT outside of (0, 1e5] ms; nothing changes then.
 #[unsafe(no_mangle)]
@@ -397,9 +399,9 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
     })
 }
 
-/// Writes the view's plan, for wk_view_load_plan on other channels or another day: the parts that are drawn, and the
-/// settings of the sky. UTF-8 text. `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing
-/// else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
+/// Writes the view's plan as UTF-8 text: the rung of each part, and the settings of the sky. wk_view_load_plan reads
+/// the text, on other channels or on another day. `*out_size` gets the bytes needed in any case. If `capacity` is too
+/// small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
 /// each jump of camera, sun or weather.
@@ -422,9 +424,9 @@ pub unsafe extern "C" fn wk_view_save_plan(
 /// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
 /// budget stays; wk_view_set_budget removes the pins.
 /// Thread: exclusive on the view.
-/// Errors: WK_ERROR_PARSE for bytes that are no saved plan or one of another version, naming line and column or the
-/// field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs. After an error
-/// the view's plan stays as it was.
+/// Errors: WK_ERROR_PARSE for bytes that are no saved plan, or that are a plan of another version, naming line and
+/// column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs.
+/// After an error the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {

@@ -1,11 +1,12 @@
 //! Queries: light and visibility
 //!
-//! These functions answer at any place of the host's world, for the present or (functions that end in _at) for any past
-//! or future simulation time that the timeline still knows. The answers are in closed form and need no device. A sun or
-//! moon that the host has placed stands at that direction at all times. Only wk_context_get_ambient and
-//! wk_context_get_ambient_at read the sky's tables. Directions are unit vectors (east, north, up) at the queried place.
-//! Light is in lux and cd/m^2, three channels of linear Rec. 709 whose luminance-weighted sum (0.2126, 0.7152, 0.0722)
-//! is the photometric value.
+//! These functions answer for any place of the host's world. Functions that end in _at take a past or future simulation
+//! time that the timeline of the weather still knows (see wk_context_get_conditions); the others answer for the
+//! present. The answers are in closed form and need no work of the GPU, except those of wk_context_get_ambient and
+//! wk_context_get_ambient_at, which read the sky's tables. If the host has set the direction of the sun or the moon,
+//! that direction holds at all times. Directions are unit vectors (east, north, up) at the queried place. Light is in
+//! lux and cd/m^2, in three channels of linear Rec. 709. The sum of the channels with the weights 0.2126, 0.7152 and
+//! 0.0722 is the photometric value.
 //!
 //! Lists are (pointer, count, size of an element in your header). Welkin checks everything before it writes anything.
 
@@ -44,7 +45,7 @@ pub struct wk_celestial {
     pub apparent: [f64; 3],
     /// Direction in the plane of the disc towards the middle of the lit limb; for the moon.
     pub bright_limb: [f64; 3],
-    /// Illuminance above the air on a surface facing it, lux per channel.
+    /// Illuminance above the air on a surface facing the body, lux per channel.
     pub illuminance_lux: [f64; 3],
     /// Azimuth, degrees clockwise from true north, [0, 360).
     pub azimuth_deg: f64,
@@ -58,7 +59,8 @@ pub struct wk_celestial {
     pub lit: f64,
     /// Ratio of the disc's vertical to its horizontal diameter.
     pub flattening: f64,
-    /// Share of the body's direct light that passes the clouds above the place, averaged over all places at its height.
+    /// Share of the body's direct light that passes the clouds above the place, averaged over all places at the same
+    /// height.
     pub direct_share: f64,
 }
 
@@ -100,8 +102,9 @@ impl wk_celestial {
     }
 }
 
-/// Light that arrives at a place, after air, clouds and fog. Light that fog has scattered forward once counts as direct
-/// light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof instead.
+/// Light that arrives at a place, after air, clouds and fog. Light that fog has scattered almost straight on is
+/// included in the direct light of the sun or the moon. Element of an array, without struct_size; calls take its sizeof
+/// instead.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_ground_light {
@@ -261,10 +264,10 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
     Ok(time_s)
 }
 
-/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Of the clouds,
-/// only those above a place count, with their mean effect over all places at its height. `position_size` and
-/// `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
-/// sizeof(wk_ground_light) of your header for lights.
+/// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
+/// a place dim its light, by their mean over all places at the same height. `position_size` and `light_size` are the
+/// distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
+/// lights.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
@@ -403,9 +406,9 @@ unsafe fn way(
 }
 
 /// Gets the slant visual range from a place at a simulation time, m: the distance up to which a black object is seen
-/// along a direction, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance the air, fog,
-/// rain, snow and clouds drawn as a volume leave 5 % of the object's contrast, which is 5 % of the light at 550 nm.
-/// Infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
+/// along `direction`, a vector (east, north, up) at the place, of length 1 within 0.001. At that distance 5 % of the
+/// object's contrast is left, because air, fog, rain, snow and clouds drawn as a volume let 5 % of the light at 550 nm
+/// pass. The range is infinite if more than 5 % is left where the ray leaves the air or meets the planet's ground.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the direction.
 #[unsafe(no_mangle)]
@@ -430,8 +433,8 @@ pub unsafe extern "C" fn wk_context_get_visibility_at(
     })
 }
 
-/// Gets the sky's light on surfaces of any orientation at a place. It reads the sky's tables: it builds them if no
-/// frame has done so yet, and waits for the GPU once after every change of the air.
+/// Gets the sky's light on surfaces of any orientation at a place. The call reads the sky's tables. It builds them if
+/// no frame has done so yet, and waits for the GPU once after every change of the air.
 /// Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
@@ -444,8 +447,8 @@ pub unsafe extern "C" fn wk_context_get_ambient(
     unsafe { ambient("wk_context_get_ambient", context, position_m, None, out_ambient) }
 }
 
-/// Gets the sky's light as wk_context_get_ambient does, at a simulation time. The clear sky's distribution is that of
-/// the air in the present tables; its brightness, clouds and fog are those of `time_s`.
+/// Gets the sky's light as wk_context_get_ambient does, at a simulation time. The distribution of the clear sky's light
+/// over directions is that of the present tables. The sky's brightness, clouds and fog are those at `time_s`.
 /// Thread: as wk_context_get_ambient.
 /// Errors: as wk_context_get_ambient and wk_context_get_conditions.
 #[unsafe(no_mangle)]

@@ -1,13 +1,13 @@
 //! Queries: the sky's light by direction
 //!
-//! For sensors, reflections and lighting that the host computes itself: the radiance of the sky in a direction, as a
-//! picture shows it in pixels that the host did not draw. It includes the clear air, clouds as the model draws them,
-//! fog with precipitation, the glow of the night sky, and below the horizon the planet's own ground. It excludes the
-//! discs of sun and moon (wk_context_get_light has their light), stars and planets, rain areas, and everything that the
-//! host drew.
+//! These functions serve sensors, reflections and lighting that the host computes itself. They give the radiance of the
+//! sky in a direction, as a picture shows it in pixels that the host did not draw. The radiance includes the clear air,
+//! clouds as the model draws them, fog with precipitation, the glow of the night sky, and below the horizon the
+//! planet's own ground. It excludes the discs of sun and moon (wk_context_get_light has their light), stars and
+//! planets, rain areas, and everything that the host drew.
 //!
-//! The double-precision reference of the sky computes the answers on the calling thread, without the device. The first
-//! query in a new state of the air solves the reference, which takes a second or two; other threads that query
+//! The double-precision reference of the sky computes the answers on the calling thread, without work of the GPU. The
+//! first query in a new state of the air solves the reference, which takes a second or two; other threads that query
 //! meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
 //! states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
 //! from pictures.

@@ -3,8 +3,8 @@
 //! WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
 //! drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
 //! so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
-//! host's depth hides them; sky, ground, sun and lamps light them. They splash on the surfaces that the picture shows
-//! within ten metres.
+//! host's depth hides them; sky, ground, sun and lamps light them. Drops splash on the surfaces that the picture shows
+//! within ten metres of the camera.
 //!
 //! Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
 //! drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
@@ -68,7 +68,7 @@ pub struct wk_rain {
     /// Exposure time of a picture, s. Longer exposure makes streaks longer and fainter (WK_RAIN_SHUTTER_ constants).
     /// Range [1e-4, 0.1], default 1/60.
     pub shutter_s: f64,
-    /// Largest number of drops to draw; if more fall, each drawn drop stands for several. Range [1000, 8 000 000], or
+    /// Largest number of drops to draw; if more fall, each drawn drop represents several. Range [1000, 8 000 000], or
     /// 0, the default: 400 000, and 100 000 on a software driver.
     pub most_drops: u32,
     /// A WK_RAIN_MODEL_ constant; 0, the default, lets Welkin choose.

@@ -1,16 +1,16 @@
 //! Weather regions
 //!
-//! Regions with a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a shape on the
-//! ground plan, a perimeter outside it over which its weather fades into the weather around, and a wk_weather. The
-//! region's field `has` names the parts of that weather that the region takes. At each place, every query and the
-//! picture of a camera there see the merged weather. Queries between two points integrate the extinction of all regions
-//! on the way. Regions move at their own velocity, never with the wind; a host may also set them again in every frame.
-//! wk_context_save keeps them, and they are the same on every channel.
+//! Weather regions have a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a
+//! shape on the ground plan, a perimeter outside it over which its weather fades into the weather around, and a
+//! wk_weather. The region's field `has` lists the parts of that weather that hold in the region. At each place, every
+//! query and the picture of a camera there see the merged weather. Queries between two points integrate the extinction
+//! of all regions on the way. Regions move at their own velocity, never with the wind; a host may also set them again
+//! in every frame. wk_context_save keeps them, and they are the same on all channels of a simulator.
 //!
-//! Where regions overlap, a later one in the list covers the earlier ones in the parts that it has, or is averaged with
-//! them in the parts that both merge: extinction (not visibility), rates, temperatures and wind vectors, by their
-//! weights. A camera's picture shows the fog of all regions; the rest of its weather is that at the camera.
-//! docs/regions.md has the rules, and a table of what differs by place and what does not yet.
+//! Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that both
+//! regions merge are averaged by the regions' weights. The averages are those of extinction (not visibility), rates,
+//! temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its weather is that at
+//! the camera. docs/regions.md has the rules, and a table of what differs by place and what does not yet.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -80,24 +80,24 @@ pub struct wk_weather_region {
     pub next: *const c_void,
     /// Parts of `weather` that the region has. Default 0.
     pub has: wk_weather_part_flags,
-    /// Parts that are averaged with those of earlier regions that merge them too. In all other parts the region covers
-    /// what is before it in the list. Default 0.
+    /// Parts that are averaged with those of earlier regions that merge them too. In all other parts the region
+    /// replaces the earlier regions of the list. Default 0.
     pub merges: wk_weather_part_flags,
-    /// Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights
-    /// count from the station of the weather outside; station_altitude_m, the runway visual range and the ozone column
-    /// have no effect. Read during the call only.
+    /// Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights are
+    /// above the station of the weather outside; station_altitude_m, the runway visual range and the ozone column have
+    /// no effect. Read during the call only.
     pub weather: *const wk_weather,
     /// Centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no effect. Default
     /// 0, 0, 0.
     pub center_m: [f64; 3],
-    /// Half extents of an ellipse or a rectangle to the right of the heading and along it, m. Range [1, 1e6], default
-    /// 2000, 2000.
+    /// Half extents of an ellipse or a rectangle to the right of the heading and along the heading, m. Range [1, 1e6],
+    /// default 2000, 2000.
     pub half_size_m: [f64; 2],
     /// Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0.
     pub corner_radius_m: f64,
-    /// Corners of a polygon, in either direction around it, convex or not. Each corner is two numbers: the distance
-    /// from the centre to the right of the heading, and along it, m, within 1e6. The sides must not cross or touch
-    /// others, and the polygon must be larger than 1 m^2. Default 0.
+    /// Corners of a polygon, in clockwise or counter-clockwise order, convex or not. Each corner is two numbers: its
+    /// distances from the centre to the right of the heading and along the heading, m, within 1e6. The sides must not
+    /// cross or touch others, and the polygon must be larger than 1 m^2. Default 0.
     pub corners_m: [f64; 32],
     /// Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0.
     pub corner_count: u32,
@@ -144,7 +144,7 @@ impl wk_weather_region {
         vertical_wind_m_s: 0.0,
     };
 
-    /// Returns the shape, whose fields the region's own check will look at.
+    /// Returns the shape, with fields that are not checked yet.
     fn region_shape(&self) -> RegionShape {
         match self.shape {
             WK_REGION_SHAPE_RECTANGLE => {

@@ -142,17 +142,17 @@ pub struct wk_metar {
     pub runways_length: u32,
     /// Offset of the trend forecast, whose first word (NOSIG, BECMG, TEMPO) is included.
     pub trend_offset: u32,
-    /// Bytes of the trend forecast.
+    /// Length of the trend forecast, bytes.
     pub trend_length: u32,
     /// Offset of the remarks, after RMK.
     pub remarks_offset: u32,
-    /// Bytes of the remarks.
+    /// Length of the remarks, bytes.
     pub remarks_length: u32,
     /// Offset of the first word that is no group of the code.
     pub unread_offset: u32,
-    /// Bytes of that word.
+    /// Length of this first word, bytes.
     pub unread_length: u32,
-    /// Number of such words.
+    /// Number of words that are no group of the code.
     pub unread_count: u32,
     /// Always 0.
     pub reserved0: u32,
@@ -316,7 +316,7 @@ fn answer(text: &str, options: &MetarOptions, (weather, metar): ReportRoom) -> R
 /// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
 /// names.
 /// Thread: any.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a name that is not listed; the message lists them.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown name; the message lists the known ones.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_preset(
     name: *const c_char,
@@ -334,8 +334,8 @@ pub unsafe extern "C" fn wk_weather_from_preset(
     })
 }
 
-/// Gets the name and the one-line description of the preset `index`. Indices count from 0, in an order that suits a
-/// menu. Both texts live as long as the process. Either pointer may be NULL.
+/// Gets the name and the one-line description of the preset `index`. Indices begin at 0 and are in an order that suits
+/// a menu. Both texts live as long as the process. Either pointer may be NULL.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an index beyond the last preset.
 #[unsafe(no_mangle)]

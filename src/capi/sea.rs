@@ -109,8 +109,8 @@ pub unsafe extern "C" fn wk_context_set_sea(context: *mut wk_context, sea: *cons
 }
 
 /// Replaces the list of regions, at most 64; count 0 removes all. Regions move at their velocity and rate of turn by
-/// themselves: set them again when these change. Where regions overlap, the later one in the list counts, but a dry one
-/// counts before all others. Part of the saved state. Unchanged after an error.
+/// themselves: set them again when these change. Where regions overlap, the last one in the list applies, but a dry one
+/// takes precedence over all others. Part of the saved state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for an outline that crosses itself.
 #[unsafe(no_mangle)]
@@ -140,10 +140,11 @@ pub unsafe extern "C" fn wk_context_set_sea_regions(
 }
 
 /// Replaces the list of hulls that raise wakes; count 0 removes all. At most 64. A hull goes on at its speed and rate
-/// of turn: set the list again when these change, in every frame if you like. A hull whose id was in the list before
-/// goes on with its track, unless it stands more than two of its lengths beside it. The waves of a hull that is no
-/// longer in the list stay until they have faded, after 240 s at most. Wakes are in the picture and in the answers of
-/// wk_context_get_sea_at; there, a hull inside a dry region does not feel its own. Keep water out of the hull by a dry
+/// of turn: set the list again when these change, in every frame if you like. A hull whose id was in the previous list
+/// continues its track, unless its new position is more than two of its lengths from where that track would have led.
+/// The waves of a hull that is no longer in the list stay until they have faded, after 240 s at most. Wakes are in the
+/// picture and in the answers of wk_context_get_sea_at. In the answers for a place inside a dry region, the wake of the
+/// hull at this place is left out, so that a hull does not float by its own waves. Keep water out of the hull by a dry
 /// region (wk_context_set_sea_regions). Part of the state that wk_context_save keeps. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, or for two hulls with the same id.
@@ -169,14 +170,14 @@ pub unsafe extern "C" fn wk_context_set_sea_hulls(
 }
 
 /// Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
-/// them. The height of a position does not count. There is no water where the terrain's tiles lie above the surface,
-/// except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of the
-/// water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of the
-/// shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+/// them. The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of
+/// the sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those
+/// of the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length
+/// of the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
 /// `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
-/// of your header for points. The first call for a time costs some milliseconds; the sums of the last two times are
-/// kept, and each place then costs some microseconds. No device is needed, and nothing is allocated after the first
-/// calls.
+/// of your header for points. The first call for a time costs some milliseconds; the results for the last two times are
+/// kept, and each place then costs some microseconds. No work of the GPU is needed, and nothing is allocated after the
+/// first calls.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
 /// wk_context_get_conditions.
@@ -226,7 +227,7 @@ pub struct wk_sea_state {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Level without waves, m above mean sea level: the mean level and the tide.
+    /// Level without waves, m above mean sea level: the mean level plus the tide.
     pub level_m: f64,
     /// Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
     pub significant_height_m: f64,

@@ -1,4 +1,4 @@
-//! Structs of the sea: settings, regions and answers, and their numbers.
+//! Structs of the sea (settings, regions and answers) and the constants of their fields.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// Flags of the optional fields of a wk_sea that are set.
+/// Flags that say which optional fields of a wk_sea are set.
 pub type wk_sea_has_flags = u32;
 /// fetch_m
 pub const WK_SEA_HAS_FETCH: wk_sea_has_flags = 0x1;
@@ -64,7 +64,7 @@ pub const WK_WATER_TYPE_7C: wk_water_type = 7;
 
 /// Kind of water inside a region.
 pub type wk_sea_region_kind = u32;
-/// No water: inside a hull or an empty dock. Such a region counts before all others.
+/// No water: inside a hull or an empty dock. Such a region takes precedence over all others.
 pub const WK_SEA_REGION_DRY: wk_sea_region_kind = 0;
 /// The sea with lower waves: a harbour.
 pub const WK_SEA_REGION_SHELTERED: wk_sea_region_kind = 1;
@@ -85,7 +85,7 @@ pub struct wk_sea_swell {
     pub height_m: f64,
     /// Peak period, s. Range [1, 30], default 10.
     pub period_s: f64,
-    /// Direction that it comes from, degrees clockwise from true north. Range [0, 360], default 0.
+    /// Direction that the swell comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
     /// Directional width, degrees. Range [1, 60]; 0, the default, means 15.
     pub spread_deg: f64,
@@ -118,8 +118,9 @@ pub struct wk_sea_wave {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Height from trough to crest, m. Range [0, 40], default 0. The steepnesses of all such waves together are at most
-    /// 0.142, each being height / length / tanh(2 pi depth / length) (Miche 1944): steeper waves break.
+    /// Height from trough to crest, m. Range [0, 40], default 0. The steepness of a wave is height / length / tanh(2 pi
+    /// depth / length). The sum of the steepnesses of all single waves is at most 0.142: steeper waves break (Miche
+    /// 1944).
     pub height_m: f64,
     /// Wave length, m. Range [0.1, 2000]; 0, the default, if you set period_s instead.
     pub length_m: f64,
@@ -328,9 +329,9 @@ pub struct wk_sea_region {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Corners of the outline, in either direction around it. Each corner is two numbers: the distance from the centre
-    /// to the right of the heading, and along it, m, within 1e6. The outline must not cross or touch itself. Read
-    /// during the call only.
+    /// Corners of the outline, in clockwise or counter-clockwise order. Each corner is two numbers: its distances from
+    /// the centre to the right of the heading and along the heading, m, within 1e6. The outline must not cross or touch
+    /// itself. Read during the call only.
     pub corners_m: *const [f64; 2],
     /// Number of corners, [3, 64]. Default 0; must be given.
     pub corner_count: u32,
@@ -397,8 +398,9 @@ impl wk_sea_region {
     }
 }
 
-/// A hull that moves through the water and raises a wake: waves of its bow and its stern by its length, beam, draught
-/// and speed (Michell 1898), and the foam of its wash. It goes on at its speed and rate of turn until it is set anew.
+/// A hull that moves through the water and raises a wake. The waves of its bow and stern follow from its length, beam,
+/// draught and speed (Michell 1898); the wake also has the foam of its wash. The hull goes on at its speed and rate of
+/// turn until it is set anew.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sea_hull {
@@ -410,7 +412,7 @@ pub struct wk_sea_hull {
     pub next: *const c_void,
     /// Your number for the hull; no two hulls of a list have the same. Default 0.
     pub id: u32,
-    /// 0.
+    /// Must be 0.
     pub reserved0: u32,
     /// Length of the waterline, m. Range [1, 500], default 30.
     pub length_m: f64,

@@ -45,7 +45,7 @@ pub struct wk_sky_settings {
     pub next: *const c_void,
     /// Model of the sky. Default WK_SKY_DIRECTIONAL.
     pub model: wk_sky_model,
-    /// Orders of scattering that are computed one by one; a geometric series stands for the higher ones. Range [3, 16],
+    /// Orders of scattering that are computed one by one; a geometric series replaces the higher ones. Range [3, 16],
     /// default 5.
     pub orders: u32,
     /// Number of sun angles in the planet's tables. Range [16, 128], default 64.
@@ -65,8 +65,8 @@ pub struct wk_sky_settings {
     /// Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
     /// the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
     /// the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
-    /// time to build tables grows in proportion, both for a change of air and for a moving sun: five times with 15. The
-    /// cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+    /// time to build tables grows in proportion, both for a change of air and for a moving sun: with 15 wavelengths it
+    /// is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
     pub wavelengths: u32,
 }
 

@@ -44,7 +44,7 @@ pub struct wk_snow {
     /// [1e-4, 0.1], default 1/250, at which flakes in a light wind show their shapes.
     pub shutter_s: f64,
     /// Largest number of flakes to draw. A larger number lets flakes reach farther from the camera, up to 16 m. If more
-    /// flakes fall than may be drawn, a drawn flake stands for several. Range [1000, 8 000 000], or 0, the default:
+    /// flakes fall than may be drawn, each drawn flake represents several. Range [1000, 8 000 000], or 0, the default:
     /// 1 000 000, and 60 000 on a software driver.
     pub most_flakes: u32,
     /// A WK_SNOW_MODEL_ constant; 0, the default, lets Welkin choose.

@@ -1,7 +1,7 @@
 //! Lying snow
 //!
-//! The stage SURFACE draws snow onto what the host drew, as deep as the weather reports it
-//! (wk_weather.surface_snow_depth_m), on surfaces that face up: first in patches, then everywhere. With
+//! The stage SURFACE draws snow onto the host's surfaces that face up, as deep as the weather reports it
+//! (wk_weather.surface_snow_depth_m). Shallow snow lies in patches, deeper snow everywhere. With
 //! WK_LYING_SNOW_SIMULATED in a wk_simulation_desc the snow is a simulated state: it falls, settles, drifts, slides,
 //! melts into the ground's water and refreezes. The state covers level, open ground and each cell of the host's terrain
 //! (wk_context_set_ground_grid, wk_context_set_terrain), and wk_context_save keeps it. Standing boxes

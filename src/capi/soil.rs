@@ -1,14 +1,14 @@
 //! Soil
 //!
-//! Ground that is dug, carried, heaped and pressed, on the host's tiles (wk_context_set_terrain). The tiles are the
-//! undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind use
-//! the sum. Mass is counted in whole micrograms and never lost. Walls stand up to their critical height and fall beyond
-//! it, heaps rest at their angle of repose, rain and frost change the ground. The state is advanced by
+//! Soil is ground that tools dig, carry, heap and press, on the host's tiles (wk_context_set_terrain). The tiles are
+//! the undug ground. Soil adds the change by digging and heaping, and wk_context_get_terrain_at, water, snow and wind
+//! use the sum. Mass is counted in whole micrograms and never lost. Walls up to their critical height stand, and higher
+//! ones fall. Heaps rest at their angle of repose. Rain and frost change the ground. The state is advanced by
 //! wk_context_update, saved and hashed with the context. It depends on the timed poses of the tools, not on the frame
 //! rate: send each pose before the update that reaches its time.
 //!
-//! A host with physics or a network of its own follows the ground by wk_context_get_soil_changes. The steps of the soil
-//! are 1/64 s long. docs/soil.md shows how to dig.
+//! A host with physics or a network of its own gets the changes of the ground from wk_context_get_soil_changes. The
+//! steps of the soil are 1/64 s long. docs/soil.md shows how to dig.
 
 use glam::DVec3;
 
@@ -184,8 +184,9 @@ pub unsafe extern "C" fn wk_context_add_soil_tool(
 /// with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
 /// after the last one. Its edge must stay over tiles. Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for the time, for a tool
-/// that has ended, without soil, and while steps of an update remain.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for a pose that is not
+/// later than the last pose and the last update, for a tool that has ended, without soil, and while steps of an update
+/// remain.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_move_soil_tool(
     context: *mut wk_context,
@@ -201,8 +202,8 @@ pub unsafe extern "C" fn wk_context_move_soil_tool(
     })
 }
 
-/// Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and counts as taken
-/// (wk_soil_balance).
+/// Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and is added to
+/// wk_soil_balance.taken_ug.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown tool; WK_ERROR_WRONG_ORDER for one that has ended, without soil,
 /// and while steps of an update remain.
@@ -233,7 +234,7 @@ pub unsafe extern "C" fn wk_context_get_soil_tool(
     })
 }
 
-/// Gets the force on the edge of a tool that cuts as deep as in the last step, in the soil that it met there: P = w
+/// Gets the force of the soil on the edge of a tool, for the depth of the cut and the soil of the last step: P = w
 /// (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
 /// depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
 /// the physics of your machine; 0 where the tool does not cut.
@@ -296,7 +297,7 @@ pub unsafe extern "C" fn wk_context_bring_soil(
     })
 }
 
-/// Gets the ground of the nearest cell at places of the host's world, at most wk_caps.max_batch of them.
+/// Gets the ground of the cells nearest to places of the host's world, at most wk_caps.max_batch of them.
 /// `position_size` and `point_size` are the distances from one element to the next, bytes: 24 or more for positions,
 /// sizeof(wk_soil_point) of your header for points.
 /// Thread: concurrent.

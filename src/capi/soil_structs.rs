@@ -8,9 +8,10 @@ use crate::soil::{MAX_SOIL_KINDS, SoilBooks, SoilPoint, SoilToolReport, laws::Cu
 /// Number of a kind of soil: a constant below for a built-in kind, or 7 and more for the kinds in wk_soil.own_kinds, in
 /// their order.
 pub type wk_soil_kind_id = u32;
-/// Moist sand: bank 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa, friction 28 degrees.
+/// Moist sand: density of the bank (undisturbed soil) 1794 kg/m^3, swell 12 %, repose 34 degrees, cohesion 1.04 kPa,
+/// friction 28 degrees.
 pub const WK_SOIL_SAND: wk_soil_kind_id = 0;
-/// Dry gravel, with the same five values: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees.
+/// Dry gravel, with its values in the same order: 1750 kg/m^3, 15 %, 37 degrees, no cohesion, 37 degrees.
 pub const WK_SOIL_GRAVEL: wk_soil_kind_id = 1;
 /// Dry clay: 1449 kg/m^3, 35 %, 32 degrees, 4.14 kPa, 13 degrees.
 pub const WK_SOIL_CLAY: wk_soil_kind_id = 2;
@@ -35,9 +36,9 @@ pub const WK_SOIL_TOOL_BUCKET: wk_soil_tool_shape = 0;
 pub const WK_SOIL_TOOL_BLADE: wk_soil_tool_shape = 1;
 /// Bed of a truck: catches what falls into it, carries and pours, but does not cut.
 pub const WK_SOIL_TOOL_BED: wk_soil_tool_shape = 2;
-/// Wheel: its edge is the line of contact, across its track.
+/// Wheel: its edge is the line of contact with the ground, across the wheel's width.
 pub const WK_SOIL_TOOL_WHEEL: wk_soil_tool_shape = 3;
-/// Crawler track: its edge is the line under its middle, across its track.
+/// Crawler track: its edge is the line under the track's middle, across its width.
 pub const WK_SOIL_TOOL_TRACK: wk_soil_tool_shape = 4;
 
 /// A kind of soil of the host's own. Element of a list in wk_soil.
@@ -109,16 +110,16 @@ pub struct wk_soil {
     pub own_kind_count: u32,
     /// Bytes from one kind to the next: sizeof(wk_soil_kind) of your header, which is the default.
     pub own_kind_stride: u32,
-    /// Your own kinds; their numbers follow those of the built-in ones. Copied. Default NULL.
+    /// Your own kinds; their numbers follow those of the built-in ones. Copied by the call. Default NULL.
     pub own_kinds: *const wk_soil_kind,
     /// Number of layers, at most 8. Default 0: 0.3 m of topsoil on loam.
     pub horizon_count: u32,
     /// Must be 0.
     pub reserved0: u32,
     /// Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
-    /// 1000. Copied. Default NULL.
+    /// 1000. Copied by the call. Default NULL.
     pub horizon_tops_m: *const f64,
-    /// Kind of each layer, a wk_soil_kind_id. Copied. Default NULL.
+    /// Kind of each layer, a wk_soil_kind_id. Copied by the call. Default NULL.
     pub horizon_kinds: *const wk_soil_kind_id,
     /// Share of the pores of the bank that water fills before rain and sun change it. Range [0, 1], default 0.3, moist.
     /// Bank at 0 (dry sand) and at 1 (below the water table) has no cohesion.
@@ -237,17 +238,17 @@ pub struct wk_soil_tool_report {
     pub next: *const c_void,
     /// Simulation time of the tool's pose, s.
     pub time_s: f64,
-    /// Mass held, kg.
+    /// Mass of the soil in the tool, kg.
     pub mass_kg: f64,
-    /// Bulk volume held, m^3.
+    /// Bulk volume of the soil in the tool, m^3.
     pub bulk_m3: f64,
-    /// Bulk volume held over the rated volume with its heap.
+    /// Ratio of bulk_m3 to the rated volume of the tool with its heap.
     pub fill: f64,
-    /// Centre of the soil held, in the host's world, m.
+    /// Centre of the soil in the tool, in the host's world, m.
     pub centre_m: [f64; 3],
-    /// Mass of each kind held, kg, by the kind's number.
+    /// Mass of each kind of soil in the tool, kg, by the kind's number.
     pub kinds_kg: [f64; 16],
-    /// Share of the pores of the held soil that water fills, 0 to 1; 0 when empty.
+    /// Share of the pores of the soil in the tool that water fills, 0 to 1; 0 if the tool is empty.
     pub saturation: f64,
     /// Mean depth of the cut, m.
     pub cut_depth_m: f64,
@@ -255,10 +256,10 @@ pub struct wk_soil_tool_report {
     pub sinkage_m: f64,
     /// Kind that makes up most of the soil that was cut.
     pub cut_kind: wk_soil_kind_id,
-    /// 1 where the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or comes
-    /// from sinkage numbers that hold for a small range only; else 0.
+    /// 1 if the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or if it
+    /// comes from sinkage numbers that hold for a small range only; else 0.
     pub sinkage_is_beyond_range: u32,
-    /// 1 where the edge met frozen ground, which it cannot cut; else 0.
+    /// 1 if the edge met frozen ground, which it cannot cut; else 0.
     pub is_stopped_by_frost: u32,
     /// Always 0.
     pub reserved0: u32,
@@ -348,11 +349,12 @@ pub struct wk_cutting_force {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation of Reece and McKyes.
+    /// Force at the angle soil_metal_deg from the normal of the blade, N: P of the equation at
+    /// wk_context_get_soil_resistance.
     pub force_n: f64,
-    /// Part of the whole force against the motion, N.
+    /// Component of the total force against the motion, N.
     pub horizontal_n: f64,
-    /// Part that pulls the blade down, N; negative where soil lifts it.
+    /// Component of the total force that pulls the blade down, N; negative where soil lifts it.
     pub vertical_n: f64,
     /// Angle of the plane of failure to the horizontal, degrees.
     pub failure_deg: f64,
@@ -438,7 +440,7 @@ pub struct wk_soil_point {
     pub loose_kg_m3: f64,
     /// Revision of the terrain at the last change by soil near this place; 0 where nothing was dug.
     pub revision: u64,
-    /// Kind on the surface.
+    /// Kind of soil on the surface.
     pub kind: wk_soil_kind_id,
     /// 1 if the cell has ground; all other fields are 0 otherwise.
     pub has_ground: u32,

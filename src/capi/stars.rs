@@ -22,7 +22,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_stars.rs"));
 
-/// Flags of the settings in a wk_stars.
+/// Flags of a wk_stars.
 pub type wk_stars_flags = u32;
 /// stars and star_count: the host's own stars replace the catalogue's.
 pub const WK_STARS_OWN: wk_stars_flags = 1;
@@ -41,14 +41,14 @@ pub struct wk_stars {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Flags of the settings that are set. Default 0: the stars of the catalogue and the planets, at their positions
-    /// over the Earth.
+    /// WK_STARS_ flags: the settings that replace the defaults. Default 0: the stars of the catalogue and the planets,
+    /// at their positions over the Earth.
     pub flags: wk_stars_flags,
     /// Number of stars in `stars`, at most 1 000 000. Default 0.
     pub star_count: u32,
     /// With WK_STARS_OWN: four numbers for each star: right ascension, degrees in [-1e6, 1e6], and declination, degrees
     /// in [-90, 90], both in the equator and equinox of J2000.0; visual magnitude in [-30, 30]; colour temperature of a
-    /// black body, K, in [1000, 100000]. Copied. Default NULL.
+    /// black body, K, in [1000, 100000]. Copied by the call. Default NULL.
     pub stars: *const f64,
     /// With WK_STARS_TURNED: rotation from the equator and equinox of J2000.0 (x to the equinox, z to the north pole)
     /// to (east, north, up), column-major. Default the identity.

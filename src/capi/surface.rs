@@ -43,7 +43,7 @@ pub const WK_WINDOW_XCB: wk_window_kind = 2;
 pub const WK_WINDOW_WAYLAND: wk_window_kind = 3;
 /// Windows: `handle` is the HWND, `display` the HINSTANCE of the module that made the window.
 pub const WK_WINDOW_WIN32: wk_window_kind = 4;
-/// macOS: `handle` is the NSView*; all calls on the main thread.
+/// macOS: `handle` is the NSView*. Make all calls on the main thread.
 pub const WK_WINDOW_APPKIT: wk_window_kind = 5;
 
 /// A native window. Welkin ignores fields that its kind does not use. The window must outlive the surface, and its
@@ -107,11 +107,11 @@ pub struct wk_surface_config {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
-    /// minimised.
+    /// Width of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while the window
+    /// is minimised.
     pub width: u32,
-    /// Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while it is
-    /// minimised.
+    /// Height of the window's drawable area, pixels, at most wk_caps.max_texture_size; 0 (the default) while the window
+    /// is minimised.
     pub height: u32,
     /// Encoding of the values drawn. Default WK_SURFACE_DISPLAY_LINEAR.
     pub encoding: wk_surface_encoding,
@@ -257,7 +257,7 @@ pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: 
 /// Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
 /// Thread: exclusive.
 /// Returns WK_PENDING if the window shows nothing now, because it is hidden or the screen is busy: skip this frame.
-/// Errors: WK_ERROR_SURFACE_OUTDATED: configure the surface again; also while the window is minimised;
+/// Errors: WK_ERROR_SURFACE_OUTDATED if the surface must be configured again, and while the window is minimised;
 /// WK_ERROR_WRONG_ORDER before the first wk_surface_configure.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_acquire(surface: *mut wk_surface) -> wk_status {

@@ -1,11 +1,11 @@
 //! Terrain in tiles
 //!
-//! The host's terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is horizontal and
-//! aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole. Tiles can be added
-//! and removed, and rectangles of their cells changed. The cost of a change grows with the rectangle, so an excavator's
-//! bucket may dig in every frame. Water, the wind field and queries read the tiles. With WK_GROUND_SIMULATED each cell
-//! has its own water, and hollows join across the borders of tiles; with WK_GROUND_REPORTED tiles are as wet as level
-//! ground. A context has either tiles or one wk_ground_grid.
+//! The host can describe its terrain as a lattice of equal cells, cut into square tiles with keys. The lattice is
+//! horizontal and aligned to true north at its origin. Each cell has a height and a class of surface, or is a hole.
+//! Tiles can be added and removed, and rectangles of their cells changed. The cost of a change grows with the
+//! rectangle, so an excavator's bucket may dig in every frame. Water, the wind field and queries read the tiles. With
+//! WK_GROUND_SIMULATED each cell has its own water, and hollows join across the borders of tiles; with
+//! WK_GROUND_REPORTED tiles are as wet as level ground. A context has either tiles or one wk_ground_grid.
 //!
 //! The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
 //! queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
@@ -50,7 +50,7 @@ pub struct wk_terrain {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// Position of the south-western cell of tile (0, 0), in the host's world, m, within 1e12 m of the origin. Heights
-    /// of cells count from its height. Default 0, 0, 0.
+    /// of cells are relative to the height of this position. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between cells, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear.
     pub cell_m: f64,
@@ -84,11 +84,11 @@ pub struct wk_terrain_drawing {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
-    /// default 1. It sets the distance that each level of detail reaches, in [40, 160] sides of its squares. Ground so
-    /// rough that it would need a longer reach is drawn with a larger error.
+    /// default 1. It sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the
+    /// level's squares. Ground so rough that it would need a longer reach is drawn with a larger error.
     pub error_px: f64,
     /// Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
-    /// [100, 1e5], default 1e4. Nearer shadows are sharper the shorter it is. A view with shadows holds up to 34 MB
+    /// [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to 34 MB
     /// more.
     pub shadows_to_m: f64,
 }
@@ -170,7 +170,7 @@ impl wk_terrain_cells {
 #[derive(Clone, Copy)]
 pub struct wk_terrain_point {
     /// Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
-    /// four cells is split from its south-western to its north-eastern cell. 0 where there is none.
+    /// four cells is split from its south-western to its north-eastern cell. 0 where there is no ground.
     pub height_m: f64,
     /// Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground.
     pub normal: [f64; 3],
@@ -199,8 +199,9 @@ impl wk_terrain_point {
     }
 }
 
-/// Sets the lattice of a terrain in tiles, at first without tiles. It replaces all tiles or the wk_ground_grid set
-/// before; NULL leaves no tiles. Setting the present lattice again keeps its tiles. Unchanged after an error.
+/// Sets the lattice of a terrain in tiles, at first without tiles. The lattice replaces all tiles or the wk_ground_grid
+/// set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles. Unchanged
+/// after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -279,7 +280,8 @@ fn named(e: Error) -> Error {
 }
 
 /// Adds a tile, or replaces the values of all cells of an existing tile. A new tile begins as wet as level ground; an
-/// existing one keeps its water. Takes some tens of milliseconds for 256 x 256 cells. Unchanged after an error.
+/// existing one keeps its water. The call takes some tens of milliseconds for 256 x 256 cells. Unchanged after an
+/// error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT naming the field, or for more
 /// cells than a terrain may have.
@@ -316,7 +318,7 @@ pub unsafe extern "C" fn wk_context_update_terrain(
     })
 }
 
-/// Removes a tile and the water on it. Where it was, water of the other tiles runs off.
+/// Removes a tile and the water on it. Water of the other tiles runs off where the tile was.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain; WK_ERROR_INVALID_ARGUMENT for a key that no tile has.
 #[unsafe(no_mangle)]

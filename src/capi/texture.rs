@@ -1,7 +1,7 @@
 //! Textures of an own device
 //!
-//! For hosts without graphics of their own: programs that want pictures in memory, or that draw with Welkin only. Hosts
-//! with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
+//! These textures are for hosts without graphics of their own: programs that want pictures in memory, or that draw with
+//! Welkin only. Hosts with OpenGL, Vulkan or wgpu pass their own images instead and do not need these textures.
 
 use std::{
     ffi::c_void,

@@ -84,8 +84,8 @@ pub unsafe extern "C" fn wk_context_set_weather(
 /// leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
 /// returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
 /// later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
-/// After a leap of more than a day, only the last day of the water is simulated; it starts as wet as the weather
-/// reports then.
+/// After a leap of more than a day, only the last day of the water is simulated. The ground starts that day as wet as
+/// the weather of that time reports.
 /// Thread: exclusive.
 /// Returns WK_PENDING, which is no error, while steps remain.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.
@@ -96,9 +96,9 @@ pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64
     })
 }
 
-/// Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while that
-/// returns WK_PENDING. The difference is the lag of the state. The state's time never decreases, except by
-/// wk_context_load.
+/// Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while
+/// wk_context_update returns WK_PENDING. The difference between the two is the lag of the state. The state's time never
+/// decreases, except by wk_context_load.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_state_time(
@@ -222,8 +222,8 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 /// weather, weather regions, time, clock, directions of sun and moon that the host set, planet, exposure, tone curve,
 /// fog law, cloud map and model, lightning, night sky, shelters, lamps, rain areas, wind grid and wind field, the
 /// terrain with its water, snow and soil, the default surface class, the sea with its regions and hulls, and the world,
-/// place, seed and models of ground and snow that it belongs to. For the tiles of a wk_terrain it has the water, snow
-/// and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
+/// place, seed and models of ground and snow that the state belongs to. For the tiles of a wk_terrain the text has the
+/// water, snow and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
 /// wk_terrain_drawing), the host's own list of stars, and the images of wk_context_set_occluder_maps, because each
 /// channel may have its own.
 /// `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
@@ -248,9 +248,9 @@ pub unsafe extern "C" fn wk_context_save(
 
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
 /// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
-/// geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. A state of an earlier version
-/// without planet and tone curve requires that these are equal too. Occluder maps stay as they are. Tiles of a
-/// wk_terrain stay too: before the call, set them as they were when the state was saved.
+/// geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. If a state of an earlier version
+/// lacks the planet and the tone curve, these must be equal too. Occluder maps stay as they are. Tiles of a wk_terrain
+/// stay too: before the call, set them as they were when the state was saved.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
 /// another format, which the message names (this version reads format 2; save states of format 1 again, because they

@@ -72,7 +72,7 @@ pub const WK_SHADING_WGSL: wk_shading_language = 1;
 
 /// Gets the native textures of the veil. From the first call on, each frame's MEDIUM stage fills them. They belong to
 /// the view and stay the same until it is destroyed. In Vulkan they are in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-/// between wk_view_record calls with MEDIUM. Call this after each frame for its light_scale.
+/// between wk_view_record calls with MEDIUM. Call this function after each frame to get that frame's light_scale.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]

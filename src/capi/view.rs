@@ -62,7 +62,7 @@ pub const WK_STAGE_PARTICLES: wk_stage_flags = 16;
 pub const WK_STAGE_LENS: wk_stage_flags = 32;
 /// Exposure, tone curve, encoding and dither of a scene-linear picture: float targets and sRGB formats get
 /// display-linear values, other formats get sRGB-encoded ones. With WK_COLOR_DISPLAY_LINEAR and WK_COLOR_DISPLAY_SRGB
-/// the host has done all that, and TONE does nothing, alone or with other stages.
+/// the host has done these steps, and TONE does nothing, alone or with other stages.
 pub const WK_STAGE_TONE: wk_stage_flags = 64;
 /// Everything in one call.
 pub const WK_STAGE_ALL: wk_stage_flags = 127;
@@ -84,7 +84,7 @@ impl wk_view_desc {
         Self { struct_size: struct_size::<Self>(), struct_type: WK_STRUCT_TYPE_VIEW_DESC, next: null() };
 }
 
-/// Flags of the optional fields of a wk_report that are set.
+/// Flags that say which optional fields of a wk_report are set.
 pub type wk_report_flags = u32;
 /// wk_report.ms.
 pub const WK_REPORT_HAS_MS: wk_report_flags = 1;
@@ -94,7 +94,7 @@ pub const WK_REPORT_HAS_PREDICTED_MS: wk_report_flags = 2;
 pub const WK_REPORT_HAS_REPORTED_MS: wk_report_flags = 4;
 /// wk_report.predicted_error and predicted_error_bound: the view has a budget and its picture was gauged.
 pub const WK_REPORT_HAS_PREDICTED_ERROR: wk_report_flags = 8;
-/// wk_report.checked_error_bound and checked_error: the picture was gauged again afterwards.
+/// wk_report.checked_error_bound and checked_error: the gauge has measured a picture whose error was predicted.
 pub const WK_REPORT_HAS_CHECKED_ERROR: wk_report_flags = 16;
 
 /// Costs and contents of a view's last frame.
@@ -118,35 +118,37 @@ pub struct wk_report {
     pub exposure: f64,
     /// GPU memory that the view uses for itself, bytes.
     pub bytes: u64,
-    /// Flags of the following fields that are set.
+    /// Flags that say which of the optional fields are set.
     pub has: wk_report_flags,
     /// Always 0.
     pub reserved0: u32,
     /// Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
     /// (WK_FRAME_MEASURE).
     pub ms: f64,
-    /// Predicted time of the weather in this frame, ms, from the times reported before it.
+    /// Predicted time of the weather in this frame, ms, from the times reported before this frame.
     pub predicted_ms: f64,
     /// Time that the host reported for this frame, ms.
     pub reported_ms: f64,
     /// Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
     /// pixels.
     pub predicted_error: f64,
-    /// Upper end of the 95 % confidence interval of that percentile over all pixels.
+    /// Upper end of the 95 % confidence interval of the percentile in predicted_error over all pixels.
     pub predicted_error_bound: f64,
     /// Error bound that was predicted for the last gauged picture.
     pub checked_error_bound: f64,
-    /// Error that the gauge then measured in that picture.
+    /// Error that the gauge measured in the picture of checked_error_bound.
     pub checked_error: f64,
     /// Number of drops and hailstones around the camera; those inside the picture were drawn.
     pub drops: u32,
     /// Number of flakes around the camera; those inside the picture were drawn. 0 if none were.
     pub flakes: u32,
-    /// Number of drops that each drawn drop stood for: 1 unless more fell than wk_rain.most_drops; 0 without any.
+    /// Number of drops that each drawn drop represented: 1 unless more fell than wk_rain.most_drops; 0 without drops.
     pub drop_weight: f64,
-    /// Rate of splashes left out for lack of room, 1/(m^2 s) on level ground: those of the smallest drops.
+    /// Rate of splashes, 1/(m^2 s) on level ground, that were left out because the largest number of splashes was
+    /// reached. They are those of the smallest drops.
     pub splashes_left_out_per_m2_s: f64,
-    /// Rate of stones that did not bounce for lack of room, 1/(m^2 s) on level ground: the smallest ones.
+    /// Rate of stones, 1/(m^2 s) on level ground, that did not bounce because the largest number of bouncing stones was
+    /// reached. They are the smallest ones.
     pub stones_left_out_per_m2_s: f64,
     /// Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
     pub contrast_gain: f64,
@@ -205,7 +207,7 @@ pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
 /// Water and snow on surfaces, and the sea and terrain that Welkin draws.
 pub const WK_EFFECT_SURFACE: wk_effect = 9;
-/// Water on the windscreen: its steps (after the sky's tables) and the lens.
+/// Water on the windscreen: its simulation steps, which run after the sky's tables, and the stage LENS.
 pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 
 /// Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead.
@@ -218,7 +220,7 @@ pub struct wk_effect_cost {
     pub reserved0: u32,
     /// Name of the effect in English; lives as long as the library.
     pub name: *const c_char,
-    /// Wall time around a submission that is waited for, including the CPU's part, ms. 0 if the effect did not run.
+    /// Wall time around a submission that is waited for, including the CPU's share, ms. 0 if the effect did not run.
     pub ms: f64,
 }
 
@@ -295,21 +297,22 @@ pub unsafe extern "C" fn wk_view_record(
 }
 
 /// Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
-/// and hardly any later frame waits for one. Each weather is drawn during the change from the weather before it (for
-/// the first, the context's own), after the change, and with the sun at several heights. Call this function behind a
-/// loading screen, before the view's first frame: the next frame begins as a view's first one does. Afterwards the
-/// context is as before.
+/// and hardly any later frame waits for one. Each weather is drawn during the change from the previous weather of the
+/// list (for the first, from the context's own), after the change, and with the sun at several heights. Call this
+/// function behind a loading screen, before the view's first frame: the next frame begins as a view's first one does.
+/// Afterwards the context is as before.
 ///
-/// `frame` stands for the later frames: it has their settings, and images with their formats, samples and usages.
+/// `frame` describes the later frames: give it their settings, and images of the same formats, samples and usages.
 /// Welkin neither draws into these images nor waits for them. `calls` has the stages of each wk_view_record of one
 /// frame, in order: 1 to 7 elements; NULL with `call_count` 0 means one call with WK_STAGE_ALL. `weathers` has 0 to 64
 /// elements, `weather_stride` bytes apart; each may have a wk_weather_overrides in its chain. One call draws for about
-/// `most_s`, in [0, 3600] s, and at least one moment of a weather. It returns WK_PENDING, which is no error, while
-/// moments remain: call it again with the same weathers. Other weathers start from the beginning.
+/// `most_s`, in [0, 3600] s, but at least one case: one weather at one time of its change and one height of the sun.
+/// The call returns WK_PENDING, which is no error, while cases remain: call it again with the same weathers. With other
+/// weathers the drawing starts from the beginning.
 /// Thread: exclusive on the view and on its context.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming `weathers[i]`, `calls[i]` or the field of `frame`;
 /// WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING; WK_ERROR_DEVICE_LOST. After an error the context is
-/// as before, and the same call continues with the moment that failed.
+/// as before, and the same call continues with the case that failed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_prepare(
     view: *mut wk_view,
@@ -352,7 +355,8 @@ pub unsafe extern "C" fn wk_view_prepare(
     })
 }
 
-/// Draws the context's present moment in frames of a rehearsal until a frame creates no pipeline.
+/// Draws the context's present moment in frames of a rehearsal, until a frame creates no pipeline, at most
+/// [`MOST_FRAMES`].
 ///
 /// # Safety
 /// As `host::record`.
@@ -368,7 +372,7 @@ unsafe fn rehearse(call: &mut Call, object: &ViewObject, c: &wk_frame, calls: &[
     Ok(())
 }
 
-/// Reads the stages of the calls of a frame; one call with all of them where there is no list.
+/// Reads the stages of each call of a frame. An empty list gives one call with all stages.
 ///
 /// # Safety
 /// `calls` is NULL or points to `count` numbers.

@@ -12,7 +12,8 @@
 //! Pass handles as Vulkan has them: dispatchable ones as pointers, others as 64-bit numbers.
 //!
 //! Needed: Vulkan 1.1, or 1.0 with VK_KHR_maintenance1 and VK_KHR_storage_buffer_storage_class; a queue that draws and
-//! computes. For these features, enable on the device and list here:
+//! computes. For each use on the left, enable the extension or feature on the right for the VkDevice, and list it in
+//! the wk_vulkan_host_desc:
 //!
 //! ```text
 //!     images in PRESENT_SRC_KHR                     VK_KHR_swapchain in enabled_device_extensions

@@ -95,7 +95,7 @@ pub struct wk_vulkan_image {
     pub next: *const c_void,
     /// VkImage. Default 0; must be given.
     pub image: u64,
-    /// VkFormat that it was created with. Default 0; must be given.
+    /// VkFormat that the image was created with. Default 0; must be given.
     pub format: u32,
     /// Width, pixels. Default 0; must be given.
     pub width: u32,
@@ -104,10 +104,10 @@ pub struct wk_vulkan_image {
     /// Samples of a pixel. Default 1. Colour with several samples needs sampleRateShading in enabled_features of the
     /// wk_vulkan_host_desc.
     pub samples: u32,
-    /// VkImageUsageFlags that it was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for images
-    /// that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
+    /// VkImageUsageFlags that the image was created with: COLOR_ATTACHMENT and TRANSFER_SRC for colour, SAMPLED for
+    /// images that are read, and also DEPTH_STENCIL_ATTACHMENT for depth with WK_DEPTH_ACCESS_READ_WRITE.
     pub usage: u32,
-    /// Array layers that it was created with. Default 1. For an occluder map it must be 1.
+    /// Array layers that the image was created with. Default 1. For an occluder map it must be 1.
     pub array_layers: u32,
     /// Array layer that is handed over, such as one eye of a stereo or multiview host; the others stay untouched.
     /// Default 0.
@@ -193,7 +193,8 @@ pub struct wk_vulkan_target {
     /// The image to draw into. Default NULL.
     pub color: *const wk_vulkan_image,
     /// The host's depth, as large as `color` and with as many samples. If `color` has one sample (a resolved picture),
-    /// depth may have more; the first of each pixel then counts. With NULL (the default) every pixel shows the sky.
+    /// depth may have more; the first sample of each pixel is then used. With NULL (the default) every pixel shows the
+    /// sky.
     pub depth: *const wk_vulkan_image,
     /// A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
     /// sample, another image. Default NULL.
@@ -211,8 +212,8 @@ pub struct wk_vulkan_target {
     pub signal_count: u32,
     /// Bytes from one signal semaphore to the next: sizeof(wk_vulkan_semaphore) of your header, which is the default.
     pub signal_stride: u32,
-    /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use wk_ground_grid or the context's
-    /// default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
+    /// Each pixel's surface class: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
+    /// or the context's default. VK_FORMAT_R8_UNORM or the like, as large as `color`, one sample. Default NULL.
     pub surface_classes: *const wk_vulkan_image,
     /// Unit normals, in the host's world or in eye space (WK_FRAME_NORMALS_IN_EYE_SPACE): (n + 1) / 2 in normalised
     /// formats, n in float formats. Where a pixel holds no unit vector (a cleared pixel), Welkin uses the normal of the

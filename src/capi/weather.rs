@@ -17,7 +17,7 @@ use super::{
 
 include!(concat!(env!("OUT_DIR"), "/init_weather.rs"));
 
-/// Flags of the optional fields of a wk_weather that are set.
+/// Flags that say which optional fields of a wk_weather are set.
 pub type wk_weather_has_flags = u64;
 /// vertical_visibility_m
 pub const WK_WEATHER_HAS_VERTICAL_VISIBILITY: wk_weather_has_flags = 0x1;
@@ -60,7 +60,7 @@ pub const WK_WEATHER_HAS_SURFACE_ROUGHNESS_LENGTH: wk_weather_has_flags = 0x4_00
 /// lofted_top_m
 pub const WK_WEATHER_HAS_LOFTED_TOP: wk_weather_has_flags = 0x8_0000;
 
-/// Flags of the optional fields of a wk_cloud_layer that are set.
+/// Flags that say which optional fields of a wk_cloud_layer are set.
 pub type wk_cloud_layer_has_flags = u32;
 /// thickness_m
 pub const WK_CLOUD_LAYER_HAS_THICKNESS: wk_cloud_layer_has_flags = 1;
@@ -135,7 +135,7 @@ impl wk_cloud_layer {
     };
 }
 
-/// The weather at a station and moment. Heights are above the station unless stated otherwise.
+/// The weather at a station and a time. Heights are above the station unless stated otherwise.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_weather {
@@ -178,8 +178,8 @@ pub struct wk_weather {
     /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
     pub aerosol_asymmetry: f64,
     /// Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
-    /// kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky counts
-    /// densities from sea level.
+    /// kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky is computed
+    /// from the density at sea level, which is limited to 100 times that at the station.
     pub aerosol_scale_height_m: f64,
     /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
     pub fog_top_m: f64,
@@ -207,7 +207,8 @@ pub struct wk_weather {
     /// Optional, together with the next field: start of the range within which the direction varies, degrees; the range
     /// runs clockwise. Range [0, 360].
     pub wind_variable_from_deg: f64,
-    /// End of that range, degrees. Range [0, 360]. 0 to 360 means all directions (VRB).
+    /// End of the range within which the direction varies, degrees. Range [0, 360]. 0 to 360 means all directions
+    /// (VRB).
     pub wind_variable_to_deg: f64,
     /// Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
     /// roughness.
@@ -232,7 +233,7 @@ pub struct wk_weather {
     /// Optional: roughness length of the land, m. Range [1e-5, 5]; else 0.03.
     pub surface_roughness_length_m: f64,
 
-    /// Optional: depth of the layer that the wind lifts, m. Range [0.1, 5000]; else by kind.
+    /// Optional: depth of the layer of matter that the wind lifts, m. Range [0.1, 5000]; else by kind.
     pub lofted_top_m: f64,
     /// Kind of matter that the wind lifts. Default WK_LOFTED_NONE.
     pub lofted_kind: wk_lofted_kind,
@@ -297,7 +298,7 @@ impl wk_weather {
     };
 }
 
-/// Flags of the fields of a wk_weather_overrides that are set.
+/// Flags that say which fields of a wk_weather_overrides are set.
 pub type wk_override_flags = u32;
 /// aerosol_extinction_per_m
 pub const WK_OVERRIDE_AEROSOL_EXTINCTION: wk_override_flags = 0x1;
@@ -313,7 +314,7 @@ pub const WK_OVERRIDE_HUMIDITY_GROWTH: wk_override_flags = 0x10;
 pub const WK_OVERRIDE_RAYLEIGH_DENSITY: wk_override_flags = 0x20;
 /// rayleigh_scale_height_m
 pub const WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT: wk_override_flags = 0x40;
-/// No value: rain adds no cloud that the report lacks.
+/// No field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls from.
 pub const WK_OVERRIDE_RAIN_WITHOUT_CLOUD: wk_override_flags = 0x80;
 /// cloud_direct and cloud_diffuse
 pub const WK_OVERRIDE_CLOUD_LIGHT: wk_override_flags = 0x100;
@@ -337,9 +338,11 @@ pub struct wk_weather_overrides {
     pub set: wk_override_flags,
     /// Must be 0.
     pub reserved0: u32,
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of that which follows from the visibility. Range
+    /// [0, 10].
     pub aerosol_extinction_per_m: f64,
-    /// Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10].
+    /// Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of that which follows
+    /// from the visibility. Range [0, 10].
     pub fog_extinction_per_m: f64,
     /// Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10].
     pub precipitation_extinction_per_m: f64,

@@ -1,6 +1,6 @@
 //! Kinds of weather
 //!
-//! Kinds that a report names with words. Their numbers never change.
+//! These constants are the kinds of weather that a report names with words. Their numbers never change.
 
 /// Kind of the air's dry particles.
 pub type wk_aerosol_kind = u32;
@@ -27,7 +27,7 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 
 /// Fog and mist: suspended droplets at the ground.
 pub type wk_fog_kind = u32;
-/// No fog: all extinction that the reported visibility requires beyond the air's is aerosol.
+/// No fog: the reported visibility requires more extinction than clean air has, and all of the difference is aerosol.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
 /// Mist (METAR BR): droplets, visibility 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;

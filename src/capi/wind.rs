@@ -1,8 +1,9 @@
 //! Queries: wind and rain
 //!
-//! Velocity and displacement of the air, precipitation, and rain on surfaces, at any place and any simulation time that
-//! the timeline still knows. The answers are in closed form and need no device. Vectors are (east, north, up) at the
-//! place. Only wk_context_get_rain_on_at takes shelters into account.
+//! These functions give the velocity and the displacement of the air, the precipitation, and the rain on surfaces. They
+//! answer for any place and for any past or future simulation time that the timeline of the weather still knows (see
+//! wk_context_get_conditions). The answers are in closed form and need no work of the GPU. Vectors are (east, north,
+//! up) at the place. Only wk_context_get_rain_on_at takes shelters into account.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -32,13 +33,13 @@ pub struct wk_wind {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Velocity of the air at this moment, gusts included, m/s.
+    /// Velocity of the air at the queried time, gusts included, m/s.
     pub velocity_m_s: [f64; 3],
     /// Mean velocity, without gusts, m/s.
     pub mean_m_s: [f64; 3],
-    /// Displacement of the air at 10 m since simulation time 0, gusts included, m; the same at every place. Move
-    /// objects that the air carries by differences of this displacement, never by velocity times time: it stays
-    /// continuous through all changes of the weather, and is equal to the last bit on every channel.
+    /// Displacement of the air at 10 m since simulation time 0, gusts included, m. It is the same at every place,
+    /// continuous through all changes of the weather, and equal bit for bit on all channels of a simulator. Move
+    /// objects that the air carries by differences of this displacement, never by velocity times time.
     pub displacement_m: [f64; 3],
     /// Standard deviation of the wind speed along the mean wind, due to gusts, m/s.
     pub gust_deviation_m_s: f64,
@@ -69,8 +70,8 @@ pub struct wk_rainfall {
     pub next: *const c_void,
     /// Rate of rain and drizzle on level ground, mm/h.
     pub rate_mm_h: f64,
-    /// Number of drops of 0.1 to 6 mm in the air, 1/m^3 (Marshall and Palmer 1948; showers and drizzle Joss et al.
-    /// 1968; scaled so that they give the rate).
+    /// Number of drops of 0.1 to 6 mm in the air, 1/m^3. The size distributions are those of Marshall and Palmer
+    /// (1948), and for showers and drizzle those of Joss et al. (1968). Each is scaled so that its drops give the rate.
     pub number_per_m3: f64,
     /// Liquid water in the air, g/m^3.
     pub liquid_g_m3: f64,
@@ -83,8 +84,9 @@ pub struct wk_rainfall {
     /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
     /// Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
-    /// less. Render occluder maps along its direction. The drop falls at the speed of Gunn and Kinzer (1949) and moves
-    /// with the wind at 10 m.
+    /// less. Render occluder maps along this velocity. The drop falls at the speed of Gunn and Kinzer (1949). It moves
+    /// with the wind at 10 m, gusts included, or with the wind grid or wind field there (wk_context_set_wind_grid,
+    /// wk_context_set_wind_field).
     pub fall_velocity_m_s: [f64; 3],
     /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
@@ -172,10 +174,10 @@ impl wk_rain_on {
 
 /// Gets the wind at a place of the host's world and a simulation time. The mean follows the logarithmic profile over
 /// the ground's roughness up to 100 m; above that it grows and veers to the geostrophic wind (docs/clouds.md). Gusts
-/// have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Heights count from the
-/// station's altitude above mean sea level; the reported wind is the wind 10 m above it. A host with terrain should
-/// query the station's altitude plus the height above its own ground. At and below the roughness length there is no
-/// wind.
+/// have Kaimal's spectrum (1972, as in IEC 61400-1) and are the same all over the world. Height above ground means the
+/// position's altitude minus the altitude of the weather's station; the reported wind is the wind 10 m above the
+/// station. A host with terrain should therefore query the place at the station's altitude plus the height above the
+/// host's own ground. At and below the roughness length there is no wind.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -202,9 +204,11 @@ pub unsafe extern "C" fn wk_context_get_wind_at(
     })
 }
 
-/// Gets the precipitation at a place of the host's world and a simulation time. Precipitation begins in the lower half
-/// of the clouds, at most 500 m above their bases, on average over the clouds that cover the sky. Above that nothing
-/// falls.
+/// Gets the precipitation at a place of the host's world and a simulation time. The precipitation of a cloud layer
+/// begins halfway up the layer, but at most 500 m above its base. Where the sky has several layers, precipitation
+/// begins at the mean of these heights, weighted by the share of the sky in which each layer is the lowest; without
+/// clouds, at 2000 m above the station. Above this height the weather's precipitation is 0. Rain areas
+/// (wk_context_set_rain_areas) have tops of their own.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]
@@ -225,11 +229,11 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
     })
 }
 
-/// Gets the rain on surfaces at a simulation time, at most wk_caps.max_batch of them. Drops of each size arrive along
-/// their own slant, in the wind at 10 m with its gusts and relative to the moving surface. A windscreen at 25 m/s meets
-/// far more than the ground. Boxes (wk_context_set_shelters) keep rain off where they shelter a point 5 cm in front of
-/// the surface; occluder maps do not count. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
-/// sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
+/// Gets the rain on at most wk_caps.max_batch surfaces at a simulation time. Drops of each size arrive in their own
+/// direction: it follows from their fall speed, the wind with its gusts, and the velocity of the surface. A windscreen
+/// at 25 m/s meets far more drops than the ground does. Boxes (wk_context_set_shelters) keep rain off where they
+/// shelter a point 5 cm in front of the surface; occluder maps have no effect here. `surface_size` and `on_size` are
+/// sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
 #[unsafe(no_mangle)]

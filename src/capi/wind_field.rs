@@ -1,9 +1,9 @@
 //! Wind round terrain and buildings
 //!
-//! A context can solve for the wind in a box of air about a place. The wind enters the box as the weather's, flows
-//! round the terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of
-//! wk_context_set_shelters, including moving ones, and leaves on the downwind side. The field acts where a wind grid of
-//! your own would (wk_context_set_wind_grid): in wk_context_get_wind_at, in the rain on surfaces and windscreens, and
+//! A context can solve for the wind in a box of air about a place. The weather's wind enters the box, flows round the
+//! terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of wk_context_set_shelters,
+//! including moving ones, and leaves on the downwind side. As a wind grid of your own does (wk_context_set_wind_grid),
+//! the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and
 //! on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
 
 use std::{ffi::c_void, ptr::null};
@@ -25,24 +25,24 @@ include!(concat!(env!("OUT_DIR"), "/init_wind_field.rs"));
 
 /// Time dependence of a wind field.
 pub type wk_wind_field_mode = u32;
-/// The mean wind. It is solved in the first moments after the wind or an obstacle has changed; after that it rests at
-/// no cost. The weather's gusts are scaled in proportion to the local mean wind.
+/// The mean wind. The field is solved for in the first seconds of simulation time after the wind or an obstacle has
+/// changed. Afterwards it rests at no cost. The weather's gusts are scaled in proportion to the local mean wind.
 pub const WK_WIND_FIELD_STEADY: wk_wind_field_mode = 0;
 /// The wind with its gusts and eddies, and with the eddies that obstacles shed, stepped all the time.
-/// docs/wind-field.md has the sizes that a CPU core can keep up with.
+/// docs/wind-field.md says how much time a step takes on one CPU core.
 pub const WK_WIND_FIELD_RUNNING: wk_wind_field_mode = 1;
 
 /// Friction of terrain and boxes on air that flows along them.
 pub type wk_wind_walls = u32;
 /// Terrain and boxes slow the air, by the weather's roughness length.
 pub const WK_WIND_WALLS_ROUGH: wk_wind_walls = 0;
-/// Air slides along them without friction.
+/// Air slides along terrain and boxes without friction.
 pub const WK_WIND_WALLS_SMOOTH: wk_wind_walls = 1;
 
 /// Scheme by which the air of a wind field carries its own velocity. src/flow/mod.rs has the errors of each.
 pub type wk_wind_scheme = u32;
-/// Half a step, a projection, a reflection about the projected field, another half step and a projection (Zehnder et
-/// al. 2018), with limited cubic interpolation: eddies keep their energy.
+/// Half a step of advection, a projection, a reflection about the projected field, another half step and a projection
+/// (Zehnder et al. 2018). The interpolation is cubic and limited. Eddies keep their energy.
 pub const WK_WIND_SCHEME_REFLECTION: wk_wind_scheme = 0;
 /// Linear interpolation along curved paths, corrected by the error that appears when the result is carried back (Selle
 /// et al. 2008).
@@ -58,8 +58,8 @@ pub const WK_WIND_PRESSURE_MULTIGRID: wk_wind_pressure = 0;
 /// few iterations air is made and lost behind obstacles.
 pub const WK_WIND_PRESSURE_RELAXATION: wk_wind_pressure = 1;
 
-/// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of its sides and
-/// top it blends into the weather's wind.
+/// A box of air in which the wind is solved for: level and aligned to true north. Within four cells of the box's sides
+/// and top, the solved wind blends into the weather's wind.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_wind_field {
@@ -70,7 +70,7 @@ pub struct wk_wind_field {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
-    /// ground that matters. When it moves, the field follows by whole cells. Default 0, 0, 0.
+    /// ground that matters. When this point moves, the field follows by whole cells. Default 0, 0, 0.
     pub floor_center_m: [f64; 3],
     /// Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4,
     /// 4, 4.
@@ -90,8 +90,8 @@ pub struct wk_wind_field {
     pub scheme: wk_wind_scheme,
     /// A WK_WIND_PRESSURE_ constant, default WK_WIND_PRESSURE_MULTIGRID. Part of the saved state.
     pub pressure: wk_wind_pressure,
-    /// Largest number of V-cycles, [0, 1000], or of iterations of the relaxation, [0, 1000000], in one projection. 0,
-    /// the default, means 50 V-cycles or 5 iterations.
+    /// Largest number of V-cycles in one projection, [0, 1000]; with WK_WIND_PRESSURE_RELAXATION, largest number of
+    /// iterations, [0, 1000000]. 0, the default, means 50 V-cycles or 5 iterations.
     pub most_iterations: u32,
     /// Must be 0.
     pub reserved1: u32,
@@ -167,7 +167,7 @@ pub struct wk_wind_field_report {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// 1: there is a field. 0: none is set, its start time has not come, or its first steady state is still being
-    /// solved for; all other fields are 0 then.
+    /// solved for. While this field is 0, all others are 0 too.
     pub present: u32,
     /// 1: the field is steady and rests; nothing is stepped.
     pub rests: u32,
@@ -217,10 +217,12 @@ impl wk_wind_field_report {
 }
 
 /// Sets a wind field from simulation time `start_time_s` on, [-1e10, 1e10] s, not before the last update or change;
-/// NULL ends the field at that time. A field with the same size, mode, walls, scheme and pressure method at another
-/// place moves there by whole cells; any other field begins anew. wk_context_update advances it in steps on a grid
-/// anchored at time 0, whatever is drawn, so it is the same on every channel. It begins with the steady field of its
-/// first moment. Part of the saved state. Unchanged after an error.
+/// NULL ends the field at that time. If only the place differs from that of the present field, by less than half of the
+/// cells along each axis, the field moves there by whole cells. If it moves farther, or if the size, mode, walls,
+/// scheme or pressure method differs, the field begins anew. A new field begins with the steady wind at the time of its
+/// first step. wk_context_update advances the field in steps that end at multiples of wk_wind_field_report.step_s,
+/// whatever is drawn, so it is the same on all channels of a simulator. Part of the saved state. Unchanged after an
+/// error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_WRONG_ORDER for a time that has passed.
 #[unsafe(no_mangle)]

@@ -52,7 +52,7 @@ pub struct wk_wind_grid {
     /// A WK_WIND_GRID_ constant, default WK_WIND_GRID_WHOLE.
     pub kind: wk_wind_grid_kind,
     /// Three numbers for each node (east, north, up), m/s, each vector of at most 300 m/s. Nodes run from west to east,
-    /// rows from south to north, layers upwards. Copied by the call.
+    /// rows from south to north, levels upwards. Copied by the call.
     pub velocities_m_s: *const f32,
     /// Number of nodes in velocities_m_s: the product of `nodes`.
     pub velocity_count: u32,

@@ -2,16 +2,16 @@
 //!
 //! A view may look through a window. Rain lands on it at the rate and speed with which the window meets the drops.
 //! Beads merge, run down by gravity or up with the air, are wiped, and refract the picture behind them. Mist on the
-//! inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws this
-//! over everything drawn so far, inside the window only; pixels of the mask stay. In a call with TONE, the glass is
-//! drawn before the tone curve if the target is a float one, else after it.
+//! inside blurs the picture. Snow lies on the window until wipers remove it or heat melts it. The stage LENS draws
+//! water, mist and snow over everything drawn so far, inside the window only. Masked pixels stay the host's. In a call
+//! with TONE, the glass is drawn before the tone curve if the target is a float one, else after it.
 //!
-//! The water is part of the view. It moves in steps of 1/60 s from simulation time 0, with the frame that records
-//! WK_STAGE_PREPARE or the first stage after it. The water does not depend on the frame rate, and views of one seed and
-//! history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a frame comes more than half a second
-//! after the one before, the water takes the default state of that moment: a function of seed, time and rain. With
-//! WK_FRAME_NO_HISTORY it always has that state. Without a windscreen, or where it is dry and clear, LENS costs
-//! nothing.
+//! The water is part of the view. It moves in steps of 1/60 s, counted from simulation time 0. Each frame computes its
+//! steps when it records WK_STAGE_PREPARE or, without that, its first later stage. The water does not depend on the
+//! frame rate, and views of one seed and history agree bit for bit. At the first frame, after WK_FRAME_CUT, and when a
+//! frame comes more than half a second after the one before, the water takes the default state of that time: a function
+//! of seed, time and rain. With WK_FRAME_NO_HISTORY it always has that state. LENS costs nothing without a windscreen,
+//! or while the whole of it is dry and clear.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -48,8 +48,8 @@ pub struct wk_wiper_arm {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Position of the pivot along the glass, m right of and above the lower left corner of the pane or of its bounds.
-    /// Range [-4, 12] each. Default 0, 0.
+    /// Position of the pivot along the glass, m to the right of and above the lower left corner of the pane's bounding
+    /// rectangle. Range [-4, 12] each. Default 0, 0.
     pub pivot_m: [f64; 2],
     /// Distance from the pivot to the blade's outer end, m. Range [0.01, 3], default 0.6.
     pub length_m: f64,
@@ -97,17 +97,17 @@ pub struct wk_windscreen {
     /// Number of wipers in `arms`, at most 2. Default 0.
     pub arm_count: u32,
     /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
-    /// left, lower right, upper right, upper left as seen from the camera. Flat within 2 % of the diagonal, convex,
-    /// edges in [0.05, 8] m, within 20 m. Its slope relative to gravity follows from the frame's view matrix. Default 1
-    /// m x 0.6 m across the view, 0.7 m away.
+    /// left, lower right, upper right, upper left as seen from the camera. The window is flat within 2 % of its
+    /// diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
+    /// relative to gravity follows from the frame's view matrix. Default 1 m x 0.6 m across the view, 0.7 m away.
     pub corners_m: [f64; 12],
     /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
     pub distance_m: f64,
     /// Velocity of the glass relative to the air (the vehicle's minus the wind's) in the camera's axes, m/s; it decides
     /// how many drops the glass meets. Range [-400, 400] each, default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// Speed of the air along the glass at the drops' height, upwards, m/s; it drives the beads. About 0.7 of the
-    /// vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
+    /// Speed of the air along the glass, upwards, as close to the glass as a bead is high, m/s. It drives the beads.
+    /// About 0.7 of the vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
     /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
@@ -123,8 +123,8 @@ pub struct wk_windscreen {
     pub arm_stride: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Heat that wires in the glass or a blower give to it, W/m^2. It melts snow once it exceeds the loss to cold air.
-    /// A heated windscreen has about 600. Range [0, 3000], default 0.
+    /// Heat that wires in the glass or a blower give to the glass, W/m^2. It melts snow once it exceeds the loss to
+    /// cold air. A heated windscreen has about 600. Range [0, 3000], default 0.
     pub heat_w_m2: f64,
 }
 
@@ -188,7 +188,7 @@ impl wk_windscreen_report {
 }
 
 /// # Safety
-/// `p` is a `wk_windscreen` with the arms that it counts.
+/// `p` is a `wk_windscreen` whose list of arms is as long as it says.
 unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"windscreen", p)? };
@@ -253,8 +253,8 @@ pub unsafe extern "C" fn wk_view_set_windscreen(view: *mut wk_view, windscreen: 
 }
 
 /// Gets the amount of water on the view's windscreen as of its last frame, and the rate at which it lands. The call
-/// reads the state back and waits for the GPU: use it now and then, not in every frame. All 0 without a windscreen or
-/// before the view's first frame.
+/// reads the state back and waits for the GPU: use it now and then, not in every frame. All fields are 0 without a
+/// windscreen or before the view's first frame.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

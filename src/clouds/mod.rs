@@ -5,8 +5,8 @@
 //!   and solid noise frays the edges. [`cover`] finds the threshold at which the clouds of the map have the cover that
 //!   is asked for.
 //! * [`light`] computes the light in clouds, with the tables of [`transport`]. Light scattered once keeps the true
-//!   phase function. Light scattered more than once is computed as if the place stood in a box of even cloud with the
-//!   same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
+//!   phase function. Light scattered more than once is computed as if the place stood in a box of uniform cloud with
+//!   the same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
 //!   [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
 //! * A picture marches the ray of one pixel in sixteen in each frame and takes the other pixels over from the frame
 //!   before.
@@ -25,10 +25,11 @@
 //! combine them for a frame, `held` for a host's queries.
 //!
 //! # Error
-//! Drawn light of even slabs: within 5 % or 0.01 of discrete ordinates, whichever is more. Drawn light that leaves each
-//! face of a cube: within 15 % or 0.03 of the light that falls on the cube (`cargo test --lib clouds::drawn::probe --
-//! --nocapture`). `lab photons` compares rays through the field with photons; the error is largest under a low sun.
-//! Cover as seen from the ground: within 3 percentage points ([`cover`]).
+//! Drawn light of uniform slabs: within 5 % or 0.01 of discrete ordinates, whichever is more. Drawn light that leaves
+//! each face of a cube: within 15 % or 0.03 of the light that falls on the cube
+//! (`cargo test --lib clouds::drawn::probe -- --nocapture`). `lab photons` compares rays through the field with
+//! photons; the error is largest under a low sun. Cover as seen from the ground: within 3 percentage points
+//! ([`cover`]).
 
 #[cfg(not(feature = "lab"))]
 pub(crate) mod candidates;

@@ -5,10 +5,10 @@ use crate::error::{Error, Result, check_range};
 /// Detail with which a view draws clouds as volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudSettings {
-    /// Number of steps along a ray: twice the value takes twice as many. Range \[0.125, 32\], default 2. Half the
-    /// default errs more than twice as much and costs hardly less (`lab chart clouds`).
+    /// Fineness of the steps along a ray: twice the value takes twice as many steps. Range \[0.125, 32\], default 2.
+    /// Half the default errs more than twice as much and costs hardly less (`lab chart clouds`).
     pub fineness: f64,
-    /// Side of the square of pixels of which one is marched in each frame; the others are taken over from earlier
+    /// Side of a square of pixels. Each frame marches one pixel of every square and takes the others over from earlier
     /// frames. 1, 2 or 4, default 4. Frames without history march all pixels.
     pub square_side: u32,
     /// Whether shafts of light are drawn: the air between clouds and ground is brighter where the sun shines through,

@@ -29,8 +29,8 @@ use crate::{
     wind::LayerDrifts,
 };
 
-/// Order in which the pixels of a square are marched, each far from those before it: indices row by row in squares of 4
-/// x 4. Smaller squares use each index modulo their number of pixels.
+/// Order in which the pixels of a square are marched, each far from the pixels marched before it: indices row by row in
+/// squares of 4 x 4. Smaller squares use each index modulo their number of pixels.
 const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
 /// Stages whose draws show clouds directly.
 const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
@@ -82,7 +82,7 @@ pub(crate) struct CloudsView {
     made: Option<FrameProgress>,
     /// Passes of the draw that is being composed.
     wanted: Option<Wanted>,
-    /// Lamps and flashes that light the clouds in that draw.
+    /// Lamps and flashes that light the clouds in the draw that is being composed.
     lamps: Option<LampsUniform>,
     /// Whether the picture's textures hold the last frame's clouds.
     kept: bool,
@@ -143,7 +143,7 @@ impl CloudsView {
 }
 
 /// Returns for each channel the ratio of the direct light without clouds to the mean of all light, both on level
-/// ground. w is the mean share of the direct light that clouds let through.
+/// ground. The fourth number is the mean share of the direct light that clouds let through.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
     let (ground, share) = (&scene.ground, light.direct_share.max(1e-3));
@@ -165,15 +165,15 @@ impl CloudsView {
         handed.shadows.clone()
     }
 
-    /// Places the host's shadow map for this frame; `None` if no clouds cast shadows.
+    /// Places the host's shadow map for this frame. `projection` is `None` if no clouds cast shadows.
     fn lay(&mut self, now: &SceneMoment<'_>, projection: Option<&ShadowProjection>) {
         if let Some(handed) = &mut self.handed {
             handed.lay(now, projection);
         }
     }
 
-    /// Returns the side of the squares of pixels of which one is marched in a frame. 1 without history, since earlier
-    /// frames must not count then.
+    /// Returns the side of the squares in each of which a frame marches one pixel. It is 1 for a frame without history,
+    /// which must not use earlier frames.
     fn side(&self, frame: &Frame<'_>) -> u32 {
         if frame.flags.has(crate::stage::FrameFlags::NO_HISTORY) { 1 } else { self.settings.square_side }
     }

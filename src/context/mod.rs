@@ -1,8 +1,8 @@
 //! A context: the weather, the time and the place that all views of a simulator share, and the state of effects that is
 //! common to them.
 //!
-//! It advances the world (`src/world`) and the list of effects (`src/effects.rs`) through time, and saves and loads
-//! them. It names no single effect: the queries and settings of single effects are in `src/front`.
+//! A context advances the world (`src/world`) and the list of effects (`src/effects.rs`) through time, and saves and
+//! loads them. This room names no single effect: the queries and settings of single effects are in `src/front`.
 
 mod rehearsal;
 mod shared_world;

@@ -36,7 +36,7 @@ pub struct Context {
     pub(super) shared: Arc<Shared>,
     pub(crate) world: World,
     pub(crate) held: Held,
-    /// Settings at the beginning of an update of which steps remain; `None` if no steps remain.
+    /// Settings at the beginning of the update whose steps are not all done; `None` if no steps remain.
     pub(super) behind: Option<Box<Settings>>,
 }
 
@@ -263,17 +263,19 @@ impl Context {
     /// there ([`Context::set_weather_regions`]). Precipitation is that at the position itself: it includes the rain
     /// areas there ([`Context::set_rain_areas`]), weighted by their rims, and is zero above the cloud that it falls
     /// from. Rain and drizzle are those of [`Context::rain_at`]. The extinction of the precipitation, the total
-    /// extinction and the visibility include it. Everything else is that of the station's height (each field says so).
+    /// extinction and the visibility are those with this precipitation. Everything else is that of the station's height
+    /// (each field says so).
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid, or if the time is not finite, out of range, or
-    /// before what the timeline still knows ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
+    /// before the earliest time that the timeline still knows
+    /// ([`Timeline::known_from_s`](crate::weather::Timeline::known_from_s)).
     pub fn conditions_at(&self, position: DVec3, time_s: f64) -> Result<Conditions> {
         self.world.conditions_at(position, time_s)
     }
 
-    /// Returns temperature, humidity and pressure at `position`, whose altitude counts, at a past or future simulation
-    /// time `time_s`, with the weather regions there; see [`Conditions::air_at_altitude_m`].
+    /// Returns temperature, humidity and pressure at the place and altitude of `position`, at a past or future
+    /// simulation time `time_s`, with the weather regions there; see [`Conditions::air_at_altitude_m`].
     ///
     /// # Errors
     /// As [`Context::conditions_at`].

@@ -12,7 +12,8 @@ use crate::{
     world::UpdateBudget,
 };
 
-/// Longest time of one batch of steps, after which [`Context::update`] checks whether more remain.
+/// Time limit of each call of [`Context::update_within`] by [`Context::update`], which repeats it until no steps
+/// remain.
 pub(crate) const UPDATE_TIME: Duration = Duration::from_millis(50);
 
 impl Context {
@@ -30,13 +31,13 @@ impl Context {
     }
 
     /// Advances time as [`Context::update`] does, but runs steps of simulated states only for about as long as `most`:
-    /// at least one step, or for terrain in tiles a part of one. [`Status::Pending`] says that steps remain: call it
-    /// again with the same time, now or after a frame, until it returns [`Status::Ok`].
+    /// at least one step, or for terrain in tiles a part of one. [`Status::Pending`] says that steps remain: call this
+    /// function again with the same time, now or after a frame, until it returns [`Status::Ok`].
     ///
     /// Until then weather and light are those of the new time, simulated water and snow are those of
-    /// [`Context::state_time_s`], and a call with a later time first runs the remaining steps: time advances once none
-    /// remains. Settings made meanwhile take effect after the remaining steps. The state is therefore the same for any
-    /// `most`, and it can be saved only after the last step ([`Context::save`]).
+    /// [`Context::state_time_s`], and a call with a later time first runs the remaining steps. Time advances only when
+    /// no steps remain. Settings made meanwhile take effect after the remaining steps. The state is therefore the same
+    /// for any `most`, and it can be saved only after the last step ([`Context::save`]).
     ///
     /// # Errors
     /// As [`Context::update`].

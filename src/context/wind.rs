@@ -17,13 +17,13 @@ impl Context {
         Ok(self.world.over().wind.at(time_s))
     }
 
-    /// Returns the wind at `position` and simulation time `time_s`, in (east, north, up) of the place. Height counts
-    /// from the station's altitude. A host with terrain should therefore query a point as far above the station as the
-    /// real point is above the terrain.
+    /// Returns the wind at `position` and simulation time `time_s`, in (east, north, up) of the place. Height is
+    /// measured from the station's altitude. A host with terrain should therefore query a point as far above the
+    /// station as the real point is above the terrain.
     ///
     /// Inside a host's grid ([`Context::set_wind_grid`]) the grid's wind replaces the weather's or is added to it
     /// ([`WindGridKind`](crate::wind::WindGridKind)), at any time. Inside a solved field ([`Context::set_wind_field`])
-    /// it is the field's, at times within a minute of the field's own time.
+    /// the wind is the field's, at times within a minute of the field's own time.
     ///
     /// Any thread. Closed form: any time costs the same. [`crate::wind`] has the laws.
     ///
@@ -34,8 +34,8 @@ impl Context {
     }
 
     /// Sets a wind that varies in space. It replaces a solved field ([`Context::set_wind_field`]), and it replaces the
-    /// weather's wind or is added to it, by its kind; `None` returns to these. It affects [`Context::wind_at`], the
-    /// rain that lands on a surface or a windscreen, and drops and flakes near a camera. It does not affect
+    /// weather's wind or is added to it, by its kind. `None` removes the grid. The grid affects [`Context::wind_at`],
+    /// the rain that lands on a surface or a windscreen, and drops and flakes near a camera. It does not affect
     /// [`Context::wind_displacement`] and everything that moves by it.
     ///
     /// # Errors
@@ -53,8 +53,8 @@ impl Context {
 
     /// Returns the displacement of the air by the wind at 10 m, gusts included, since simulation time 0, m (east,
     /// north, up). It is the integral of the wind's velocity over the timeline, the same at every place, and continuous
-    /// through all changes of weather. Things that drift with the air are moved by its differences, never by velocity
-    /// times time.
+    /// through all changes of weather. Things that drift with the air are moved by differences of this displacement,
+    /// never by velocity times time.
     ///
     /// Any thread. Closed form; the same bits for any sequence of updates, and after saving and loading.
     ///

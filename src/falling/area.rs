@@ -27,8 +27,8 @@ const FARTHEST_M: f64 = 3e5;
 pub enum AreaShape {
     /// Half extents to the right and ahead, m, each \[10, 1e6\].
     Ellipse([f64; 2]),
-    /// Corners of a convex region, in order, clockwise or counter-clockwise, each coordinate within 1e6; and the number
-    /// of corners, \[3, 8\].
+    /// Corners of a convex region of more than 1 m^2, m, in order, clockwise or counter-clockwise, each coordinate
+    /// within 1e6 m of the centre; and the number of corners, \[3, 8\].
     Polygon([[f64; 2]; MAX_CORNERS], usize),
 }
 
@@ -50,7 +50,8 @@ pub enum AreaMotion {
     /// Motion with the wind at 10 m and its gusts, by the wind's displacement.
     #[default]
     WithWind,
-    /// Its own velocity, m/s (east, north), each within \[-200, 200\]; 0 for an area that stands still.
+    /// Own velocity of the area, m/s (east, north), each component within \[-200, 200\]; 0 for an area that stands
+    /// still.
     Own([f64; 2]),
 }
 
@@ -58,8 +59,8 @@ pub enum AreaMotion {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RainArea {
-    /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
-    /// matter.
+    /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. The height of the
+    /// centre does not matter.
     pub center_m: [f64; 3],
     /// Shape around the centre.
     pub shape: AreaShape,
@@ -68,12 +69,12 @@ pub struct RainArea {
     /// Width of the band inside the border over which the rain fades, m, \[1, 1e6\]. It is at most the smaller half
     /// extent of an ellipse, or the radius of the largest circle inside a polygon.
     pub rim_m: f64,
-    /// Rate at the ground, mm/h, \[0, 500\].
+    /// Rain rate at the ground, mm/h, \[0, 500\].
     pub rate_mm_h: f64,
     /// Kind of the rain.
     pub kind: AreaRain,
-    /// Altitude of the cloud base that the rain falls from, m above the sea, \[-1000, 20 000\]. Above it neither the
-    /// area's rain nor the weather's falls.
+    /// Altitude of the cloud base that the rain falls from, m above the sea, \[-1000, 20 000\]. Above this base no
+    /// rain falls inside the area: neither the area's nor, except in the rim, the weather's.
     pub top_m: f64,
     /// Motion of the area.
     pub motion: AreaMotion,
@@ -285,7 +286,7 @@ pub(crate) struct Shaft {
     pub falling: Falling,
     /// Fall speed of the drop of median volume, m/s: half of the water is in larger drops.
     pub speed_m_s: f64,
-    /// Farthest point of the plan from the centre, m.
+    /// Distance of the plan's farthest point from the centre, m.
     pub radius_m: f64,
     /// Index in the host's list, which seeds the pattern.
     pub index: u32,
@@ -301,8 +302,8 @@ const SOFT_M: [f64; 2] = [50.0, 400.0];
 
 impl Shaft {
     /// Creates the shaft of an area whose centre is now at `center`, which has the altitude `center_altitude_m`.
-    /// `speed_m_s` is the rain's fall speed, and `cloud_m_s` the velocity of its cloud relative to the air that it
-    /// falls through.
+    /// `speed_m_s` is the rain's fall speed, and `cloud_m_s` the velocity of the rain's cloud relative to the air
+    /// through which the rain falls.
     pub fn new(
         area: &RainArea,
         index: u32,
@@ -347,8 +348,8 @@ impl Shaft {
         DVec2::new(plan.dot(self.right), plan.dot(self.right.perp()))
     }
 
-    /// Returns the share of this area in the rain at a position, 0 to 1. Its height counts only by the lean of the
-    /// column.
+    /// Returns the share of this area in the rain at a position, 0 to 1. The height of the position matters only
+    /// because the column leans.
     pub fn share_at(&self, position: DVec3, world_to_enu: &DMat3, altitude_m: f64) -> f64 {
         let Some(plan) = self.plan(position, world_to_enu, altitude_m) else { return 0.0 };
         smoothstep(0.0, self.rim_m, self.outline.depth(self.turned(plan)))

@@ -17,7 +17,7 @@ pub(crate) const AMOUNT: f64 = 0.2;
 pub(crate) const PATTERN_M: [f64; 2] = [30.0, 300.0];
 /// Shortest and longest wave of columns, m.
 pub(crate) const COLUMN_LENGTHS_M: [f64; 2] = [130.0, 900.0];
-/// Shortest and longest wave of the weather's own rain, m, which is seen from nearer.
+/// Shortest and longest wave of the weather's own rain, m. This rain is seen from nearer than columns.
 pub(crate) const OWN_LENGTHS_M: [f64; 2] = [50.0, 600.0];
 /// Fall speed of the curtains of the weather's own rain, m/s, at any rate. If it followed the rate, a change of weather
 /// late in a run would shift the pattern abruptly. At 3 mm/h half of the water falls faster.

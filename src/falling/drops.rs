@@ -66,7 +66,8 @@ pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_90
 
 /// Returns the terminal speed at sea level, m/s, in a closed form for shaders: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4
 /// D^2))), never negative, with D = `diameter_mm` and c = [`CLOSED_FORM`]. Its RMS error over the table is 0.031 m/s,
-/// at most 0.078 m/s; from 0.6 mm on it is within 2 % (tested). It is monotone and at most 9.2 m/s for any size.
+/// at most 0.078 m/s; at 0.6 mm and more the error is within 2 % (tested). It is monotone and at most 9.2 m/s for any
+/// size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);
@@ -113,10 +114,10 @@ pub fn streak_length_m(relative_velocity_m_s: DVec3, exposure_s: f64) -> f64 {
 }
 
 /// Returns the velocity (m/s) and the displacement (m) after `dt_s` of a drop that has `velocity_m_s` in air of
-/// `air_m_s` and falls at `terminal_m_s` once it has settled. Vectors (east, north, up).
+/// `air_m_s` and falls at `terminal_m_s` once it has settled. Vectors are (east, north, up).
 ///
-/// Drag that is linear in the velocity difference relaxes it within the time terminal / g; the solution is exact for
-/// any step. (Quadratic drag leads to the same velocity, at most twice as fast.)
+/// The drag is linear in the velocity difference, which decays with the time constant `terminal_m_s` / g. The solution
+/// is exact for any step. (Quadratic drag leads to the same velocity, at most twice as fast.)
 pub fn relax(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let settled = air_m_s - DVec3::Z * terminal_m_s;
     let time = terminal_m_s / GRAVITY_M_S2;

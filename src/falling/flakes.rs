@@ -81,7 +81,7 @@ impl FlakeKind {
         ("crystal", Self::Crystal),
     ];
 
-    /// Returns the kind of that name; hyphens count as underscores. `None` for another name.
+    /// Returns the kind with this name, in which hyphens are read as underscores. `None` for an unknown name.
     pub fn from_name(name: &str) -> Option<Self> {
         let same = |known: &str| name.chars().map(|c| if c == '-' { '_' } else { c }).eq(known.chars());
         Self::NAMES.iter().find(|(known, _)| same(known)).map(|(_, kind)| *kind)
@@ -147,7 +147,7 @@ struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
     /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. If
-    /// it is 0, equal ratios of diameters hide equal areas.
+    /// the slope is 0, equal ratios of diameters hide equal areas.
     lambda: f64,
     /// Smallest and largest diameter, mm.
     range_mm: (f64, f64),
@@ -159,7 +159,8 @@ fn gamma4(x: f64) -> f64 {
 }
 
 impl FlakeMode {
-    /// Returns the share of the area hidden by all flakes of the part that flakes up to a diameter hide, 0 to 1.
+    /// Returns the area that the part's flakes up to a diameter hide, as a share of the area that all its flakes hide,
+    /// 0 to 1.
     fn area_below(&self, diameter_mm: f64) -> f64 {
         let (low, high) = self.range_mm;
         let d = diameter_mm.clamp(low, high);
@@ -256,8 +257,8 @@ impl FlakeSizes {
     }
 
     /// Returns the density times the diameter, c, with which the flakes give the rate, g/cm^3 mm (which is kg/m^2); 0
-    /// without flakes. If the area of the discs is a (m^2 per cubic metre, of which [`AREA_RATIO`] is ice) and they
-    /// fall at v, the rate is (2/3) c a v.
+    /// without flakes. If the area of the discs is a (m^2 per cubic metre, of which [`AREA_RATIO`] is ice) and the
+    /// flakes fall at v, the rate is (2/3) c a v.
     pub fn density_mm_g_cm3(&self) -> f64 {
         const PANELS: usize = 64;
         let mut flux = 0.0;

@@ -22,8 +22,9 @@ pub const HAIL_MM: (f64, f64) = (5.0, 60.0);
 
 /// Rate of melted water, mm/h, from one stone of 1 mm per m^3 that falls at 1 m/s.
 const RATE: f64 = PI / 6.0 * 3.6e-3 * ICE_KG_M3 / 1000.0;
-/// Smallest and largest slope of hail's size distribution, 1/mm. The smallest gives the most water of Cheng and
-/// English's law; a higher rate has more stones, not larger ones. The largest gives almost no water.
+/// Smallest and largest slope of hail's size distribution, 1/mm. The smallest slope gives the most water that Cheng and
+/// English's law can give. At a higher rate there are more stones, not larger ones. The largest slope gives almost no
+/// water.
 const HAIL_SLOPES_PER_MM: (f64, f64) = (0.15, 3.0);
 /// Density of the standard atmosphere at sea level, kg/m^3.
 const SEA_LEVEL_KG_M3: f64 = 1.225;
@@ -149,8 +150,8 @@ pub struct StoneSizes {
 }
 
 impl StoneSizes {
-    /// Creates the size distribution of the precipitation at the ground, where drops are `speed_factor` times as fast
-    /// as at sea level ([`super::drops::altitude_factor`]). The rate is the same at every altitude.
+    /// Creates the size distribution of the stones in `falling`, at an altitude where drops fall `speed_factor` times
+    /// as fast as at sea level ([`super::drops::altitude_factor`]). The rate is the same at every altitude.
     pub fn new(falling: &Falling, speed_factor: f64) -> Self {
         Self::of_rates(falling.ice_pellets_mm_h, falling.hail_mm_h, speed_factor)
     }
@@ -204,7 +205,8 @@ impl StoneSizes {
     }
 
     /// Returns the flux onto the front of a surface. `normal` is the unit vector out of that front (east, north, up);
-    /// `air_m_s` is the velocity of the air relative to the surface. Stones from behind do not count.
+    /// `air_m_s` is the velocity of the air relative to the surface. Stones that come from behind the surface are not
+    /// included.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }

@@ -32,7 +32,7 @@ pub fn random3(key: [u32; 3]) -> [u32; 3] {
 }
 
 /// Extinction of the precipitation outside all rain areas, by species. It is the same everywhere below the cloud that
-/// it falls from. Inside the cloud it is not counted, because the cloud's own water hides it.
+/// the precipitation falls from. Inside the cloud the extinction is left out, because the cloud's own water hides it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FallingLayer {
     /// Extinction of rain and drizzle, at 550 nm, 1/m.

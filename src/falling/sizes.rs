@@ -240,8 +240,8 @@ impl DropSizes {
     }
 
     /// Returns the flux onto the front of a surface. `normal` is the unit vector out of that front (east, north, up);
-    /// `air_m_s` is the velocity of the air relative to the surface. Each size arrives at its own slant. Drops from
-    /// behind do not count.
+    /// `air_m_s` is the velocity of the air relative to the surface. Each size arrives at its own slant. Drops that
+    /// come from behind the surface are not included.
     pub fn on_surface(&self, normal: DVec3, air_m_s: DVec3) -> SurfaceFlux {
         self.on_surface_of(normal, air_m_s, |_| true)
     }
@@ -313,8 +313,9 @@ impl DropSizes {
 }
 
 /// Returns the diameter, mm, at the quantile `u` (\[0, 1\]) of a [`DropSizes::diameter_table`], interpolated linearly
-/// at entry 63 (1 - (1 - u)^(1/4)). Its error is at most 1 % for drops from 0.5 mm on, with [`Weight::Number`] and
-/// [`Weight::Flux`] (tested). It is not meant for [`Weight::Water`]. Shaders take the fourth root as two square roots.
+/// between the entries on both sides of 63 (1 - (1 - u)^(1/4)). The error is at most 1 % for drops of 0.5 mm and more,
+/// with [`Weight::Number`] and [`Weight::Flux`] (tested). It is not meant for [`Weight::Water`]. Shaders take the
+/// fourth root as two square roots.
 pub fn table_diameter_mm(table: &[f32; TABLE_LEN], u: f64) -> f64 {
     let x = (TABLE_LEN - 1) as f64 * (1.0 - (1.0 - u.clamp(0.0, 1.0)).sqrt().sqrt());
     let i = (x as usize).min(TABLE_LEN - 2);

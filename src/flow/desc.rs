@@ -23,7 +23,7 @@ pub enum WindWalls {
     /// Friction by the weather's roughness length.
     #[default]
     Rough,
-    /// No friction: air slides along them.
+    /// No friction: air slides along terrain and boxes.
     Smooth,
 }
 

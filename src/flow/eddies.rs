@@ -112,7 +112,7 @@ impl Mixing<'_> {
         let n = lattice.n;
         lattice.each_row(c, |j, k, at, count| {
             let is_inside = |a: usize, i: usize| i > 0 && i + 1 < n[a];
-            // Cells beside those at the sides are missing.
+            // Cells at the sides lack a neighbour.
             let inner = if is_inside(1, j) && is_inside(2, k) { 1..n[0].saturating_sub(1) } else { 0..0 };
             let whole = inner.len() / LANES * LANES;
             for i in inner.clone().step_by(LANES).take(whole / LANES) {

@@ -43,7 +43,7 @@ pub struct FlowField {
     pub(super) last_dt: f64,
     /// Largest change of a velocity in the last step, m/s.
     pub(super) last_change_m_s: f32,
-    /// Scratch memory of MacCormack's scheme: range of the values that each value was carried from.
+    /// Scratch memory of MacCormack's scheme: range of the values from which each value was carried.
     pub(super) bounds: [Vec<[f32; 2]>; 3],
     /// Potentials of the first and the second projection of a step, from which those of the next step begin.
     pub(super) potentials: [Vec<f32>; 2],
@@ -56,8 +56,8 @@ pub struct FlowField {
 }
 
 impl FlowField {
-    /// Creates a field around `obstacles` from a wind (m/s east, north, up, at a place) and makes it free of
-    /// divergence. This wind is also the outer wind at open sides.
+    /// Creates a field around `obstacles` and makes its air free of divergence. `wind` returns the wind, m/s (east,
+    /// north, up), at a place, m from the box's lowest corner. This wind is also the outer wind at open sides.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for settings outside their ranges, for a wind that is not finite or over
@@ -174,8 +174,8 @@ impl FlowField {
         0.5 * sum * cell
     }
 
-    /// Returns the velocity at a place, m/s (east, north, up), linear between faces; outside the box the velocity at
-    /// the nearest place of the box.
+    /// Returns the velocity, m/s (east, north, up), at a place, m from the box's lowest corner. It is linear between
+    /// faces. Outside the box it is the velocity at the nearest place of the box.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
         let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
         carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()

@@ -1,14 +1,14 @@
 //! Order of a grid's values for sweeps over one colour of a chessboard: each row has its even cells first, then its odd
 //! ones. All cells of one colour in a row, and each of their neighbours, thus lie side by side.
 //!
-//! The neighbours of a row's first and last cell are each other. Copies of the two lie beyond the other's end, so
-//! sweeps need no special case there. The room that is left in a row holds zeros.
+//! The first and the last cell of a row are neighbours. A copy of each lies next to the other, beyond the end of the
+//! row, so sweeps need no special case at the ends. The room that is left in a row holds zeros.
 
 use glam::{Vec4, vec4};
 
 /// Number of cells that are computed at once.
 pub(super) const LANES: usize = 4;
-/// Values of that many cells.
+/// Values of [`LANES`] cells.
 pub(super) type Lanes = [f32; LANES];
 
 /// Order of values in rows of halves.
@@ -72,7 +72,8 @@ impl Halves {
         i / 2 + if i.is_multiple_of(2) { 0 } else { self.odd }
     }
 
-    /// Returns a half of a row, 0 for even cells and 1 for odd ones, shifted by one cell of the half before or after.
+    /// Returns the values of one half of a row, from `shift` cells after the first cell of the half on. `half` is 0 for
+    /// even cells and 1 for odd ones.
     #[inline]
     fn half<'a>(&self, values: &'a [f32], row: usize, half: usize, shift: isize) -> &'a [Lanes] {
         let start = (row + half * self.odd).wrapping_add_signed(shift);
@@ -177,7 +178,8 @@ impl Halves {
         }
     }
 
-    /// Adds a share of a row's values to the sums of cells, each of which joins two cells of the row or is one of them.
+    /// Adds `share` times the values of a row to the sums of coarse cells. If `is_joined`, each coarse cell joins two
+    /// cells of the row, else it has one.
     #[inline]
     pub(super) fn add_row(&self, row: &[f32], share: f32, is_joined: bool, sums: &mut [f32]) {
         let (even, odd) = row.split_at(self.odd);

@@ -1,5 +1,5 @@
-//! Wind field of a context: it is set for a date, stepped on the step grid, published to all readers of the wind, saved
-//! and loaded.
+//! Wind field of a context: it is set for a simulation time, stepped on the step grid, published to all readers of the
+//! wind, saved and loaded.
 
 use serde::{Deserialize, Serialize};
 
@@ -110,7 +110,7 @@ impl HeldFlow {
         Ok(true)
     }
 
-    /// Does the next piece of work that is due until `until_s`. Returns whether there was any.
+    /// Does the next piece of work that is due by `until_s`. Returns whether any was due.
     fn go_on(&mut self, world: &World, until_s: f64) -> Result<bool> {
         let Some(mut live) = self.live.take() else { return self.begin_field(world) };
         let outcome = self.advance_live(&mut live, world, until_s);

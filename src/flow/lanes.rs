@@ -10,7 +10,7 @@ use super::lattice::{Faces, GHOSTS, Lattice};
 /// Number of faces that are carried at once.
 pub(super) const LANES: usize = 4;
 
-/// FacePlaces of four faces along each axis, in cells.
+/// Places of four faces along each axis, in cells.
 pub(super) type FacePlaces = [Vec4; 3];
 
 /// Wind that carries, and the range in which it may be looked up.
@@ -25,25 +25,27 @@ pub(super) struct Carrier<'a> {
     per_cell: [f32; 3],
 }
 
-/// FacePlaces among the values along one axis.
+/// Places of four lanes among the values along one axis.
 #[derive(Clone, Copy)]
 struct AxisPlaces {
     /// Index of the value before each place.
     low: Vec4,
-    /// Fraction of a cell from there to the place.
+    /// Fraction of a cell from that value to the place.
     part: Vec4,
-    /// Whether the lane lies beside the first as in a list: at the same index, or along the first axis at the next.
+    /// Whether each lane has the index that it would have if the four places lay side by side in a row: that of the
+    /// first lane, plus the number of the lane along the first axis.
     follows: BVec4A,
 }
 
-/// Values around four places: position in the list of the lowest one of each.
+/// Position in the list of the lowest of the values around each of four places.
 enum Lowest {
     /// The lanes' values follow each other, from this position.
     Row(usize),
     Apart([usize; LANES]),
 }
 
-/// Values around four places: the lowest ones, and the fraction of a cell between them and the next along each axis.
+/// Four places among values: the lowest value around each place, and the fraction of a cell from this value to the
+/// place along each axis.
 pub(super) struct Taps {
     lowest: Lowest,
     part: [Vec4; 3],
@@ -90,7 +92,7 @@ impl<'a> Carrier<'a> {
         });
     }
 
-    /// Returns the places at `far` times `way`, m, from others, clamped to the range of places.
+    /// Returns `places` moved by `far` times `way`, m, and clamped to the range of places.
     #[inline]
     pub(super) fn moved(&self, mut places: FacePlaces, way: [Vec4; 3], far: f32) -> FacePlaces {
         for (a, along) in places.iter_mut().enumerate() {
@@ -99,7 +101,7 @@ impl<'a> Carrier<'a> {
             }
             let p = *along + Vec4::splat(far * self.per_cell[a]) * way[a];
             *along = match self.range[a] {
-                // Also what is no number lies in the range then.
+                // NaN becomes the low end of the range.
                 Some([low, high]) => {
                     let low = Vec4::splat(low);
                     Vec4::select(p.cmpgt(low), p, low).min(Vec4::splat(high))

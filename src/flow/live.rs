@@ -88,7 +88,7 @@ impl Anchor {
     }
 }
 
-/// Wind that flows into a field over its sides, and its profile with height.
+/// Wind that flows into a field over the field's sides, and the profile of this wind with height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inflow {
     /// Wind at 10 m: mean, wander and gusts, and the displacement of the air by them.
@@ -126,7 +126,7 @@ impl Inflow {
         Whirls::new(seed, desc, self.blowing.mean_m_s, speed)
     }
 
-    /// Sets the mixing by the eddies that the field does not show.
+    /// Sets the mixing by the eddies that are too small for the field's cells.
     fn mix(&self, field: &mut FlowField, cell_m: DVec3, ground_m: impl Fn(DVec2) -> f64) {
         let cells = if self.is_steady { STEADY_CELLS } else { 1.0 };
         let speed = KAPPA * self.profile.friction_velocity_m_s();
@@ -146,7 +146,8 @@ struct Scenery<'a> {
     corner_m: DVec3,
     /// Size of the field, m.
     size_m: DVec3,
-    /// Time from the world's present, to which the positions of the host's boxes belong, to the time of the scenery, s.
+    /// Time of the scenery minus the world's present time, s. The positions of the host's boxes are those at the
+    /// present time.
     since_s: f64,
     /// Heights of the host's terrain grid.
     terrain: Option<&'a Arc<TerrainHeights>>,
@@ -555,7 +556,7 @@ impl Live {
         volume.nodes = cells.map(|n| n + 1);
         volume.holds_s = Some(self.holds_s());
         volume.values.clear();
-        // 0 at a side, 1 at the inner edge of the zone.
+        // 0 at a side, 1 at the inner edge of the zone in which the field fades.
         let rim = |cells: f32| {
             let x = (cells / RIM_CELLS).clamp(0.0, 1.0);
             x * x * (3.0 - 2.0 * x)

@@ -7,13 +7,13 @@
 //! A context has a field if its host asks for one ([`WindFieldDesc`],
 //! [`Context::set_wind_field`](crate::context::Context::set_wind_field)). `live.rs` keeps the field around its place:
 //! the inflow comes from the weather's profile and gusts, the obstacles from the host's terrain and boxes. `held.rs`
-//! advances it in steps on a grid anchored at time 0, saves it, and publishes its wind to the world. Effects read it
-//! there ([`crate::wind`]); none calls this room.
+//! advances it in steps on a grid anchored at time 0, saves it, and publishes its wind to the world. Effects read the
+//! wind from the world ([`crate::wind`]); none calls this room.
 //!
 //! # Model
 //!
-//! Air of constant density: du/dt + (u . grad) u = -grad p + nu laplace u, div u = 0. In weather the viscosity nu is 0
-//! (Euler's equations).
+//! Air of constant density with the velocity u: du/dt + (u . grad) u = -grad p + nu laplace u, div u = 0. p is the
+//! pressure divided by the density. In weather the viscosity nu is 0 (Euler's equations).
 //!
 //! - Grid: staggered, with velocity at the centres of faces and pressure at the centres of cells (Harlow and Welch
 //!   1965).
@@ -59,9 +59,9 @@
 //! grid; over-relaxation needs 11 times this work (`cargo test --lib flow -- --nocapture multigrid`). A step of the
 //! default scheme takes two projections. Advection, sweeps and eddies compute four neighbouring values at a time
 //! (`lanes.rs`, `halves.rs`), each with the operations and the order of a single value, so the bits do not depend on
-//! it. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long (`cargo bench --bench
-//! speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread and without the GPU;
-//! every run gives the same bits.
+//! this grouping. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long (`cargo
+//! bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread and
+//! without the GPU; every run gives the same bits.
 //!
 //! # Limits
 //!

@@ -189,7 +189,7 @@ fn largest_of(faces: &Faces, f: impl Fn(usize, usize) -> f32) -> f32 {
     all.fold(0.0, |most, (c, at)| most.max(f(c, at).abs()))
 }
 
-/// Extrapolates from `earlier` through `now`, by `ahead` times the distance between the two, into `earlier`.
+/// Extrapolates from `earlier` through `now`, by `ahead` times the difference between the two, into `earlier`.
 fn lead_on(now: &Faces, earlier: &mut Faces, ahead: f32) {
     for (now, earlier) in now.iter().flatten().zip(earlier.iter_mut().flatten()) {
         *earlier = now + ahead * (now - *earlier);

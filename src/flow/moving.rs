@@ -100,8 +100,9 @@ impl FlowField {
         Ok(())
     }
 
-    /// Replaces the obstacles without making the air free of divergence, which the next step does. `bodies` is the
-    /// result of the last call, if terrain and fixed obstacles are the same.
+    /// Replaces the obstacles without making the air free of divergence, which the next step does. `moving` holds the
+    /// boxes that move. `bodies` is the result of the last call if terrain and fixed obstacles have not changed since,
+    /// else `None`.
     ///
     /// # Errors
     /// Errors of [`FlowField::new`]; the field then stays unchanged.
@@ -170,7 +171,8 @@ impl FlowField {
         (numbers, &mut self.last_dt, &mut self.last_change_m_s)
     }
 
-    /// Interpolates the velocities of a field of the same box with cells twice as long, linearly.
+    /// Sets the velocities by linear interpolation from `coarse`, a field of the same box with cells twice as long, and
+    /// makes them free of divergence.
     pub(super) fn take_coarse(&mut self, coarse: &Self) {
         let mut velocity: Faces = std::mem::take(&mut self.velocity);
         for c in self.lattice.axes() {

@@ -1,8 +1,8 @@
 //! Multigrid for the pressure: the same equation on successively coarser grids.
 //!
-//! A coarse cell joins two cells along each axis on which cells are not much longer than on the others. Elongated cells
-//! thus become cubic first, and then all axes are halved together. The opening of a coarse face is the mean of its fine
-//! faces. An odd number of cells leaves a coarse cell that is half closed. Residuals are restricted as means;
+//! A coarse cell joins two cells along each axis on which cells are not much longer than on the other axes. Elongated
+//! cells thus become cubic first, and then all axes are halved together. The opening of a coarse face is the mean of
+//! its fine faces. An odd number of cells leaves a coarse cell that is half closed. Residuals are restricted as means;
 //! corrections are interpolated linearly between coarse cells.
 
 use std::mem::{swap, take};
@@ -17,7 +17,7 @@ const SWEEPS: usize = 2;
 const COARSEST_SWEEPS: usize = 24;
 /// Number of cells up to which a grid is not coarsened.
 const FEW_CELLS: u64 = 32;
-/// Ratio to the shortest cell side up to which an axis is coarsened.
+/// Largest ratio of an axis's cell side to the shortest cell side at which the axis is still coarsened.
 const LONGER: f32 = 1.5;
 
 /// Equation on one grid: for each cell, the sum over its faces of coefficient times (neighbour - own) equals the
@@ -34,7 +34,8 @@ pub(super) struct GridLevel {
     /// Solution of a cycle.
     pub x: Vec<f32>,
     b: Vec<f32>,
-    /// Whether cells of one colour touch across the ends of each axis: a periodic one with an odd number of cells.
+    /// Whether cells of one colour touch across the ends of each axis, as on a periodic axis with an odd number of
+    /// cells.
     has_odd_ends: [bool; 3],
     /// Number of cells that a cell of the next level joins along each axis, 1 or 2.
     join: [usize; 3],
@@ -92,7 +93,7 @@ impl RowSweep<'_> {
     }
 }
 
-/// Returns the first of two vectors in lanes whose sum of coefficients is that of a cell with air, else the second.
+/// Returns `there` in the lanes of cells with air, whose sum of coefficients is above 0, and `elsewhere` in the others.
 #[inline]
 fn where_air(sum: Vec4, there: Vec4, elsewhere: Vec4) -> Vec4 {
     Vec4::select(sum.cmpgt(Vec4::ZERO), there, elsewhere)
@@ -239,7 +240,8 @@ impl GridLevel {
         });
     }
 
-    /// Returns the next coarser level and the numbers of cells that it joins.
+    /// Returns the numbers of cells that the next coarser level joins along each axis, and that level; `None` if there
+    /// is no further level.
     fn coarser(&self) -> Option<([usize; 3], Self)> {
         let fine = self.halves.n;
         let join = joined(fine, self.h)?;
@@ -345,7 +347,8 @@ impl GridLevel {
         }
     }
 
-    /// Returns the values of a coarse row that a half of a fine row takes, of the own cell first, with a weight.
+    /// Returns the values of a coarse row that are added to one half of a fine row, with their weights: first those of
+    /// each fine cell's own coarse cell, then those of its neighbour.
     #[inline]
     fn taps_of_row(&self, fine: &Halves, y: usize, z: usize, half: usize, weight: f32) -> [CoarseTap<'_>; 2] {
         if self.plain[0].is_empty() {

@@ -51,7 +51,8 @@ impl FlowBox<'_> {
     }
 }
 
-/// Height of the ground above the lowest corner of the field at a place east and north of it, m.
+/// Function that returns the height of the ground above the field's lowest corner, m. Its argument is a place, m east
+/// and north of this corner.
 pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 
 /// Obstacles that stand or move in the air.
@@ -112,7 +113,7 @@ impl SolidBox {
         Self { planes, low, high, velocity: b.velocity_m_s }
     }
 
-    /// Returns the lowest and the highest height of the box above a place.
+    /// Returns the heights between which the box lies over a place, lowest first; `None` where it does not.
     fn span(&self, place: DVec2) -> Option<[f64; 2]> {
         if place.cmplt(self.low).any() || place.cmpgt(self.high).any() {
             return None;
@@ -274,15 +275,15 @@ impl SpanColumn {
         Ok(())
     }
 
-    /// Returns the solid share of the height of a cell. For the vertical component, returns 1 or 0 for the face at the
-    /// cell's bottom.
+    /// Returns the solid share of the height of a cell. For the vertical component, returns 1 or 0: whether the face at
+    /// the cell's bottom is closed.
     fn closed(&self, component: usize, cell: usize) -> f64 {
         let sum: f64 = self.spans.iter().map(|s| self.within(s, component, cell)).sum();
         sum.min(1.0)
     }
 
-    /// Returns the share of a cell's height that a span takes up, or for the vertical component whether it holds the
-    /// face.
+    /// Returns the share of a cell's height that a span takes up. For the vertical component, returns 1 or 0: whether
+    /// the span contains the face at the cell's bottom.
     fn within(&self, span: &[f64; 2], component: usize, cell: usize) -> f64 {
         let (low, high) = (cell as f64 * self.h, (cell + 1) as f64 * self.h);
         if component == 2 {
@@ -292,7 +293,7 @@ impl SpanColumn {
     }
 
     /// Returns the sum over moving objects of the share of a cell's height that the object takes up, times its velocity
-    /// along the component's axis, m/s. For the vertical component the share is 1 or 0: whether the object holds the
+    /// along the component's axis, m/s. For the vertical component the share is 1 or 0: whether the object contains the
     /// face at the cell's bottom.
     fn pushed(&self, component: usize, cell: usize) -> f64 {
         self.moving.iter().map(|(span, v)| self.within(span, component, cell) * v[component]).sum()

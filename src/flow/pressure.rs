@@ -1,4 +1,5 @@
-//! Pressure that makes the flow free of divergence: laplace(phi) = div u, then u - grad phi (Chorin 1968).
+//! Pressure that makes the velocity u free of divergence: the potential phi solves laplace(phi) = div u, and u - grad
+//! phi is the new velocity (Chorin 1968).
 //!
 //! There are two methods. Successive over-relaxation (Young 1954) in two colours, as on a chessboard, moves each cell's
 //! value towards that which its neighbours require, and beyond it by the relaxation factor. With a factor of 2 or more
@@ -96,7 +97,7 @@ pub(super) struct Pressure {
     air: Vec<bool>,
     x: Vec<f32>,
     r: Vec<f32>,
-    /// Residual of the iteration before.
+    /// Residual of the previous iteration.
     before: Vec<f32>,
     p: Vec<f32>,
     /// Left-hand side of the equation for the direction of search.

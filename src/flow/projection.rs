@@ -49,7 +49,7 @@ impl FlowField {
             let (values, open, h) = (&mut v[a], &self.openings.open[a], lattice.h[a]);
             let (round, beyond) = ((lattice.n[a] - 1) * steps[a], lattice.n[a] * lattice.stride[a]);
             lattice.each_cell_row(|j, k, cell, at| {
-                // Along a row, only its first cell can be the first along this axis, or all of them.
+                // Of the cells of a row, either none, only the first, or all are the first along this axis.
                 let firsts = [usize::from(a == 0), if j == 0 { nx } else { 0 }, if k == 0 { nx } else { 0 }][a];
                 for i in 0..if wraps { firsts } else { 0 } {
                     if open[at + i] != 0.0 {
@@ -99,8 +99,9 @@ impl FlowField {
         }
     }
 
-    /// Returns the force of the air's pressure on the obstacles between two places, divided by the air's density,
-    /// m4/s2; the mean over the last step.
+    /// Returns the force of the air's pressure on obstacles, divided by the air's density, m4/s2, as a mean over the
+    /// last step. Counted are obstacles in the box between the places `low_m` and `high_m`, m from the field's lowest
+    /// corner.
     ///
     /// The pressure of a step is the sum of the potentials of its projections. In the reflection scheme it is twice the
     /// first plus the second.

@@ -52,10 +52,10 @@ pub(super) struct SavedDesc {
     running: bool,
     /// Whether the walls are [`WindWalls::Smooth`].
     smooth: bool,
-    /// Absent for the default, as in states saved before this existed.
+    /// Absent for the default, as in states saved before this field existed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     scheme: Option<SavedScheme>,
-    /// Absent for the default, as in states saved before this existed.
+    /// Absent for the default, as in states saved before this field existed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pressure: Option<SavedPressure>,
     most_bytes: u64,
@@ -110,7 +110,7 @@ pub(super) struct SavedChange {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedField {
-    /// Name of the solver ([`SOLVER`]).
+    /// Name of the solver, as [`solver`] returns it.
     solver: String,
     /// Simulation time of the velocities, s.
     time_s: f64,

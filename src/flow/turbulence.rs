@@ -3,8 +3,8 @@
 //! The turbulence is a sum of waves in all directions. The velocity of each is perpendicular to its wave vector, so the
 //! sum is free of divergence (Kraichnan 1970, Phys. Fluids 13, 22). The waves have the energy of von Karman's spectrum
 //! (1948): E(k) is proportional to x^4 / (1 + x^2)^(17/6), x = 1.339 L k, with L the integral length along the wind.
-//! The wind carries them unchanged (Taylor 1938). They mix the shear between the wake of a block and the wind; without
-//! them the wake is too long (`src/flow/tests/bluff.rs`).
+//! The wind carries them unchanged (Taylor 1938). The eddies mix the shear between the wake of a block and the wind;
+//! without eddies the wake is too long (`src/flow/tests/bluff.rs`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,8 +19,8 @@ const WAVES: usize = 32;
 const FEWEST_CELLS: f64 = 4.0;
 /// Integral of x^4 / (1 + x^2)^(17/6) from 0 to infinity: half the beta function of 5/2 and 1/3.
 const WHOLE: f64 = 1.0325;
-/// Ratios to the friction velocity of the standard deviations of the wind near the ground, along the mean wind, across
-/// it and upward, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
+/// Standard deviations of the wind near the ground along the mean wind, across it and upward, divided by the friction
+/// velocity, in neutral stratification (Panofsky and Dutton 1984, Atmospheric Turbulence, chapter 7).
 const OVER_LAND: DVec3 = DVec3::new(2.4, 1.9, 1.25);
 /// Integral length along the wind, m, over open grassland: 25 z^0.35 / z0^0.063 (Counihan 1975) at z = 10 m with z0 =
 /// 0.03 m.
@@ -86,8 +86,8 @@ impl Turbulence {
         Some(Self(std::array::from_fn(wave)))
     }
 
-    /// Returns the velocity at a place that moves with the air, m; 1 is the standard deviation of eddies of all
-    /// lengths.
+    /// Returns the velocity at a place, m, in coordinates that move with the air. The unit is the standard deviation of
+    /// eddies of all lengths.
     pub fn at(&self, place_m: DVec3) -> DVec3 {
         self.0.iter().fold(DVec3::ZERO, |sum, wave| {
             let (sin, cos) = libm::sincos(wave.k_per_m.dot(place_m));
@@ -109,7 +109,8 @@ pub(super) struct Whirls {
 }
 
 impl Whirls {
-    /// Creates the eddies of a mean wind (east, north) with a friction velocity, m/s; without eddies if that is 0.
+    /// Creates the eddies of a mean wind (east, north) with a friction velocity, m/s; without eddies if the friction
+    /// velocity is 0.
     pub fn new(seed: u64, desc: &WindFieldDesc, mean_m_s: DVec2, friction_velocity_m_s: f64) -> Self {
         let along = mean_m_s.try_normalize().unwrap_or(DVec2::X).extend(0.0);
         let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];

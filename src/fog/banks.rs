@@ -18,10 +18,10 @@
 //! visibility between two points does.
 //!
 //! # Cost
-//! On a software driver, in copies of a picture of 640 x 360 (`cargo bench --bench speed -- banks`): a bank outside the
-//! picture none, one across it 8, the camera inside one 11, eight that are apart 6, eight that overlap 18. A software
-//! driver runs both sides of every branch, but a loop only as often as a pixel of its group needs. Each pixel therefore
-//! loops over the banks whose circle and heights its ray meets.
+//! On a software driver, in copies of a picture of 640 x 360 (`cargo bench --bench speed -- banks`), a bank outside the
+//! picture costs nothing, a bank across the picture 8, a bank around the camera 11, eight separate banks 6, and eight
+//! overlapping banks 18. A software driver runs both sides of every branch, but a loop only as often as a pixel of its
+//! group needs. Each pixel therefore loops over the banks whose circle and heights its ray meets.
 
 use std::f64::consts::PI;
 
@@ -42,12 +42,12 @@ use crate::{
     weather::{GroundLayer, WeatherParts},
 };
 
-/// Shapes of banks: bit k stands for kind k of the shaders' `FogBank`.
+/// All shapes of banks, as bits: bit k is kind k of the shaders' `FogBank`.
 const ALL_SHAPES: u32 = 15;
 
 /// Sine of elevation above which a camera is taken to see all around.
 const STEEP: f64 = 0.8;
-/// Bearings beyond a picture's edge in which banks are still drawn, rad: for filters and mirrors.
+/// Angle beyond a picture's left and right edges up to which banks are still drawn, rad: for filters and mirrors.
 const MARGIN: f64 = 0.05;
 /// Length of the longest way along which a query looks for banks, m.
 const FARTHEST_WAY_M: f64 = 4e5;
@@ -55,7 +55,7 @@ const FARTHEST_WAY_M: f64 = 4e5;
 /// Fog bank of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct FogBank {
-    /// Layer of the region, alone.
+    /// Low layer of the region, without patches and precipitation.
     pub model: FogModel,
     axes: [DVec2; 2],
     camera_m: DVec2,
@@ -68,9 +68,9 @@ pub(super) struct FogBank {
     perimeter_m: f64,
     strength: f64,
     merges: bool,
-    /// Whether it may be in the picture.
+    /// Whether the bank may be in the picture.
     is_seen: bool,
-    /// Bit j: the region may overlap that of bank j.
+    /// Banks whose regions may overlap that of this bank: bit j for bank j.
     overlaps: u32,
 }
 
@@ -160,8 +160,9 @@ fn is_convex(corners: &[[f64; 2]]) -> bool {
     left != right
 }
 
-/// Returns the regions whose banks are drawn, in the order of the world's regions: those with a layer of their own, or
-/// without one where there is another, or the nearest [`MOST_BANKS`] of them.
+/// Returns the regions whose banks are drawn, in the order of the world's regions: the nearest [`MOST_BANKS`] of the
+/// regions that set the fog ([`WeatherParts::FOG`]). There are none if neither these regions nor the weather outside
+/// them have any fog.
 fn nearest<'a>(camera: &BankCamera<'a>) -> impl Iterator<Item = SeenRegion<'a>> {
     let seen = |index: usize| {
         let region: &'a HeldRegion = &camera.regions[index];
@@ -196,12 +197,12 @@ struct BankCamera<'a> {
 }
 
 impl FogBanks {
-    /// Returns no banks, with room for all.
+    /// Creates an empty list with room for all banks.
     pub fn new() -> Self {
         Self(Vec::with_capacity(MOST_BANKS))
     }
 
-    /// Takes over the banks about a camera; none where the host's fog law replaces all fog.
+    /// Replaces the list by the banks around a camera. The list stays empty if the host's fog law replaces all fog.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -275,7 +276,7 @@ impl FogBanks {
 struct SeenBearings {
     /// Bearing of the picture's middle, rad.
     middle: f64,
-    /// Largest difference from it, rad; pi where every bearing may be seen.
+    /// Largest difference from the middle, rad; pi if every bearing may be seen.
     half: f64,
 }
 
@@ -315,7 +316,8 @@ fn turned(a: f64, b: f64) -> f64 {
 }
 
 impl FogVariant {
-    /// Adds the features that banks need. `software`: only those, otherwise those of all banks.
+    /// Adds the features that banks need. For a software driver (`software`) these are the shapes and overlaps of the
+    /// given banks only, otherwise those of all possible banks.
     pub(super) fn with_banks(self, banks: &FogBanks, software: bool) -> Self {
         if !banks.any_seen() {
             return self;
@@ -362,8 +364,8 @@ pub(crate) struct FogThroughBanks {
 }
 
 impl<'a> SkyBanks<'a> {
-    /// Returns the fog at a scene's place. `fog` is the fog of a frame without banks: that outside all regions where a
-    /// region has a bank, otherwise that at the place.
+    /// Returns the fog at a scene's place. `fog` creates the fog of a frame without banks from a scene. If there are
+    /// banks, this scene has the fog outside all regions, otherwise the fog at the place.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -9,8 +9,8 @@ use crate::light::sinc;
 pub(super) const PATCH_ROW: f64 = 8.0;
 /// Number of plane waves in the curtains' pattern.
 pub const CURTAIN_WAVES: usize = 8;
-/// Distance from the eye at which curtains begin, m. Nearer rain is drawn as single drops or cones. `CURTAIN_START` of
-/// `shaders/fog/patterns.wgsl`.
+/// Distance from the eye at which curtains begin, m. Nearer rain is drawn as single drops or cones. This is
+/// `CURTAIN_START` of `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
 /// Curtains of rain. The extinction is that of even precipitation, times 1 plus `amount` times the sum of the waves'
@@ -28,8 +28,8 @@ impl Curtains {
     pub const NONE: Self = Self { amount: 0.0, waves: [(DVec3::ZERO, 0.0); CURTAIN_WAVES] };
 
     /// Returns two numbers for the ray between two distances: the change of the optical depth by curtains, relative to
-    /// that of even rain, and the variance of this change over all places. Only the part beyond [`CURTAIN_START_M`]
-    /// counts in both.
+    /// that of even rain, and the variance of this change over all places. Both include only the stretch of the ray
+    /// beyond [`CURTAIN_START_M`].
     pub fn mean(&self, origin: DVec3, direction: DVec3, first: f64, last: f64) -> (f64, f64) {
         let start = first.max(CURTAIN_START_M);
         if last <= start {

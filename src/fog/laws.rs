@@ -29,7 +29,7 @@ pub enum Curve {
     Linear {
         /// Distance at which fog begins, m, \[0, 1e9\].
         start_m: f64,
-        /// Distance at which nothing else is visible, m, above `start_m`.
+        /// Distance from which only fog is visible, m, above `start_m` and at most 1e9.
         end_m: f64,
     },
     /// V = exp(-density d).
@@ -93,7 +93,7 @@ impl CompatibilityLaw {
     }
 
     /// Returns the distance, m, beyond which less than `threshold` of an object's colour is left; infinite if there is
-    /// none. It is of the law's kind: for plane distance, it is measured from the camera's plane.
+    /// no such distance. The distance is of the law's kind: for plane distance, it is measured from the camera's plane.
     pub fn cull_distance_m(&self, threshold: f64) -> f64 {
         let depth = -threshold.ln();
         match self.curve {

@@ -14,7 +14,8 @@ use crate::{
 pub enum Profile {
     /// Constant between base and top, with linear flanks at both, so that the optical depth has no kink.
     Slab {
-        /// Altitude of the middle of the lower flank, m. Fog that lies on the ground has it far below the ground.
+        /// Altitude of the middle of the lower flank, m. For fog that lies on the ground this altitude is far below the
+        /// ground.
         base_m: f64,
         /// Altitude of the middle of the upper flank, m.
         top_m: f64,

@@ -23,7 +23,7 @@
 //!   ray in closed form. Fog therefore conserves energy: it neither glows nor blackens. It is bright at noon, brighter
 //!   toward a low sun, and dark at night. With distance, ground and sky converge to the same radiance.
 //! * Patches are a sum of waves, whose mean along a ray is also a closed form ([`patterns`]). They drift with the air.
-//!   Air that flows round an obstacle lags behind (`wind/detour.rs`). The part of a ray over such a place is divided
+//!   Air that flows round an obstacle lags behind (`wind/detour.rs`). The stretch of a ray where patches lag is divided
 //!   into eight, each with the lag at its middle.
 //! * [`CompatibilityLaw`] has the fog laws of older simulators: linear, exponential or exponential squared, over the
 //!   distance from the camera or from its plane.
@@ -50,7 +50,7 @@
 //! # Inputs
 //! * [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo.
 //! * [`Viewpoint`]: altitude of the camera, planet and ground.
-//! * Extinctions at the station of air, of haze, and of each kind of precipitation.
+//! * Extinctions, at the station, of air, of haze, and of each kind of precipitation.
 //!
 //! # What is not here
 //! There is no `passes.rs`: the composition draws the layer, which has no pass of its own.

@@ -126,9 +126,9 @@ pub struct FallingModel {
     pub extinction: f64,
     /// Altitudes between which the extinction decreases to 0, m.
     pub top: [f64; 2],
-    /// 1/difference of these altitudes, 1/m.
+    /// 1/difference of the two altitudes in `top`, 1/m.
     pub inverse_flank: f64,
-    /// Curtains of the rain in it.
+    /// Curtains of the rain.
     pub curtains: Curtains,
 }
 

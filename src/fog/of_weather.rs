@@ -69,7 +69,7 @@ impl LowAir {
         Ok(FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?.led_by(self.detour.clone()))
     }
 
-    /// Returns the media along rays from a place, each alone.
+    /// Returns the media along rays from a place, each without the other.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -80,7 +80,7 @@ impl LowAir {
     }
 }
 
-/// Media of a weather near the ground along rays from a place, each alone.
+/// Media of a weather near the ground along rays from a place, each without the other.
 pub(crate) struct LowMedia {
     /// Low layer without precipitation.
     layer: FogModel,
@@ -126,7 +126,7 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     let softness = f.softness_m.min(f.top_m - f.base_m);
     let profile = Profile::Slab {
         base_m,
-        // The weather's top is where nothing is left; the slab's top is the middle of its flank.
+        // At the weather's `top_m` no fog is left. The slab's top is the middle of its upper flank.
         top_m: (station + f.top_m - 0.5 * softness).max(base_m),
         base_softness_m: 0.0,
         top_softness_m: softness,
@@ -142,7 +142,7 @@ fn ground_layer(c: &Conditions, seed: u64, drift_m: [f64; 2]) -> Option<FogLayer
     // The pattern's values have an exponential distribution with the mean 1. The densest share c of them, the part of
     // the ground under fog, has the mean 1 - ln c. The mean extinction over that part must be the reported one.
     let inside = 1.0 - covered * f.coverage.max(0.01).ln();
-    // Gusts lift more dust in some places than in others. The report is their mean.
+    // Gusts lift more dust in some places than in others. The reported extinction is the mean over all places.
     let gusts = if f.lifted > 0.0 { f.lifted * lifting::unevenness(&c.wind) } else { 0.0 };
     let amount = covered.max(gusts);
     let amount = (amount - LEAST_PATCHES) / (1.0 - LEAST_PATCHES);
@@ -191,8 +191,8 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns the light below the weather's low layer, lux, where the light above it is `lux`: of the sun, of the moon,
-/// and all other light on level ground.
+/// Returns the light below the weather's low layer, where `lux` is the light above the layer. Both are in lux: of the
+/// sun, of the moon, and of all other light on level ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,

@@ -95,7 +95,7 @@ struct RayCourse {
     end_mu: f64,
     /// Distance at which the ray is level, m.
     level: f64,
-    /// Whether that distance is within the ray's length.
+    /// Whether the distance `level` is within the ray's length.
     passes: bool,
     /// Whether the ray only descends.
     falls: bool,

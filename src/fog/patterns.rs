@@ -21,12 +21,12 @@ pub fn patch_mean(m: &FogModel, origin: DVec3, direction: DVec3, first: f64, las
         sum += detoured(m, detour, (origin, direction), [first, last]);
     }
     // The six patch waves are the differences of the pairs of four unit waves: |their sum|^2 / 4 = 1 + 1/2 sum of
-    // cosines, which is never negative. Means with lags can be, a little.
+    // cosines, which is never negative. Means with lags can be slightly negative.
     (1.0 + m.patch_amount * 0.5 * sum).max(0.0)
 }
 
 /// Number of parts into which a ray is cut where obstacles delay the drifting patches ([`Detour`]); each part has the
-/// delay, m, at its middle. `DETOUR_PARTS` of `shaders/fog/patterns.wgsl`.
+/// delay, m, at its middle. This is `DETOUR_PARTS` of `shaders/fog/patterns.wgsl`.
 const DETOUR_PARTS: usize = 8;
 
 /// Returns the change of the sum of the waves' means by the lags along a ray.

@@ -152,8 +152,8 @@ impl FogModel {
 
     /// Prepares the fog of a weather: its `layer`, if there is one, and its precipitation.
     ///
-    /// Each has its own heights and extinction. They are lit as one medium, whose optical depth is the sum of both and
-    /// whose scattering is their mean.
+    /// The layer and the precipitation each have their own heights and extinction. They are lit as one medium, whose
+    /// optical depth is the sum of both and whose scattering is their mean.
     ///
     /// # Errors
     /// Errors of [`FogModel::new`].
@@ -246,8 +246,8 @@ impl FogModel {
                 sky: light.sky_irradiance[i],
                 ground: light.ground_albedo[i],
             };
-            // Shaders add the terms in f32, so their solution is kept farther from the pole than the solution for
-            // queries.
+            // Shaders add the terms in f32, so their solution is kept farther from the pole at k mu0 = 1 than the
+            // solution for queries.
             self.set_source(i, &slab.solve_beside(1e-4));
             self.first[i] = scattering.albedo[i] * light.sun_irradiance[i] / (1.0 - wf);
             slab.solve()

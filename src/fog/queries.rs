@@ -26,9 +26,9 @@ pub struct Between {
     pub visibility_m: f64,
 }
 
-/// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to the point `offset`
-/// metres away, in the host's axes. The whole transmittance is this one times the transmittances of air, haze and
-/// precipitation.
+/// Returns the transmittance of the layer per channel (620, 550, 450 nm) from the viewpoint to a point. `offset` is the
+/// vector to this point, m (east, north, up). The whole transmittance is this one times the transmittances of air, haze
+/// and precipitation.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -43,7 +43,7 @@ fn check_offset(offset: DVec3) -> Result<()> {
 }
 
 impl FogModel {
-    /// Returns the share of light that is left after `offset` metres from the viewpoint, per channel.
+    /// Returns the share of light that is left over the way from the viewpoint to the point `offset`, m, per channel.
     fn transmittance_over(&self, offset: DVec3) -> [f64; 3] {
         let range = offset.length();
         if range == 0.0 {
@@ -65,9 +65,9 @@ impl LowAir {
     }
 }
 
-/// Returns the visibility along the line from the viewpoint to the point `offset` metres away, m: the meteorological
-/// optical range of a homogeneous medium with the same mean extinction. `background_per_m` is the extinction of air,
-/// haze and precipitation there at 550 nm. Infinite without extinction.
+/// Returns the visibility along the line from the viewpoint to the point `offset`, m (east, north, up): the
+/// meteorological optical range of a homogeneous medium with the same mean extinction. `background_per_m` is the
+/// extinction of air, haze and precipitation there at 550 nm. Infinite without extinction.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -81,9 +81,9 @@ pub fn visibility_between_m(layer: &FogLayer, eye: &Viewpoint, offset: DVec3, ba
     Ok(koschmieder_visibility_m(depth / range + background_per_m))
 }
 
-/// Returns the vertical visibility from altitude `altitude_m`, m (METAR VV): how far straight up a black target keeps 5
-/// % of its contrast in the layer and the extinction `background_per_m` of the rest. Infinite if the target keeps more
-/// than that through the whole layer and `background_per_m` is 0.
+/// Returns the vertical visibility from altitude `altitude_m`, m (METAR VV): the height above this altitude at which a
+/// black target, seen from below, keeps 5 % of its contrast. The air has the extinction of the layer plus
+/// `background_per_m`. Infinite if the target keeps more than 5 % through the whole layer and `background_per_m` is 0.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -30,8 +30,8 @@ use super::patterns::patch_mean;
 use super::phase::{fog_phase_after, share_unscattered};
 use crate::{numerics::smooth, scene::depth::RANGE_SKY_M};
 
-/// Height of the compatibility laws' sky band, rad, from which on it covers all of the sky: pi less a margin for f32
-/// rounding.
+/// Smallest height of the compatibility laws' sky band, rad, with which the band covers the whole sky: pi less a margin
+/// for f32 rounding.
 const WHOLE_SKY: f64 = 0.999 * std::f64::consts::PI;
 
 /// Spread of the forward lobe in elevation, rad. The lobe of a ray much farther than this from the level sees only sky
@@ -216,7 +216,8 @@ pub fn fog_beside_drops(
 }
 
 /// Returns the effect of fog along a ray to an object at a distance along it and from the camera's plane, m. `less` has
-/// the optical depths that single drops hide of the precipitation and that fog banks replace of the layer.
+/// two optical depths: that of single drops, which is subtracted from the precipitation, and that which fog banks
+/// replace, which is subtracted from the layer.
 fn fog_beside(m: &FogModel, origin: DVec3, direction: DVec3, [range, plane]: [f64; 2], less: [f64; 2]) -> FogSample {
     match m.kind {
         FogKind::Clear if m.falling.extinction <= 0.0 => {

@@ -13,7 +13,8 @@ use crate::{regions::MAX_REGION_CORNERS, wind::DETOUR_SIDE};
 /// Largest number of banks in a picture: `MOST_BANKS` of `shaders/fog/uniform.wgsl`.
 pub(super) const MOST_BANKS: usize = 8;
 
-/// Depth below the ground, m, from which on a slab's lower edge is left out. Hosts draw valleys and pits.
+/// Depth under the ground, m, below which a slab's lower edge is left out. The margin covers valleys and pits that
+/// hosts draw.
 const MARGIN_M: f64 = 2000.0;
 
 impl FogModel {
@@ -265,11 +266,11 @@ pub struct FogBankUniform {
     pub kind: u32,
     /// Number of a polygon's corners.
     pub count: u32,
-    /// Bit j: the region may overlap that of bank j.
+    /// Banks whose regions may overlap that of this bank: bit j for bank j.
     pub overlaps: u32,
     /// 1 if the region is averaged with earlier regions, 0 if it covers them.
     pub merges: u32,
-    /// Corners of a polygon, two to a vector, against the clock where it is convex.
+    /// Corners of a polygon, two to a vector, counter-clockwise if the polygon is convex.
     pub corners: [[f32; 4]; MAX_REGION_CORNERS / 2],
 }
 
@@ -308,7 +309,7 @@ impl Default for LowAirUniform {
 }
 
 impl LowAirUniform {
-    /// Returns the size of the block up to the last of so many banks, bytes.
+    /// Returns the size of the block with `banks` banks and without the rest of the list, bytes.
     pub(super) fn size_with(banks: usize) -> usize {
         std::mem::offset_of!(Self, banks) + banks * size_of::<FogBankUniform>()
     }

@@ -104,7 +104,7 @@ impl DrawnEffect for FogView {
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
             self.uniform.set(model);
             self.uniform.set_banks(&self.banks);
-            // Banks that are not there are not written.
+            // Writes only the banks that exist.
             self.block.write(&bytemuck::bytes_of(&*self.uniform)[..LowAirUniform::size_with(self.banks.list().len())]);
         }
         Ok(to)

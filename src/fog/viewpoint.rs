@@ -13,8 +13,8 @@ pub(super) const NO_LIGHT: FogLight =
 pub struct FogLight {
     /// Unit vector towards the sun, or at night the moon, (east, north, up).
     pub to_sun: DVec3,
-    /// Direct irradiance of the sun or moon at the layer's top, on a surface facing it, per channel. In any unit;
-    /// radiance is in that unit per steradian.
+    /// Direct irradiance of the sun or moon at the layer's top, on a surface facing it, per channel. The unit is free;
+    /// radiances are in this unit per steradian.
     pub sun_irradiance: [f64; 3],
     /// Irradiance of the sky on a horizontal surface at the layer's top, per channel.
     pub sky_irradiance: [f64; 3],

@@ -23,7 +23,7 @@ pub struct Environment {
 impl View {
     /// Returns a cube map of the surroundings of the camera, for reflections in the host's own objects. From this
     /// function's first call on, the first call of every frame with [`Stages::BACKGROUND`] or [`Stages::MEDIUM`] draws
-    /// one of its faces. It draws all six after a jump of light or weather, and with CUT or NO_HISTORY.
+    /// one face of the map. That call draws all six faces after a jump of light or weather, and with CUT or NO_HISTORY.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

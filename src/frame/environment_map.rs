@@ -1,8 +1,8 @@
 //! Cube map of the surroundings of the camera, prefiltered by roughness, for reflections in the host's own objects.
 //!
-//! Created when the host first calls `View::environment`. Each frame draws one face. It draws all six if nothing of
-//! earlier frames may show, or if light or weather jump. `shaders/frame/environment.wgsl` uses the composition's own
-//! functions; `environment_filter.wgsl` makes the levels.
+//! Created when the host first calls `View::environment`. Each frame draws one face, but all six if nothing of earlier
+//! frames may show, or if light or weather jump. `shaders/frame/environment.wgsl` uses the composition's own functions;
+//! `environment_filter.wgsl` makes the levels.
 
 use glam::{DMat3, DVec3};
 

@@ -20,8 +20,8 @@ const TILES: (u32, u32) = (8, 4);
 /// Textures for a host's transparent shaders; valid until the view is destroyed.
 #[derive(Clone, Debug)]
 pub struct FrameTextures {
-    /// Light that air and fog add, RGB, linear and exposed; tone-mapped too if the host's colour is. Times
-    /// [`light_scale`](Self::light_scale) it is in units of the host's colour.
+    /// Light that air and fog add, RGB, linear and exposed; tone-mapped too if the host's colour is. Multiplied by
+    /// [`light_scale`](Self::light_scale), the light is in units of the host's colour.
     pub light: wgpu::Texture,
     /// Transmittance of air and fog for the light behind them, RGB.
     pub through: wgpu::Texture,

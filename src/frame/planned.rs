@@ -51,8 +51,8 @@ impl View {
         device.check()
     }
 
-    /// Reports the time that the weather took in the last frame, ms, measured in the way that the host's budget refers
-    /// to (by the host's GPU timer, or by a call that waits). Under a budget of time the plan follows these reports.
+    /// Reports the time that the weather took in the last frame, ms, measured in the way in which the host measures its
+    /// budget (by its GPU timer, or by a call that waits). Under a budget of time the plan follows these reports.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] outside of (0, 1e5] ms; the view is then unchanged.
@@ -81,8 +81,8 @@ impl View {
     ///
     /// # Errors
     /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;
-    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After both the
-    /// budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
+    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After either of
+    /// these two errors the budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();

@@ -47,15 +47,15 @@ impl View {
     }
 
     /// Draws weathers that may come, into small images of the view's own. Their pipelines are then compiled and their
-    /// first tables made, so that hardly any frame waits for them when the weather comes. Each weather is drawn while
-    /// the previous one changes to it, after the change, and with the sun at several heights. `frame` stands for the
-    /// frames to come: it has their settings, and images with their formats, samples and usages. These images are not
-    /// drawn into. `calls` are the stages of the calls of one frame, in order, at most seven. Call it before the first
-    /// frame or behind a loading screen: the next frame begins as a view's first one does. The context is as before
-    /// afterwards.
+    /// first tables made, so that hardly any frame waits for them when the weather comes. Each weather is drawn at
+    /// several moments: while the previous weather changes to it, after the change, and with the sun at several
+    /// heights. `frame` has the settings of the frames to come, and images with the formats, samples and usages of
+    /// theirs. These images are not drawn into. `calls` are the stages of the calls of one frame, in order, at most
+    /// seven. Call this function before the first frame or behind a loading screen: the next frame begins as a view's
+    /// first one does. On return the context is as it was before the call.
     ///
-    /// One call draws for about `most`, at least one moment of a weather. [`Status::Pending`] says that moments remain:
-    /// call it again with the same weathers. Other weathers begin anew.
+    /// One call draws for about `most`, and at least one moment of a weather. [`Status::Pending`] says that moments
+    /// remain: call this function again with the same weathers. Other weathers begin anew.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming `weathers[i]` and the field, `calls` or the field of `frame`;
@@ -140,7 +140,7 @@ impl View {
         self.device.counts.total(DeviceWork::Pipelines) > pipelines_before
     }
 
-    /// Ends a moment of a rehearsal: the view is as before its first frame.
+    /// Ends a moment of a rehearsal. The view then has neither history nor images, as before its first frame.
     pub(crate) fn end_moment(&mut self, drawn: &Result<()>) {
         self.history = FrameHistory::default();
         self.cache.forget_images();

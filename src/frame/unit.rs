@@ -172,7 +172,7 @@ impl LuminanceUnitCheck {
 
 /// Returns the luminance of the brightest pixels, cd/m^2; `None` if all pixels are black. If the sky is in the picture,
 /// returns the 20th percentile of the pixels that are not black, because pixels as dark as that are not sky. The green
-/// channel stands for the luminance.
+/// channel is taken as the luminance.
 fn brightest(bytes: &[u8], looked: &WatchedPicture) -> Option<f64> {
     let half = |b: &[u8], i: usize| f64::from(half::f16::from_le_bytes([b[2 * i], b[2 * i + 1]]).to_f32());
     let float =

@@ -44,8 +44,8 @@ impl Context {
     /// Returns the slant visual range, m: the distance at which a black object along `direction` is just visible from
     /// `position`, at simulation time `time_s`. `direction` is a unit vector (east, north, up) there. At that distance
     /// [`Context::between`] leaves 5 % of the light of 550 nm, and the object's contrast falls to 5 %. Air, fog, rain,
-    /// snow, rain areas, and clouds drawn as a volume count. Infinite if more than 5 % is left where the ray leaves the
-    /// air or meets the planet's ground.
+    /// snow, rain areas, and clouds drawn as a volume take light away. Infinite if more than 5 % is left where the ray
+    /// leaves the air or meets the planet's ground.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid or the direction is not a unit vector; for times
@@ -179,9 +179,10 @@ impl Context {
     }
 
     /// Builds the sky's tables for the present weather now, in sixteen parts with a wait for the GPU after each, and
-    /// shows them, so that no frame has to. It reuses tables that another context of the device shows or that lie in
-    /// [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), and writes new ones there. `progress`
-    /// receives the completed share, at last 1; if it returns false, the build ends and the context stays as it was.
+    /// puts them into use, so that no frame has to build them. It reuses tables that another context of the device uses
+    /// or that lie in [`ContextDesc::cache_dir`](crate::context::ContextDesc::cache_dir), and writes new ones there.
+    /// `progress` receives the completed share, which is 1 at the end. If it returns false, the build ends and the
+    /// context stays as it was.
     ///
     /// # Errors
     /// [`Status::Aborted`], [`Status::DeviceLost`], or a GPU fault.
@@ -196,9 +197,9 @@ impl Context {
     }
 
     /// Replaces the planet: air, ground and sun. The sky's tables follow as after a change of the weather, by a draft
-    /// that fades in within sixteen frames. If the radius, the top or the wavelengths differ, the next frame cuts to a
-    /// draft of the new planet, and later ones refine it. Remaining steps of the simulated ground still use the
-    /// previous planet.
+    /// that fades in within sixteen frames. If the planet's radius, the top of its air or its wavelengths differ, the
+    /// next frame cuts to a draft of the new planet, and later ones refine it. Remaining steps of the simulated ground
+    /// still use the previous planet.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.

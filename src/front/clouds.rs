@@ -22,9 +22,9 @@ impl Context {
     }
 
     /// Sets a map of where cloud layers stand over the ground ([`CloudMap`]), in place of the one before; `None`
-    /// removes it. It affects pictures, shadows, queries, and the light at a place ([`Context::light_at`]), but not the
-    /// precipitation. With [`CloudModel::Deck`] it affects only the light. Clouds change at once. Part of the saved
-    /// state.
+    /// removes the map. The map affects pictures, shadows, and queries of light, radiance and visibility, but neither
+    /// the precipitation nor the conditions ([`Context::conditions_at`]). With [`CloudModel::Deck`] it affects only the
+    /// light. Clouds change at once. Part of the saved state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -39,11 +39,11 @@ impl Context {
     }
 
     /// Returns the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to
-    /// `position` at simulation time `time_s`, 0 to 1. It is low in the shadow of a cloud that [`CloudModel::Volume`]
-    /// draws, high between two. The light of [`Context::light_at`] contains the
-    /// mean of this share over all places, [`Light::direct_share`](crate::moment::Light::direct_share). To get the
-    /// direct sunlight at `position`, replace the mean: `sun_lux / direct_share * share`. With [`CloudModel::Deck`] the
-    /// share is the mean itself.
+    /// `position` at simulation time `time_s`, 0 to 1. The share is low in the shadow of a cloud that
+    /// [`CloudModel::Volume`] draws, and high between two clouds. The light of [`Context::light_at`] contains the mean
+    /// of this share over all places, [`Light::direct_share`](crate::moment::Light::direct_share). To get the direct
+    /// sunlight at `position`, replace the mean: `sun_lux / direct_share * share`. With [`CloudModel::Deck`] the share
+    /// is the mean itself.
     ///
     /// The first call builds the noise field from which clouds are cut, which takes some tenths of a second.
     ///

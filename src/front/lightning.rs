@@ -37,7 +37,7 @@ impl Context {
 
     /// Returns the past or future flashes that begin between `from_s` and `until_s` (an hour at most), within
     /// `most_distance_m` (50 km at most, on the map) of a place, in order of time. For times that the timeline has
-    /// forgotten, the weather is that of the first moment that it still knows.
+    /// forgotten, the weather is that of the earliest time that the timeline still knows.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -51,7 +51,7 @@ impl Context {
     }
 
     /// Returns the light of flashes at a place, as the mean over `exposure_s` (1 s at most) before `time_s`; with 0 the
-    /// light at that moment. A host that lights its own ground by it passes the time of its frame.
+    /// light at `time_s`. A host that lights its own ground with this light passes the time of its frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

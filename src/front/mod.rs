@@ -1,5 +1,5 @@
-//! The front room: queries and settings of single effects on contexts and views, for Rust hosts. No room below it names
-//! a single effect, except the list of effects.
+//! The front room: queries and settings of single effects on contexts and views, for Rust hosts. Below this room, only
+//! the list of effects (`src/effects.rs`) names single effects.
 
 mod air;
 mod clouds;

@@ -28,7 +28,8 @@ impl Context {
 
     /// Returns the precipitation at `position` and simulation time `time_s`.
     ///
-    /// Any thread. [`crate::rain::sizes`] and [`crate::rain::ice`] have the laws.
+    /// Any thread. [`crate::rain::sizes`] has the laws of rain and drizzle, [`crate::rain::ice`] those of hail and
+    /// pellets.
     ///
     /// # Errors
     /// As [`Context::conditions_at`].
@@ -40,7 +41,7 @@ impl Context {
     /// drop size has its own slant, from the wind and the surface's own motion. Precipitation that a box
     /// ([`Context::set_shelters`]) keeps off does not land; the box is where its velocity has carried it by that time.
     /// The test follows the path of each size to a point 5 cm in front of the surface, so that a face of a box is not
-    /// inside that box. Occluder maps do not count.
+    /// inside that box. Occluder maps have no influence on the result.
     ///
     /// Any thread.
     ///
@@ -50,9 +51,9 @@ impl Context {
         rain_on(&self.world, surface, time_s)
     }
 
-    /// Returns the optical depth at 550 nm that the areas add between a place and another one `offset` metres away,
-    /// (east, north, up) of the first: the mean over their curtains. It is negative where they thin the weather's rain,
-    /// which is that outside all weather regions.
+    /// Returns the optical depth at 550 nm that the rain areas add over `offset`, metres (east, north, up) from
+    /// `position`: the mean over their curtains. The depth is negative where the areas thin the weather's rain. With
+    /// weather regions this is the rain outside all of them, without regions that of `c`.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

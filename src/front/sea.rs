@@ -54,7 +54,7 @@ impl SeaQuery<'_> {
 /// The host's terrain under a place.
 struct SeaBed {
     altitude_m: f64,
-    /// Whether the host's terrain is water there, whose heights need not be those of its bed.
+    /// Whether the host's terrain is water there. Its heights then need not be those of the sea bed.
     is_water: bool,
 }
 
@@ -89,9 +89,9 @@ impl Context {
     }
 
     /// Replaces the hulls that raise wakes; an empty list removes all. A hull goes on at its speed and rate of turn;
-    /// set the hulls again when these change, in every frame if you like. One whose number was in the list before goes
-    /// on with its track, unless it stands more than two of its lengths beside it. The waves of one that is no longer
-    /// in the list fade with time. Part of the saved state.
+    /// set the hulls again when these change, in every frame if you like. A hull whose number was in the list before
+    /// continues its track, unless it is more than two of its lengths away from that track. The waves of a hull that is
+    /// no longer in the list fade with time. Part of the saved state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_HULLS`](crate::sea::MAX_SEA_HULLS), for two of the
@@ -105,12 +105,11 @@ impl Context {
         self.held.sea.hulls()
     }
 
-    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. Only the
-    /// horizontal place of a position counts, not its height. There is no water where the terrain's tiles lie above the
-    /// surface, except in cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers are
-    /// those of the water around. Waves shorter than `shortest_wave_m`, m, [0, 1e4], are left out, and so are the sea's
-    /// tiles that hold only such waves; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may
-    /// be off.
+    /// Writes the sea at each of `positions` and at simulation time `time_s`, past or future, into `points`. The height
+    /// of a position has no influence. There is no water where the terrain's tiles lie above the surface, except in
+    /// cells of [`SurfaceClass::Water`]. In dry regions a point has no water, and its numbers are those of the water
+    /// around. Waves shorter than `shortest_wave_m`, m, [0, 1e4], are left out, and so are the sea's tiles that hold
+    /// only such waves; 0 leaves out none. [`SeaPoint::height_error_m`] says by how much the height may be off.
     ///
     /// The first query of a time sums the short waves (some milliseconds); the sums of the last two times are kept.
     /// Nothing is allocated after the first queries.
@@ -160,7 +159,8 @@ impl Context {
         self.world.frame.place_at("position", position).map(|_| ())
     }
 
-    /// Returns the terrain's tiles under a position at an altitude; `None` where no tile has ground.
+    /// Returns the ground of the terrain's tiles under a position, whose altitude is `altitude_m`; `None` where no tile
+    /// has ground.
     fn sea_bed(&self, position: DVec3, altitude_m: f64) -> Option<SeaBed> {
         let terrain = self.world.set.tiles.as_ref()?;
         let found = terrain.point_at(position)?;

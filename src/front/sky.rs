@@ -51,7 +51,7 @@ impl Context {
         let world = &self.world;
         let fog_of = |scene: &Scene| scene.fog_model(law, world.seed, world.set.planet.bottom_radius_m);
         let fog_depth = fog_of(&scene)?.depth_above(scene.place.altitude_m);
-        // A law of the host's is one fog for all places.
+        // A fog law of the host holds at all places alike.
         let regions = if law.is_some() { &[][..] } else { &world.set.weather_regions[..] };
         let outer = world.outer_fog(&scene.conditions, time_s)?;
         let fog = SkyBanks::new(regions, &world.frame, (&scene, position), time_s, outer, |scene| {
@@ -158,7 +158,7 @@ impl DirectionLight<'_> {
         Ok(air + DVec3::from_array(albedo) * UNDER_DECK * through)
     }
 
-    /// Returns the light of the air up to `distance_m`, and its transmittance: `air_on`.
+    /// Returns the light of the air up to `distance_m`, and its transmittance: `air_on` of the shaders.
     fn air(&self, d: DVec3, distance_m: f64) -> Result<(DVec3, DVec3)> {
         let (mut spectrum, mut through) = ([0.0; 3], [1.0; 3]);
         for lamp in self.lamps() {

@@ -12,8 +12,8 @@ use crate::{
 const MOST_HOURS: f64 = 720.0;
 
 impl Context {
-    /// Returns the snow at `position` as of [`Context::state_time_s`]. On the host's terrain and up to 3 m above it, it
-    /// is interpolated between the terrain's cells; elsewhere it is that of level, open ground.
+    /// Returns the snow at `position` as of [`Context::state_time_s`]. On the host's terrain and up to 3 m above the
+    /// terrain, the snow is interpolated between cells. Elsewhere it is that of level, open ground.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if the position is invalid.
@@ -33,8 +33,8 @@ impl Context {
         self.held.snowpack.coarse_s()
     }
 
-    /// Removes the snow of a strip of the host's terrain, except the lowest `left_m`, \[0, 100\]: a plough, a shovel.
-    /// Returns the removed mass, kg.
+    /// Removes the snow of a strip of the host's terrain, except the lowest `left_m` metres, \[0, 100\]: a plough, a
+    /// shovel. Returns the removed mass, kg.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] without a terrain or without simulated snow

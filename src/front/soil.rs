@@ -76,7 +76,7 @@ impl Context {
     }
 
     /// Adds the next pose of a tool, in the host's world. Send a pose before the update that reaches its time: the tool
-    /// moves evenly between its poses, and stands where the last one ends. The ground then depends on the poses alone,
+    /// moves evenly between its poses, and stands still at the last one. The ground then depends on the poses alone,
     /// not on the times of the updates.
     ///
     /// # Errors
@@ -101,7 +101,8 @@ impl Context {
         self.held.soil.site_mut(&self.world)?.0.end_tool(tool)
     }
 
-    /// Returns what a tool holds and meets, as of [`Context::state_time_s`]; its centre is in the host's world.
+    /// Returns the soil that a tool holds and the ground that it met in the last step, as of [`Context::state_time_s`].
+    /// [`SoilToolReport::centre`] is in the host's world.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without soil, [`Status::InvalidArgument`] for an unknown tool.

@@ -56,8 +56,8 @@ impl Context {
         Ok(())
     }
 
-    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off. Soil stays in the
-    /// books, and comes back with the tile.
+    /// Removes a tile, with the water and the snow on it. Water of the cells beside it runs off. Soil on the tile stays
+    /// in the balance ([`Context::soil_books`]), and comes back when the tile is set again.
     ///
     /// # Errors
     /// [`crate::Status::WrongOrder`] without a lattice; [`crate::Status::InvalidArgument`] for a tile that does not

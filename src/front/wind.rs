@@ -14,8 +14,9 @@ impl Context {
     ///
     /// A field that is set again with another position moves by whole cells; with another size, mode, walls, scheme or
     /// pressure method it starts anew. [`Context::update`] advances it in steps on a time grid that is anchored at time
-    /// 0; [`crate::flow`] says how long they take. It starts with the steady field of its first moment, and starts so
-    /// again after a leap of time of more than a minute ([`WindFieldReport::begun_s`]). Part of the saved state.
+    /// 0; [`crate::flow`] says how long they take. It starts with the steady field of the wind at its start, and starts
+    /// anew in this way after a leap of time of more than a minute ([`WindFieldReport::begun_s`]). Part of the saved
+    /// state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; for a field that is too large, the message also gives the

@@ -15,7 +15,8 @@ pub enum Pane {
     /// A flat window. Its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
     /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
     Quad([DVec3; 4]),
-    /// Glass over the whole picture, at right angles to the view at this distance, m, [0.1, 3].
+    /// Glass over the whole picture, at right angles to the camera's axis. The value is its distance from the camera,
+    /// m, [0.1, 3].
     WholeView(f64),
 }
 
@@ -42,7 +43,8 @@ impl Plane {
     /// which is at the origin.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if they are out of range, not in one plane, not convex or not in that order.
+    /// [`crate::Status::InvalidArgument`] if the corners are out of range, not in one plane, not convex or not in that
+    /// order.
     pub fn of(corners: &[DVec3; 4]) -> Result<Self> {
         const NAME: &str = "windscreen.corners_m";
         let listed = || format!("{corners:?}");
@@ -87,7 +89,7 @@ impl Plane {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for corners that [`Plane::of`] refuses; [`crate::Status::Unsupported`] for
-    /// glass over the whole view with a projection that gives no such corners.
+    /// glass over the whole view with a projection from which no valid corners follow.
     pub fn of_pane(pane: &Pane, projection: &DMat4) -> Result<Self> {
         match pane {
             Pane::Quad(corners) => Self::of(corners),

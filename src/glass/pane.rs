@@ -64,8 +64,8 @@ impl PaneAt {
         self.origin + self.along * x + self.up * y
     }
 
-    /// Returns drops of `sizes` that each stand for an equal share of the falling water: their present velocities in
-    /// the host's world, and the share of the water on the pane that they bring.
+    /// Returns drops of `sizes` that each represent an equal share of the falling water: the present velocity of each
+    /// in the host's world, and the share of the water on the pane that each brings.
     pub fn drops(&self, now: &SceneMoment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
         let over = &now.weather;
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
@@ -85,7 +85,7 @@ impl PaneAt {
     }
 
     /// Returns the share of the rain, given by the results of [`Self::drops`], that boxes now let through to each part
-    /// of the pane. The vehicle's own box does not count.
+    /// of the pane. The vehicle's own box is left out.
     pub fn reach(&self, shelters: &[Shelter], drops: &[(DVec3, f64); SIZES]) -> Reach {
         if shelters.is_empty() {
             return Reach::ALL;

@@ -173,14 +173,15 @@ pub(super) struct PaneLattice {
     now: usize,
     /// Index of the present state of the snow.
     snow_now: usize,
-    /// Bind groups by the present state of the snow, then of the cells. The first is for the pass that writes the
-    /// moves: it has the other state of the cells in their place. The second reads the cells and the moves.
+    /// Bind groups by the present state of the snow, then of the cells. The first of each two is for the pass that
+    /// writes the moves: it has the other state of the cells in place of the moves. The second reads the cells and the
+    /// moves.
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     /// Uniform blocks of the due steps, every `stride` bytes.
     steps: wgpu::Buffer,
     /// Distance between the blocks of two steps, bytes.
     stride: usize,
-    /// Bytes of these blocks, before they are uploaded.
+    /// Bytes of the steps' uniform blocks, before they are uploaded.
     slots: Vec<u8>,
     /// Work that is due, and whether snow takes part in it.
     due: Vec<(LatticeWork, bool)>,

@@ -13,7 +13,7 @@ pub const NODES: [usize; 2] = [16, 8];
 pub const ALL: u8 = 128;
 /// Number of vectors of four words that hold the nodes; each vector holds sixteen nodes.
 const WORDS: usize = NODES[0] * NODES[1] / 16;
-/// Number of drop sizes tested at each node. Each stands for an equal share of the water.
+/// Number of drop sizes tested at each node. Each represents an equal share of the water.
 pub const SIZES: usize = 6;
 
 /// Shares of the rain that reach the nodes, each from 0 to [`ALL`], in rows from the lower edge up, packed for
@@ -22,7 +22,7 @@ pub const SIZES: usize = 6;
 pub struct Reach([[u32; 4]; WORDS]);
 
 impl Reach {
-    /// Reach of all of the rain everywhere.
+    /// Shares with which all of the rain reaches every node.
     pub const ALL: Self = Self([[ALL as u32 * 0x0101_0101; 4]; WORDS]);
 
     /// Creates the shares. `share` returns the share, 0 to 1, at a position in the pane's bounds, 0 to 1 to the right

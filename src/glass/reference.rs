@@ -1,5 +1,5 @@
-//! Reference of the cells on the CPU, a twin to the bit of `shaders/glass/{cells,decide,gather,declare,settle}.wgsl`,
-//! with functions of the same names, which the shaders describe.
+//! Reference of the cells on the CPU: a twin of `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` that gives
+//! the same bits. Its functions have the same names; the comments of the shaders describe them.
 
 use glam::DVec2;
 
@@ -23,9 +23,9 @@ const RAN: u32 = 32;
 /// Number of steps in which a cell collects the water of its declared state.
 const LIFE_STEPS: u32 = 2048;
 
-/// Cell, four words. Volume, units of [`VOLUME_UNIT_M3`]. Place of the bead in the cell, x + 65536 y, each in 1/65536
-/// of the edge. Speed, 0 at rest, + 65536 x shape (seed of the outline). Hits since the last clearing + 4096 x
-/// clearings (modulo 16) + 65536 x film.
+/// Cell, as four words. The first is the volume, units of [`VOLUME_UNIT_M3`]. The second is the place of the bead in
+/// the cell, x + 65536 y, each in 1/65536 of the edge. The third is the speed (0 at rest) + 65536 x shape (seed of the
+/// outline). The fourth is hits since the last clearing + 4096 x clearings (modulo 16) + 65536 x film.
 pub type Cell = [u32; 4];
 
 /// Lattice of cells.
@@ -225,7 +225,7 @@ impl Cells {
         (uneven >> 1) + ((side(1) - side(-1)) >> 9).clamp(-64, 64)
     }
 
-    /// Returns the move of a bead that no other takes in.
+    /// Returns the move of a bead that no other bead takes in.
     fn run(&self, step: &StepUniform, cell: [i32; 2], here: Cell, law: [i32; 4], flags: u32) -> Cell {
         let pinned = 180 + ((cell_hash(cell, step.key[1]) >> 8) % 154) as i32;
         let glides = here[2] & 0xffff != 0 || here[3] >> 16 > WET_FILM || law[3] > pinned;

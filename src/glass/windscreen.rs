@@ -13,7 +13,7 @@ pub const MAX_ARMS: usize = 2;
 pub struct WiperArm {
     /// Position of the pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
     pub pivot_m: [f64; 2],
-    /// Distance from the pivot to the blade's outer end, m, (0, 3].
+    /// Distance from the pivot to the blade's outer end, m, [0.01, 3].
     pub length_m: f64,
     /// Distance from the pivot to the blade's inner end, m, [0, `length_m`).
     pub inner_radius_m: f64,
@@ -21,7 +21,7 @@ pub struct WiperArm {
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of `parked_deg`.
     pub far_deg: f64,
-    /// Present position of the blade: 0 parked, 1 at the far end.
+    /// Present position of the blade in its stroke, [0, 1]: 0 parked, 1 at the far end.
     pub position: f64,
     /// Width of the rubber on the glass, m, [0, 0.1].
     pub blade_width_m: f64,
@@ -50,14 +50,15 @@ pub struct Windscreen {
     /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each
     /// within 400. The number of drops that hit the glass depends on it.
     pub velocity_m_s: DVec3,
-    /// Speed of the air along the glass, upwards, at the drops' height, m/s, [-100, 100]. It drives the beads.
+    /// Speed of the air that flows up along the glass, as close to it as a bead is high, m/s, [-100, 100]. It drives the
+    /// beads.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, [0, 1]; for example 0 in a tunnel for which the host has set
     /// no box. The context's boxes and maps ([`crate::context::Context::set_shelters`],
     /// [`crate::context::Context::set_occluder_maps`]) further reduce the rain on each part of the pane. A box that
     /// contains the camera and ends within 3 m in front of the glass is the vehicle's own, and keeps no rain off.
     pub exposed: f64,
-    /// Mist on the inside: 0 is clear glass, 1 the densest mist.
+    /// Mist on the inside, [0, 1]: 0 is clear glass, 1 the densest mist.
     pub fogging: f64,
     /// Share of the glass's height, from the lower edge upwards, that the blower has cleared of mist, [0, 1].
     pub demist: f64,

@@ -124,8 +124,8 @@ pub(crate) fn no_layers(device: &wgpu::Device) -> wgpu::TextureView {
 }
 
 /// Creates a view of all layers of a texture, as an array. wgpu's OpenGL backend needs care: a view of a single layer
-/// of an array reads as empty, a texture with one layer is no array, and one whose number of layers is a multiple of
-/// six becomes an array of cube maps.
+/// of an array reads as empty, a texture with one layer is no array, and a texture whose number of layers is a multiple
+/// of six becomes an array of cube maps.
 pub(crate) fn as_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
@@ -138,7 +138,7 @@ pub(crate) fn buffer(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntr
     wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }
 }
 
-/// Entry that binds a part of a buffer, whose start is a multiple of 256.
+/// Entry that binds a range of a buffer. The range begins at a multiple of 256 bytes.
 pub(crate) fn part(binding: u32, buffer: &wgpu::Buffer, part: Range<usize>) -> wgpu::BindGroupEntry<'_> {
     let (offset, size) = (part.start as u64, wgpu::BufferSize::new(part.len() as u64));
     wgpu::BindGroupEntry {

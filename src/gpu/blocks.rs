@@ -28,7 +28,7 @@ struct Page {
     taken: Vec<Range<usize>>,
 }
 
-/// A uniform block in a page. Its range is free again when it is dropped.
+/// A uniform block in a page. Dropping the block frees its range.
 pub(crate) struct UniformBlock {
     pages: Blocks,
     page: usize,
@@ -49,8 +49,8 @@ impl Page {
     }
 
     /// Takes the last free range of this many bytes that begins at a multiple of `step`. The first block taken
-    /// therefore lies at the end of the page. It is the frame's own block: each frame writes its beginning, and its
-    /// tables at the end rarely change. The changed range of a page thus ends before these tables.
+    /// therefore lies at the end of the page. It is the frame's own block. Each frame writes the beginning of this
+    /// block, and the tables at its end rarely change. The changed range of a page thus ends before these tables.
     fn take(&mut self, bytes: usize, step: usize) -> Option<Range<usize>> {
         let ends = std::iter::once(self.staged.len()).chain(self.taken.iter().map(|taken| taken.start));
         let starts = ends.map(|end| end.checked_sub(bytes).map(|start| start - start % step));
@@ -119,7 +119,8 @@ impl Blocks {
 }
 
 impl UniformBlock {
-    /// Writes `bytes` to the start of the block; the rest keeps its contents. The next [`Blocks::upload`] uploads them.
+    /// Writes `bytes` to the start of the block; the rest keeps its contents. The next [`Blocks::upload`] uploads the
+    /// change.
     pub fn write(&self, bytes: &[u8]) {
         self.write_at(0, bytes);
     }
@@ -151,7 +152,7 @@ impl BlockView {
         self.part(binding, 0, self.bytes())
     }
 
-    /// Entry that binds a part of the block, whose `offset` is a multiple of 256.
+    /// Entry that binds a part of the block. `offset` counts from the block's start and is a multiple of 256.
     pub fn part(&self, binding: u32, offset: usize, bytes: usize) -> wgpu::BindGroupEntry<'_> {
         wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Buffer(self.range(offset, bytes)) }
     }
@@ -196,7 +197,7 @@ mod tests {
         assert!(free - held[4].at.end < step, "the place that is free");
         assert!(is_sound(&held));
         assert_eq!(blocks.bytes(), bytes);
-        // Until there is no more room.
+        // Allocates blocks until one needs a new page.
         while blocks.bytes() == bytes {
             held.push(blocks.block(&device, 4096));
         }

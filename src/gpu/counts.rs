@@ -1,4 +1,4 @@
-//! Work of a device beyond drawing, counted for the benchmarks: pipelines, uploads, readbacks, tables.
+//! Work of a device, counted for the benchmarks: pipelines, uploads, gauges, readbacks, tables.
 
 use std::{
     sync::atomic::{AtomicU64, Ordering},
@@ -10,21 +10,22 @@ use std::{
 pub(crate) enum DeviceWork {
     /// Pipelines created.
     Pipelines,
-    /// Time of the calling threads in creating them, µs. A driver may compile more when it first draws with them.
+    /// Time that the calling threads took to create pipelines, µs. A driver may compile more at the first draw with a
+    /// pipeline.
     PipelineTime,
     /// Bytes written to buffers and textures.
     UploadBytes,
-    /// Gauges drawn, and results of gauges read.
+    /// Gauges drawn, plus gauge results read back.
     Gauges,
     /// Waits for the GPU to read something back.
     Readbacks,
-    /// Parts of the sky's tables that were built, refined or faded.
+    /// Updates in which tables of the sky were built, refined or faded.
     SkyTables,
-    /// Tables of the sky as an observer sees it.
+    /// Updates of the tables of the sky as an observer sees it.
     ObserverTables,
-    /// Tables of the light in clouds, and the noise that clouds are cut out of.
+    /// Creations and updates of the tables of clouds: the light in clouds, and the noise that clouds are cut out of.
     CloudTables,
-    /// Time of the calling threads in computing these, µs.
+    /// Time that the calling threads took to compute the tables of clouds, µs.
     CloudTableTime,
 }
 
@@ -51,7 +52,7 @@ impl WorkTotals {
         self.0[what as usize].fetch_add(amount, Ordering::Relaxed);
     }
 
-    /// Adds one to a total, and the time since `begun` to another.
+    /// Adds 1 to the total `what`, and the time since `begun`, µs, to the total `time`.
     pub fn add_timed(&self, [what, time]: [DeviceWork; 2], begun: Instant) {
         self.add(what, 1);
         self.add(time, begun.elapsed().as_micros() as u64);

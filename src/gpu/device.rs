@@ -72,22 +72,22 @@ pub trait HostBinding: Send + Sync {
     fn reading(&self, _color: &wgpu::Texture) -> Option<wgpu::Texture> {
         None
     }
-    /// Copies all that was submitted for `color` into its [`HostBinding::reading`].
+    /// Copies `color`, with everything submitted for it, to the texture that [`HostBinding::reading`] returns for it.
     ///
     /// # Errors
     /// The error with which the host's context refuses the copy.
     fn refresh(&self, _color: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
-    /// Returns the texture to attach for writing a host's depth, where `depth` is the texture that shaders read; `None`
-    /// if that is `depth` itself.
+    /// Returns the texture to attach for writing a host's depth. `depth` is the texture that shaders read. Returns
+    /// `None` if `depth` itself can be attached.
     fn attached_depth(&self, _depth: &wgpu::Texture) -> Option<AttachedDepth> {
         None
     }
-    /// Updates `depth`, if it is a copy, with all that was submitted.
+    /// Copies the host's depth to `depth` again, after everything that was submitted, if `depth` is a copy.
     ///
     /// # Errors
-    /// As [`HostBinding::refresh`].
+    /// The errors of [`HostBinding::refresh`].
     fn refresh_depth(&self, _depth: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
@@ -104,9 +104,9 @@ pub trait HostBinding: Send + Sync {
     fn forsaken(&self);
 }
 
-/// First field of a device to be dropped: enters the host's context so that the fields after it are released in it, and
-/// calls the binding's `closing`. If the context cannot be entered, it calls `forsaken`, and nothing is released,
-/// because a driver may crash at a call without a context.
+/// First field of a device to be dropped. Enters the host's context, in which the later fields are then released, and
+/// calls the binding's `closing`. If the context cannot be entered, calls `forsaken` and releases nothing, because a
+/// driver may crash at a call without a context.
 struct Entrance {
     binding: Arc<dyn HostBinding>,
     entered: Arc<AtomicBool>,
@@ -193,7 +193,7 @@ pub struct Device {
     submission: Mutex<()>,
     /// Number of submissions so far.
     submissions: AtomicU64,
-    /// Work beyond drawing, for the benchmarks.
+    /// Counted work, for the benchmarks.
     pub(crate) counts: WorkTotals,
     /// Window images that are acquired but not yet presented or given back.
     of_windows: Mutex<Vec<wgpu::Texture>>,
@@ -203,7 +203,8 @@ pub struct Device {
 }
 
 impl Device {
-    /// Creates the device as [`Device::adopt`] does, without testing the driver. The caller trusts it or tests it.
+    /// Creates the device as [`Device::adopt`] does, without testing the driver. The caller trusts the driver or tests
+    /// it.
     pub(super) fn around(
         instance: wgpu::Instance,
         adapter: wgpu::Adapter,
@@ -293,7 +294,7 @@ impl Device {
         self.binding.as_ref().and_then(|b| b.reading(color))
     }
 
-    /// Copies all that was submitted for `color` into its [`Device::reading`].
+    /// Copies `color`, with everything submitted for it, to the texture that [`Device::reading`] returns for it.
     ///
     /// # Errors
     /// The error with which the host's context refuses the copy.
@@ -307,7 +308,7 @@ impl Device {
         other.unwrap_or_else(|| AttachedDepth { texture: depth.clone(), is_copied: false })
     }
 
-    /// Updates `depth`, if it is a copy, with all that was submitted.
+    /// Copies the host's depth to `depth` again, after everything that was submitted, if `depth` is a copy.
     ///
     /// # Errors
     /// The error with which the host's context refuses the copy.
@@ -445,8 +446,8 @@ impl Device {
         self.queue.write_texture(texels, bytes, layout, size);
     }
 
-    /// Returns what the device has done beyond drawing since it was created, each with its name: pipelines created and
-    /// the calling threads' time for them, bytes uploaded, answers of gauges, readbacks, and tables computed.
+    /// Returns the work that the device has done since it was created, each total with its name: pipelines created and
+    /// the calling threads' time for them, bytes uploaded, gauges drawn and read, readbacks, and tables computed.
     #[cfg(any(test, feature = "lab"))]
     #[doc(hidden)]
     pub fn work(&self) -> Vec<(&'static str, u64)> {

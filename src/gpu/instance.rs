@@ -41,7 +41,7 @@ pub(super) fn open(backends: wgpu::Backends, display: Option<KeptDisplay>) -> Re
 }
 
 /// Whether libwayland is able to look for a compositor. If it is not, libwayland prints an error on standard error. A
-/// layer that comes with Mesa (`VK_LAYER_MESA_device_select`) makes it look whenever an instance has
+/// Vulkan layer that comes with Mesa (`VK_LAYER_MESA_device_select`) makes libwayland look whenever an instance has
 /// `VK_KHR_wayland_surface`, which wgpu always requests.
 #[cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
 fn wayland_can_be_asked() -> bool {

@@ -16,7 +16,7 @@ pub(crate) struct Layer<'a> {
 pub(crate) struct KeptLayer(wgpu::Texture, u32);
 
 impl Layer<'_> {
-    /// Creates a view of this layer only, and of depth only if the format also has stencil.
+    /// Creates a view of this layer only. If the format has depth, the view leaves out stencil.
     pub fn view(self) -> wgpu::TextureView {
         let depth = self.texture.format().has_depth_aspect();
         self.texture.create_view(&wgpu::TextureViewDescriptor {

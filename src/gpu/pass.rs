@@ -57,7 +57,7 @@ pub struct FullscreenDesc<'a> {
     pub samples: u32,
 }
 
-/// Creates the pipeline.
+/// Creates a full-screen pipeline.
 ///
 /// # Errors
 /// A missing shader file; GPU faults come through [`Device::check`].
@@ -65,7 +65,7 @@ pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::Re
     fullscreen_at(device, desc, None)
 }
 
-/// Creates the pipeline as [`fullscreen`] does, with its triangle at a depth in [0, 1], tested against a depth
+/// Creates a pipeline as [`fullscreen`] does, with the triangle at a depth in [0, 1], tested against a depth
 /// attachment.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub(crate) fn fullscreen_at(
 ) -> Result<wgpu::RenderPipeline> {
     let begun = Instant::now();
     let Shader { module, overrides } = device.shader_and_overrides(desc.shader)?;
-    // A variant lacks the constants of the parts that it leaves out. In a whole shader a missing constant is a fault.
+    // A variant lacks the constants of the code that it leaves out. In a whole shader a missing constant is a fault.
     let is_whole = !desc.shader.contains(':');
     let constants: Vec<_> =
         desc.constants.iter().copied().filter(|(name, _)| is_whole || overrides.iter().any(|o| o == name)).collect();
@@ -116,7 +116,7 @@ pub(crate) fn fullscreen_at(
     Ok(pipeline)
 }
 
-/// Returns the state for a test against a depth attachment, which may also write it.
+/// Returns the state for a test against a depth attachment. `write` says whether the draw also writes its depth there.
 pub(crate) fn depth_test(
     format: wgpu::TextureFormat,
     compare: wgpu::CompareFunction,
@@ -164,7 +164,7 @@ pub struct QuadsDesc<'a> {
     pub counts: bool,
 }
 
-/// Creates the pipeline.
+/// Creates a pipeline of quads.
 ///
 /// # Errors
 /// The errors of [`fullscreen`].
@@ -223,7 +223,7 @@ pub(crate) struct MeshDesc<'a> {
     pub format: wgpu::TextureFormat,
 }
 
-/// Creates the pipeline.
+/// Creates a mesh pipeline.
 ///
 /// # Errors
 /// The errors of [`fullscreen`].
@@ -272,7 +272,7 @@ pub(crate) struct ComputeDesc<'a> {
     pub constants: &'a [(&'a str, f64)],
 }
 
-/// Creates the pipeline.
+/// Creates a compute pipeline.
 ///
 /// # Errors
 /// The errors of [`fullscreen`].

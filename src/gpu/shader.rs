@@ -35,8 +35,8 @@ const VARIANTS: [(&str, &str); 7] = [
     ("lamps", "clouds/glow_view.wgsl"),
 ];
 
-/// Returns the names of shader `name` and of its variants with one word. For the composition also some variants with
-/// several words, as examples of the rest.
+/// Returns the names of shader `name` and of its variants with one word. For the composition, also returns some
+/// variants with several words, as examples of the rest.
 ///
 /// # Errors
 /// The errors of [`assemble`].
@@ -164,7 +164,8 @@ pub fn validate(wgsl: &str) -> Result<()> {
         .map_err(|e| Error::new(Status::Internal, e.emit_to_string(wgsl)))
 }
 
-/// Asserts that a Rust struct has the size and offsets of a WGSL struct of shader `$shader` with the same member names.
+/// Asserts that Rust struct `$type` and WGSL struct `$name` of shader `$shader` have the same size, and that each field
+/// of `$type` in the list is at the offset of the WGSL member of the same name.
 #[cfg(test)]
 macro_rules! assert_layout {
     ($shader:expr, $name:expr, $type:ident, [$($field:ident),* $(,)?]) => {

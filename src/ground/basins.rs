@@ -1,8 +1,8 @@
 //! Hollows of a terrain as a tree, and the pit to which each cell drains.
 //!
-//! A pit fills until its water meets that of another pit at a saddle. From there on both are one larger hollow, which
-//! fills up to the height at which it spills, and so on until the water finds the grid's border. This is the depression
-//! hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow spills is that of the
+//! A pit fills until its water meets that of another pit at a saddle. Above the saddle both are one larger hollow,
+//! which fills up to the height at which it spills, and so on until the water finds the grid's border. This is the
+//! depression hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow spills is that of the
 //! priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal heights by cell number,
 //! so every cell except a pit has a lower neighbour that has been visited. Run-off takes the steepest of the eight
 //! directions. Water leaves at the border.
@@ -21,7 +21,7 @@ pub(super) struct Basin {
     pub spills_to: u32,
     /// First part of the hollow; [`OUT`] for none.
     pub first_child: u32,
-    /// Next part of its parent; [`OUT`] for none.
+    /// Next part of the hollow's parent; [`OUT`] for none.
     pub next: u32,
     /// Height at which the hollow begins, mm: its pit, or the saddle where its parts meet.
     birth_mm: f64,
@@ -45,9 +45,9 @@ pub(super) struct Basins {
     pub drains_to: Vec<u32>,
     /// Own cells of the hollows ([`Basin::own`]), hollow by hollow.
     cells: Vec<u32>,
-    /// Heights of these cells, mm.
+    /// Heights of the cells in `cells`, mm.
     levels_mm: Vec<f64>,
-    /// Water that the hollow holds when its level is at the cell, for each of these cells.
+    /// Water that the hollow holds when its level is at the cell, for each of the cells in `cells`.
     held: Vec<f64>,
 }
 
@@ -90,7 +90,8 @@ struct Rising<'a> {
 }
 
 impl Rising<'_> {
-    /// Returns whether cell `a` lies lower than `b`; of equal heights, the cell with the lower index.
+    /// Returns whether cell `a` lies lower than `b`. Of two equally high cells, the one with the lower index counts as
+    /// lower.
     fn lower(&self, a: usize, b: usize) -> bool {
         (self.heights_mm[a], a) < (self.heights_mm[b], b)
     }

@@ -1,5 +1,6 @@
-//! Water on the ground of a context, shared by its views: the water that the weather reports or, if the host asks for
-//! it, a simulation over the timeline: on level, open ground, and for each cell of the host's terrain.
+//! Water on the ground of a context, shared by its views. It is the water that the weather reports or, if the host asks
+//! for a simulation, the water simulated over the timeline, on level, open ground and on each cell of the host's
+//! terrain.
 
 use std::sync::{Arc, Mutex};
 
@@ -147,19 +148,20 @@ impl HeldGround {
         self.refresh(world)
     }
 
-    /// Returns the host's terrain.
+    /// Returns the host's grid; `None` without one.
     pub fn grid(&self) -> Option<&GroundGrid> {
         self.host.as_ref().map(|held| &held.terrain.grid)
     }
 
-    /// Returns the heights of the host's terrain, for all that depends on its shape.
+    /// Returns the heights of the host's grid, for everything that depends on the terrain's shape; `None` without a
+    /// grid.
     pub fn heights(&self) -> Option<Arc<TerrainHeights>> {
         let held = self.host.as_ref()?;
         let g = &held.terrain.grid;
         Some(Arc::new(TerrainHeights::new((g.origin, held.to_enu), g.cell_m, g.nodes, g.heights_m.clone())))
     }
 
-    /// Returns the water of each cell of the host's terrain.
+    /// Returns the water of each cell of the host's grid; `None` without one.
     pub fn cells(&self) -> Option<impl ExactSizeIterator<Item = GroundCell> + '_> {
         let held = self.host.as_ref()?;
         Some((0..held.terrain.grid.len()).map(move |cell| {
@@ -184,7 +186,7 @@ impl HeldGround {
         cell.or(tile).unwrap_or_default().or(self.surface_class)
     }
 
-    /// Returns the water at a place on the host's terrain, and the share of the terrain under standing water; `None`
+    /// Returns the water at a place on the host's grid, and the share of the grid under standing water; `None`
     /// elsewhere.
     fn terrain_at(&self, position: DVec3) -> Option<(CellWater, f64)> {
         let held = self.host.as_ref()?;
@@ -192,7 +194,7 @@ impl HeldGround {
         Some((held.water.between(&about), held.water.puddles()))
     }
 
-    /// Returns the host's terrain, and the rotation from the host's axes to east, north, up at its origin.
+    /// Returns the host's grid, and the rotation from the host's axes to east, north, up at the grid's origin.
     pub fn drawn_terrain(&self) -> Option<(&GroundGrid, DMat3)> {
         self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
     }
@@ -300,10 +302,11 @@ impl HeldGround {
         })
     }
 
-    /// Takes the ground's part out of a saved state, on these tiles.
+    /// Takes the ground's values out of a saved state. `tiles` is the terrain on which saved water of tiles must lie.
     ///
     /// # Errors
-    /// [`Status::Parse`] for values that cannot be a ground of this context.
+    /// [`Status::Parse`] for values that cannot be a ground of this context. [`Status::InvalidArgument`] if the state
+    /// has a grid and the context has tiles, or if the saved water lies on other tiles.
     pub fn read(&self, world: &World, tiles: Option<&Terrain>, saved: &mut toml::Table) -> Result<LoadedGround> {
         let fault = |key: &str, e: toml::de::Error| parse_error(format_args!("{key}: {e}"));
         // Removes all keys first: even if a value here is wrong, the table is left without the ground's keys.

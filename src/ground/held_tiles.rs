@@ -21,7 +21,7 @@ use crate::{
     world::{DUG_SIDE, DUG_WATER_S, DugGround, UpdateBudget, World},
 };
 
-/// Returns the error for tiles before a terrain.
+/// Returns the error for a tile that is set before a terrain.
 fn without_terrain() -> Error {
     Error::new(Status::WrongOrder, "tiles come after wk_context_set_terrain: there is no terrain")
 }
@@ -49,7 +49,7 @@ impl HeldGround {
     }
 
     /// Changes the tiles by `change`, which returns the cells that it touched. If `waits`, steps from before the change
-    /// are still to be done, and the water takes over the change later.
+    /// are still to be done, and the water is updated later.
     fn change(
         &mut self,
         world: &mut World,

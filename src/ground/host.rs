@@ -28,8 +28,8 @@ pub struct GroundCell {
     pub soaked: f32,
     /// Depth of standing water, mm.
     pub standing_mm: f32,
-    /// Share of the cell under ice, from the weather of the moment. Boxes that stand still keep freezing rain off, and
-    /// thus its ice.
+    /// Share of the cell under ice, in the present weather. On a grid, boxes that stand still keep freezing rain off a
+    /// cell, and thus the ice of this rain.
     pub ice: f32,
 }
 

@@ -1,4 +1,4 @@
-//! Rain areas over a grid, and bounds of groups of its cells, for which an area's share may be the same.
+//! Rain areas over a grid, and bounds of groups of its cells, within which an area's share may be uniform.
 
 use std::ops::Range;
 
@@ -63,9 +63,9 @@ pub(super) fn liquid(f: &Falling) -> f64 {
 pub(super) struct CellBounds {
     /// Middle of the cells in the host's world, m.
     pub(super) middle: DVec3,
-    /// Radius around the middle within which they lie, m.
+    /// Radius around the middle within which the cells lie, m.
     reach_m: f64,
-    /// Their lowest and highest altitude, m.
+    /// Lowest and highest altitude of the cells, m.
     altitudes_m: [f64; 2],
 }
 

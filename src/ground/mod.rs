@@ -11,7 +11,7 @@
 //!
 //! **Surface classes** ([`SurfaceClass`]: what the ground is made of) come from an image, else from the terrain's
 //! cells, else from the context. A closed film and puddles belong to paved ground. The cost is one sky lookup a pixel,
-//! and nothing where it is dry.
+//! and nothing where the ground is dry.
 //!
 //! **Accuracy**. The result is right for a host that hands over scene-linear luminance: the albedo of the ground then
 //! follows from its luminance and the light on it. A surface in shadow is taken for a dark surface in the light, and

@@ -62,7 +62,7 @@ pub(super) struct GridRain {
     pub to_enu: DMat3,
     /// Altitude from which the grid's heights count, m.
     pub altitude_m: f64,
-    /// Bounds of the whole grid, and of each run of its cells.
+    /// Bounds of the whole grid.
     pub whole: CellBounds,
     /// Bounds of each run of cells.
     pub runs: Vec<CellBounds>,
@@ -72,7 +72,8 @@ pub(super) struct GridRain {
     shadow: Shadow,
     /// Ice on the grid.
     glaze: Glaze,
-    /// Precipitation on every cell in this step, mm, before the part that boxes keep off; `None` if cells differ.
+    /// Precipitation on every cell in this step, mm, with the part that boxes keep off still included; `None` if cells
+    /// differ.
     even_mm: Option<f64>,
     /// Precipitation on each cell in this step, mm, less the part that boxes keep off, if `even_mm` is `None`.
     rates: Vec<f64>,
@@ -96,7 +97,8 @@ impl GridRain {
         }
     }
 
-    /// Takes over changed heights: computes the bounds of these runs again and extends those of the whole grid.
+    /// Updates the bounds after heights have changed: computes the bounds of these runs again and extends those of the
+    /// whole grid.
     pub fn heights_changed(&mut self, grid: &CellGrid<'_>, runs: impl Iterator<Item = usize>) {
         for run in runs {
             let cells = run * RUN..((run + 1) * RUN).min(grid.len());
@@ -151,8 +153,8 @@ impl GridRain {
         self.shadow = shadow;
     }
 
-    /// Takes over the ice of the weather `c`. Ice from freezing rain forms only where the rain arrives. Returns whether
-    /// the ice of any cell may have changed.
+    /// Sets the ice on the grid to that of the weather `c`. Ice from freezing rain forms only where the rain arrives.
+    /// Returns whether the ice of any cell may have changed.
     pub fn ice_over(
         &mut self,
         grid: &CellGrid<'_>,
@@ -276,8 +278,8 @@ impl GridRain {
         }
     }
 
-    /// Returns the water with which each cell begins: that of the weather for all ground, less where boxes keep rain
-    /// off.
+    /// Returns the water with which each cell begins: that of the weather for all ground, but more in rain areas, and
+    /// less where boxes keep rain off.
     pub fn first_water(
         &mut self,
         grid: &CellGrid<'_>,

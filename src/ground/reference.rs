@@ -42,8 +42,8 @@ pub fn wet_albedo(albedo: f64) -> f64 {
 
 /// Returns the mean slope, towards the eye, of the facets that the eye sees. `slope` is the root mean square slope of
 /// the surface along one axis, normally distributed; `tangent` is the tangent of the eye's zenith angle. For steep
-/// views the mean is slope^2 tan; for grazing views it is sqrt(pi / 2) slope, the mean of the facets weighted by their
-/// own slope.
+/// views the mean is slope^2 `tangent`; for grazing views it is sqrt(pi / 2) slope, the mean of the facets weighted by
+/// their own slope.
 pub fn seen_slope(slope: f64, tangent: f64) -> f64 {
     let t = slope * tangent * (2.0 / PI).sqrt();
     slope * slope * tangent / (1.0 + t * t).sqrt()

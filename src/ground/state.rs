@@ -13,9 +13,9 @@ pub enum GroundModel {
     /// ends, the ground is dry at once.
     #[default]
     Reported,
-    /// Simulated state: rain fills it; it drains, and dries by wind, sun and humidity ([`crate::ground::water`]). It
-    /// begins at simulation time 0 with the ground that the weather reports then. An update that moves time by more
-    /// than a day restarts it in the same way, one day before the end of the update.
+    /// Simulated water: rain adds to it, and it drains and dries by wind, sun and humidity ([`crate::ground::water`]).
+    /// The simulation begins at time 0 with the ground that the weather reports for that time. An update that moves
+    /// time by more than a day restarts it in the same way, one day before the end of the update.
     Simulated,
 }
 
@@ -84,7 +84,8 @@ pub(super) struct GroundStep<'a> {
 }
 
 impl GroundStep<'_> {
-    /// Returns the weather and its effect on the ground at a place, if weather regions make them differ there.
+    /// Returns the weather and its effect on the ground at a place; `None` where weather regions do not change the
+    /// weather.
     pub fn in_regions(&self, world: &World, place: DVec3) -> Option<(Conditions, Forcing)> {
         if world.set.weather_regions.is_empty() {
             return None;

@@ -2,9 +2,9 @@
 //! and run-off that collects in the hollows of the terrain.
 //!
 //! Water that a cell sheds in a step reaches its hollow by the end of the step ([`super::basins`]). A full hollow
-//! spills into the next, and water that reaches the grid's border leaves. Nothing flows in from outside. Standing water
-//! loses Penman's evaporation to the air and a leakage to the ground below, and takes all rain that falls on it. The
-//! balance is: rain = change of film, pores and standing water + evaporated + leaked + drained.
+//! spills into a neighbouring one, and water that reaches the grid's border leaves. Nothing flows in from outside.
+//! Standing water loses Penman's evaporation to the air and a leakage to the ground below, and takes all rain that
+//! falls on it. The balance is: rain = change of film, pores and standing water + evaporated + leaked + drained.
 
 use half::f16;
 
@@ -17,8 +17,8 @@ use super::{
 
 /// Number of cells in a run. A run is skipped in a step if nothing falls, flows or dries on any of its cells.
 pub(crate) const RUN: usize = 64;
-/// Standing water, mm, of a cell in a dry hollow or in no hollow. Interpolation towards a cell under water puts the
-/// puddle's edge nearer to the water for a more negative value.
+/// Standing water, mm, of a cell in a dry hollow or in no hollow. The more negative this value, the nearer to the water
+/// interpolation puts the edge of a puddle.
 const BARE_MM: f32 = -50.0;
 
 /// Terrain of the host and its hollows.
@@ -56,8 +56,8 @@ pub(crate) struct CellWater {
     pub film_mm: f64,
     /// Water in the pores, as a share of their capacity.
     pub soaked: f64,
-    /// Depth of standing water above the ground. Negative where none stands: minus the height of the ground above its
-    /// hollow's water level, or [`BARE_MM`].
+    /// Depth of standing water above the ground, mm. Negative where none stands: minus the height of the ground above
+    /// its hollow's water level, or [`BARE_MM`].
     pub standing_mm: f64,
 }
 
@@ -157,7 +157,7 @@ impl TerrainWater {
     }
 
     /// Advances the water by a step. `rain_mm` returns the rain on a cell, mm, `rains` whether any falls on a run. Runs
-    /// on which nothing falls, flows or dries are skipped; the result is the same to the bit.
+    /// on which nothing falls, flows or dries are skipped, which does not change the result by a bit.
     pub fn step(
         &mut self,
         terrain: &GridTerrain,

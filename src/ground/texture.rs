@@ -137,7 +137,7 @@ impl TerrainTextures {
         Some(texture)
     }
 
-    /// Uploads the snow on the terrain, if it has changed, into the rows below the surface.
+    /// Uploads the snow on the terrain, if it has changed, into the rows after those of the surface.
     pub fn upload_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<&UploadedTerrain> {
         let filled = self.filled.as_mut()?;
         if let Some(snow) = snow.filter(|s| s.revision != filled.snow) {

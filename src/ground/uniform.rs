@@ -22,7 +22,7 @@ use crate::{
     weather::{Falling, SurfaceCover, snow_cover},
 };
 
-/// Side of a cell of the rings' grid, m. This and the next two are twins of the constants in
+/// Side of a cell of the rings' grid, m. This constant and the two below are twins of those in
 /// `shaders/ground/hollows.wgsl`.
 const RING_CELL_M: f64 = 0.2;
 /// Length of a time slot of the rings, s.
@@ -139,8 +139,8 @@ pub(crate) struct WetScene<'a> {
 
 /// Width of the border zone of a terrain, in cells, in which it fades into the world's ground.
 const TERRAIN_RIM: f64 = 2.0;
-/// Largest distance of a surface from a terrain to which it still belongs: a constant part, m, and a share of the cell
-/// size.
+/// Largest distance from a terrain at which a surface still belongs to the terrain: a constant part, m, and a share of
+/// the cell size.
 const NEAR_TERRAIN: [f64; 2] = [0.25, 0.25];
 
 /// Returns the share of soaked pores at this wetness, and the share of the ground that a film covers.
@@ -155,8 +155,8 @@ const NO_LEVEL: f32 = 1000.0;
 /// Height that no surface lies below, m.
 const NO_SEA_M: f32 = -1e9;
 
-/// Returns the level that the hollows exceed in depth on the share `covered` of the ground, in units of their root mean
-/// square depth.
+/// Returns the level of the water that covers the share `covered` of the ground: the depth that the hollows exceed
+/// there, in units of their root mean square depth.
 fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }

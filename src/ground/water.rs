@@ -3,9 +3,10 @@
 //!
 //! The state advances in steps of [`STEP_S`] that begin at whole multiples of it, so the result does not depend on how
 //! often it is asked for. In a step rain wets the ground (less the part that freezes), pores fill, the film runs off
-//! into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each part is solved over
-//! the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On the host's terrain
-//! (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of the terrain.
+//! into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each of these processes
+//! is solved over the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On the host's
+//! terrain (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of the
+//! terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::{
@@ -31,10 +32,9 @@ const HOLLOW_MM: f64 = 6.0;
 const OVERFLOW_SHARE: f64 = 0.35;
 /// Leakage from hollows into the ground below, mm/h.
 const LEAK_MM_H: f64 = 0.4;
-/// Scale of a film's depth F, mm, in the share of the ground that it covers, 1 - exp(-F / 0.15 mm): the depth of
-/// asphalt's texture.
+/// Depth of asphalt's texture, mm. A film of the depth F, mm, covers the share 1 - exp(-F / 0.15 mm) of the ground.
 const FILM_MM: f64 = 0.15;
-/// Amount of water below which it counts as none, mm.
+/// Amount of water, mm, below which the rest in pores or hollows counts as none.
 const LEAST_MM: f64 = 1e-4;
 /// Wetness of soaked ground without a film: damp, in [`SurfaceCover::wetness`].
 const DAMP: f64 = 0.3;
@@ -109,7 +109,8 @@ fn hollows_mm(covered: f64) -> f64 {
     HOLLOW_MM * (normal_density(level) - level * covered)
 }
 
-/// Returns the share of the ground under water: the inverse of [`hollows_mm`], by bisection of the level.
+/// Returns the share of the ground under water, at most [`OVERFLOW_SHARE`], if `water_mm` stands in hollows: the
+/// inverse of [`hollows_mm`], by bisection of the level.
 fn covered_by(water_mm: f64) -> f64 {
     if water_mm <= 0.0 {
         return 0.0;
@@ -194,7 +195,7 @@ pub(crate) struct SurfaceWater {
 }
 
 impl Step {
-    /// Computes what is the same for all cells in a step of `seconds`.
+    /// Computes the values that are the same for all cells in a step of `seconds`.
     pub fn new(forcing: &Forcing, seconds: f64) -> Self {
         let evaporated_mm = forcing.evaporation_mm_h * seconds / 3600.0;
         Self {
@@ -211,7 +212,8 @@ impl Step {
         film_mm.min((PORES_MM - soaked_mm) * self.soaking)
     }
 
-    /// Returns film and pores after the step on ground without standing water, on which `rain_mm` falls.
+    /// Returns film and pores after the step on ground without standing water. `rain_mm` is the rain that falls in the
+    /// step.
     pub fn surface(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         // Adds half of the rain before the run-off and half after it, for second-order accuracy.
         let half = 0.5 * rain_mm;

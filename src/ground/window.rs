@@ -2,8 +2,8 @@
 //! names, for its own shaders. [`super::texture`] does the same for a grid.
 //!
 //! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
-//! m the window reaches 224 to 288 m from the camera; beyond it lies the world's own ground. Only changed parts are
-//! filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
+//! m the window reaches 224 to 288 m from the camera; beyond the window lies the world's own ground. Only changed parts
+//! are filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
 //! which the ground changed.
 
 use glam::{DMat3, DVec3};
@@ -118,7 +118,7 @@ pub(crate) struct TerrainWindow {
     filled: Option<WindowContents>,
     /// Scratch space for texels of the water, or of the snow for a host.
     water: Vec<[u16; 4]>,
-    /// Texels of the surface, or of the snow, which is stored in the rows below the surface.
+    /// Texels of the surface, or of the snow, which is stored in the rows after those of the surface.
     surface: Vec<[f32; 4]>,
 }
 
@@ -269,8 +269,8 @@ impl TerrainWindow {
     }
 }
 
-/// Returns the highest water level beside a cell minus the cell's height, mm (negative). Interpolated with it, the
-/// shore lies where the water's level meets the ground between the two cells.
+/// Returns the highest water level beside a cell minus the cell's height, mm (negative). Interpolation with this value
+/// puts the shore where the water's level meets the ground between the two cells.
 fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     if !shown.water.has_lakes_near(shown.terrain, cell) {
         return BARE_MM;

@@ -15,8 +15,8 @@ const FARTHEST_M: f64 = 1e7;
 const PERIOD: UVec2 = UVec2::splat(1 << 31);
 /// Largest number of octaves.
 const MOST_OCTAVES: i32 = 24;
-/// Largest absolute value of one octave of gradient noise. Scaled by it, ridges have sharp crests and no negative
-/// height.
+/// Largest absolute value of one octave of gradient noise. Scaled by this value, ridges have sharp crests and no
+/// negative height.
 const MOST_NOISE: f64 = 0.85;
 
 /// Kind of relief.
@@ -65,8 +65,9 @@ impl NoiseTerrain {
         check_range("hurst", self.hurst, 0.0, 1.0, "")
     }
 
-    /// Returns the height at a place, m, with the octaves, at most 24, whose forms are at least two `cell_m` wide;
-    /// finer ones would alias. For settings that [`NoiseTerrain::check`] refuses, the result is meaningless.
+    /// Returns the height at a place, m: the sum of the first octave and of those, at most 24 in all, whose forms are
+    /// at least two `cell_m` wide. Finer octaves would alias. For settings that [`NoiseTerrain::check`] refuses, the
+    /// result is meaningless.
     pub fn height_m(&self, east_m: f64, north_m: f64, cell_m: f64) -> f64 {
         let place = DVec2::new(east_m, north_m);
         let ratio = libm::exp2(-self.hurst);

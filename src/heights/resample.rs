@@ -5,7 +5,8 @@ use crate::error::Result;
 
 /// Least share of a new cell whose heights must be known. The slack is for rounding.
 const LEAST_KNOWN: f64 = 0.5 - 1e-9;
-/// Columns of the new map that are computed together, so that their columns of old rows stay in the cache.
+/// Number of columns of the new map that are computed together: so few that their values in all old rows stay in the
+/// cache.
 const STRIP: usize = 32;
 
 /// Height of a cell and the share of it that is known.
@@ -20,10 +21,10 @@ impl HeightMap {
     /// new sample is the mean over its cell of parabolas through the old cells (Colella and Woodward 1984, equations
     /// 1.5 to 1.9, without their limiter). So the mean of all heights stays, whether the map becomes finer or coarser,
     /// a plane stays a plane, and the map's own size gives the same heights. A finer map overshoots at a cliff by at
-    /// most 0.18 of its height.
+    /// most 0.18 of the cliff's height.
     ///
-    /// A new sample is known if at least half of its cell is. The mean then stays with each new sample weighted by
-    /// the known part of its cell.
+    /// A new sample is known if at least half of its cell is. The mean of a map with unknown heights then stays if each
+    /// new sample is weighted by the known part of its cell.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a size that [`HeightMap::new`] refuses;
@@ -109,9 +110,9 @@ impl Line {
         PartlyKnown { value: sum / known, share: known * self.new as f64 / self.old as f64 }
     }
 
-    /// Returns the integral of the parabola of cell `i` over a part of that cell. Its values at the edges are those of
-    /// the cubic through the sums of the four cells around them (equation 1.6 for equal cells); beyond the last known
-    /// cell heights continue straight on.
+    /// Returns the integral of the parabola of cell `i` over a part of that cell. The parabola's value at each edge is
+    /// that of the cubic through the sums of the four cells around the edge (equation 1.6 for equal cells). Beyond the
+    /// last known cell, heights continue linearly.
     fn integral(self, i: usize, begin: f64, end: f64, cell: impl Fn(usize) -> PartlyKnown) -> f64 {
         let mean = cell(i).value;
         if begin == 0.0 && end == 1.0 {

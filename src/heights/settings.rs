@@ -77,7 +77,7 @@ pub struct RawHeights {
     pub rows: u32,
     /// Kind of the numbers.
     pub sample: RawSample,
-    /// Order of their bytes.
+    /// Order of the bytes of a number.
     pub byte_order: ByteOrder,
     /// Row with which the file begins.
     pub row_order: RowOrder,
@@ -87,8 +87,8 @@ pub struct RawHeights {
 /// half a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightSettings {
-    /// Height of a number. The number of an ESRI ASCII grid is the one in the text; that of a Terragen file is its
-    /// height in metres.
+    /// Scale from numbers to heights. In an ESRI ASCII grid the number is the one in the text. In a Terragen file the
+    /// number is the height in metres.
     pub scale: HeightScale,
     /// Number in the file that means no data, before it is scaled, such as -9999 or -32768. NaN always means no data,
     /// and so do the number that an ESRI ASCII grid names and transparent pixels of a PNG. Default: none.

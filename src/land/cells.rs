@@ -2,10 +2,10 @@
 
 use crate::terrain::{CellRect, DugColor, HOLE, Terrain, Tile};
 
-/// Farthest distance from which a position without ground takes its height, as a power of two of cells.
+/// Binary logarithm of the largest distance, cells, from which a position without ground takes its height.
 pub(super) const FARTHEST_RING: u32 = 10;
 
-/// Steepness of a wall, drop over distance: steeper than soil rests, and than grass grows on.
+/// Least steepness of a wall, drop over distance. On such a slope loose soil does not rest and grass does not grow.
 pub(super) const WALL: f64 = 0.8;
 
 /// Directions of the eight positions around a position.
@@ -54,8 +54,8 @@ impl<'a> CellReader<'a> {
         self.tile_of(place).map_or_else(DugColor::default, |(tile, cell)| tile.dug_color(cell))
     }
 
-    /// Returns whether a cell is the rim of a wall of soil: soil shows in a neighbour, and the drop to it is that of a
-    /// [`WALL`].
+    /// Returns whether a cell is the rim of a wall of soil: soil shows in a neighbour, and the drop to that neighbour
+    /// is steeper than [`WALL`].
     pub fn tops_wall(&mut self, [x, y]: [i32; 2]) -> bool {
         let Some(own) = self.height([x, y]) else { return false };
         let drop = (WALL * self.terrain.desc.cell_m) as f32;
@@ -64,9 +64,10 @@ impl<'a> CellReader<'a> {
             .any(|at| self.dug_color(at).share > 0 && self.height(at).is_some_and(|height| own - height > drop))
     }
 
-    /// Height at a lattice position. Where there is no ground it is the mean of the nearest ground around it, at
-    /// distances that depend on the position alone: all levels of detail therefore have the same height there.
-    /// `None` far from all ground.
+    /// Height at a lattice position, m. Without ground there it is the mean height of the nearest cells with ground
+    /// among those in eight directions, at distances of 1, 2, 4 and so on. The largest of these distances depends on
+    /// the position alone, so all levels of detail have the same height there. `None` if none of these cells has
+    /// ground.
     pub fn height_or_near(&mut self, [x, y]: [i32; 2]) -> Option<f32> {
         if let Some(height) = self.height([x, y]) {
             return Some(height);

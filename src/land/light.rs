@@ -10,7 +10,7 @@ use crate::{
     terrain::{CellRect, Terrain},
 };
 
-/// Height of the camera above the ground below which the camera's own light is used, m.
+/// Height of the camera above the ground, m, up to which the light at the camera is used for the ground.
 const AT_GROUND_M: f64 = 2.0;
 
 /// Light on the ground, lux per channel of linear Rec. 709. Directions are east, north, up at the camera.
@@ -23,7 +23,7 @@ pub(super) struct LandLight {
     pub moon_lux: [f64; 3],
     /// Light of the sky on level ground.
     pub sky_lux: [f64; 3],
-    /// Light of the ground on a surface that faces downwards.
+    /// Light that the ground reflects onto a surface that faces downwards.
     pub bounce_lux: [f64; 3],
 }
 
@@ -59,7 +59,8 @@ impl LandLight {
         }
     }
 
-    /// Returns the light at the ground below the camera, or at the edge of the terrain that is nearest to it.
+    /// Returns the light at the ground below the camera. Outside the terrain's bounds it is the light at the nearest
+    /// place within them.
     ///
     /// # Errors
     /// As [`crate::world::World::scene_named`].

@@ -1,6 +1,6 @@
 //! Materials of the drawn ground: colours of each class of surface, and the noise that varies them.
 //!
-//! A colour is the mean over many metres of the ground. Noise adds to it, once with grains and tufts and once with
+//! A colour is the mean over many metres of the ground. Fine noise adds grains and tufts to it, and broad noise adds
 //! patches of metres to hundreds of metres. Each octave of the noise has the mean 0 and fades out before it becomes
 //! finer than the pixels, so the mean colour is the same at every distance.
 
@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 pub(super) const OCTAVES: usize = 8;
 /// Lengths of the octaves, m. No length is a multiple of another, so that their patterns never repeat together.
 const LENGTHS_M: [f64; OCTAVES] = [0.043, 0.19, 0.71, 2.9, 13.1, 59.0, 241.0, 983.0];
-/// Angle by which each octave is turned against the one before, rad: its lattice is nowhere along that of another.
+/// Angle by which each octave is turned against the previous one, rad: no two octaves have parallel lattices.
 const TURN: f64 = 0.61;
 /// Number of materials: one for each class of surface.
 pub(super) const MATERIALS: usize = 7;
@@ -21,8 +21,9 @@ pub(super) const MATERIALS: usize = 7;
 pub(super) struct Material {
     /// Mean colour.
     pub albedo: [f32; 4],
-    /// Change of the colour by one standard amplitude of the fine noise, and of the broad noise.
+    /// Change of the colour by fine noise of amplitude 1.
     pub fine: [f32; 4],
+    /// Change of the colour by broad noise of amplitude 1.
     pub broad: [f32; 4],
 }
 
@@ -33,9 +34,9 @@ const fn material(albedo: [f32; 3], fine: [f32; 3], broad: [f32; 3]) -> Material
     Material { albedo: four(albedo), fine: four(fine), broad: four(broad) }
 }
 
-/// Materials by class number: natural ground's grass, soil, rock, asphalt, grass, the bed of water, concrete. Their
-/// luminances are within the ranges of Oke 1987, table 1.1, for visible light: grass 0.05 to 0.10, dry soil 0.10 to
-/// 0.20, asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
+/// Materials by class number: for class 0 the grass of natural ground, then soil, rock, asphalt, grass, the bed of
+/// water and concrete. Their luminances are within the ranges of Oke 1987, table 1.1, for visible light: grass 0.05 to
+/// 0.10, dry soil 0.10 to 0.20, asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
 pub(super) const CLASS_MATERIALS: [Material; MATERIALS] = [
     material([0.070, 0.080, 0.038], [0.013, 0.015, 0.007], [0.012, 0.009, 0.006]),
     material([0.190, 0.140, 0.095], [0.030, 0.023, 0.017], [0.024, 0.018, 0.012]),
@@ -54,7 +55,7 @@ pub(super) struct Octave {
     pub cell: [i32; 4],
     /// Place of the eye in this cell, 0 to 1, and cells per metre.
     pub place: [f32; 4],
-    /// Cosine and sine of the octave's angle; footprints between which it fades out, m.
+    /// Cosine and sine of the octave's angle; footprints of a pixel between which the octave fades out, m.
     pub turn: [f32; 4],
 }
 
@@ -64,7 +65,7 @@ fn turned(octave: usize) -> DMat3 {
     DMat3::from_cols(DVec3::new(cosine, sine, 0.0), DVec3::new(-sine, cosine, 0.0), DVec3::Z)
 }
 
-/// Returns the octaves for an eye at a place of the lattice's axes, m.
+/// Returns the octaves for an eye at `eye_m`, m along the lattice's axes from its origin.
 pub(super) fn octaves(eye_m: DVec3) -> [Octave; OCTAVES] {
     std::array::from_fn(|i| {
         let length = LENGTHS_M[i];

@@ -1,10 +1,10 @@
-//! Content of a page: the vertices of a node, and the slopes and materials of the ground in it, as texels.
+//! Content of a page: the vertices of a node, and texels with the slopes and classes of the node's ground.
 //!
-//! A page has the heights of the node's 17 x 17 vertices. Slopes and materials are four times finer from level 2
-//! on, so that shading stays sharp where the squares are many pixels wide; below level 2 a texel is a cell. Values
-//! depend on the lattice position and the level alone, so pages that meet have the same values on their common edge.
-//! Each texel also has the slope of the next coarser level, to which the shading moves together with the vertices.
-//! Where the terrain has soil, texels have its colour, too, in a texture of its own.
+//! A page has the heights of the node's 17 x 17 vertices. At level 2 and all coarser levels, four texels lie along each
+//! side of a square, so that shading stays sharp where the squares are many pixels wide. At levels 0 to 2 a texel is a
+//! cell. Values depend on the lattice position and the level alone, so pages that meet have the same values on their
+//! common edge. Each texel also has the slope of the next coarser level. As the vertices move onto that level, the
+//! shading changes to its slope. Where the terrain has dug soil, a further texture has the soil's colour.
 
 use half::f16;
 
@@ -19,13 +19,14 @@ use crate::{
 
 /// Vertices along a side of a page.
 pub(super) const VERTICES: i32 = NODE + 1;
-/// Texels along a side of a page: four for each square, and two more for interpolation at the far edges.
+/// Texels along a side of a page: four for each square, and two more for interpolation at the eastern and northern
+/// edges.
 pub(super) const TEXELS: i32 = 4 * NODE + 2;
-/// Texels around the page that slopes need: three on each side.
+/// Number of texels beyond each side of a page whose heights the slopes need.
 const MARGIN: i32 = 3;
-/// Positions along a side of the heights that are read for the texels of a page.
+/// Number of heights along a side of the square that is read for the texels of a page.
 const READ: i32 = TEXELS + 2 * MARGIN;
-/// Largest number of cells along a side of a texel whose classes are read.
+/// Largest number of cells along a side of a texel at which classes and dug soil are read.
 const CLASS_SAMPLES: i32 = 4;
 
 /// Distance between texels of a level, cells.
@@ -33,14 +34,14 @@ pub(super) fn texel_cells(level: u8) -> i32 {
     1 << level.saturating_sub(2)
 }
 
-/// Texels along a side of a node of a level, without the two that follow.
+/// Texels along a side of a node of a level, without the two for interpolation.
 pub(super) fn texels_in_node(level: u8) -> i32 {
     (NODE << level) / texel_cells(level)
 }
 
-/// Texels of slopes: to the east and the north, on this level and on the next coarser one.
+/// Slopes of a texel: to the east and the north on the page's level, then both on the next coarser one.
 type SlopeTexel = [u16; 4];
-/// Shares of the classes, in the order of their numbers, and in the last byte 255 where there is ground.
+/// Shares of the classes in 255ths, in the order of the class numbers. The last byte is 255 where there is ground.
 type ClassTexel = [u8; 8];
 /// Colour of dug soil times its share, in codes of sRGB, and its share.
 type DugTexel = [u8; 4];
@@ -51,9 +52,11 @@ pub(super) struct PageWriter {
     heights: Vec<f32>,
     /// Slopes of the next coarser level at the same positions.
     coarse: Vec<[f32; 2]>,
-    /// Slopes and classes of the texels written last, and heights, m, of the vertices written last.
+    /// Slopes of the texels written last.
     pub slopes: Vec<SlopeTexel>,
+    /// Classes of the texels written last.
     pub classes: Vec<ClassTexel>,
+    /// Heights of the vertices written last, m.
     pub vertices: Vec<f32>,
     /// Dug soil of the texels written last; empty where the terrain has no soil.
     pub dug: Vec<DugTexel>,
@@ -126,8 +129,8 @@ impl PageRect {
     }
 }
 
-/// Slope between up to three neighbouring heights at a distance; one-sided where one has no ground, 0 where two have
-/// none.
+/// Slope at a height from its two neighbours, each `distance` away: one-sided if one neighbour has no ground, 0 if
+/// neither has.
 fn slope(low: f32, own: f32, high: f32, distance: f32) -> f32 {
     match (low.is_nan(), high.is_nan()) {
         (false, false) => (high - low) / (2.0 * distance),
@@ -138,7 +141,7 @@ fn slope(low: f32, own: f32, high: f32, distance: f32) -> f32 {
 }
 
 impl PageWriter {
-    /// Computes the heights of vertices of a page. Returns whether any of them has no ground.
+    /// Computes the heights of the vertices of a page in `rect`. Returns whether any of these vertices has no ground.
     pub fn write_vertices(&mut self, cells: &mut CellReader<'_>, page: NodeKey, rect: PageRect) -> bool {
         let [x, y] = page.low();
         let mut is_torn = false;
@@ -151,7 +154,8 @@ impl PageWriter {
         is_torn
     }
 
-    /// Computes slopes and classes of texels of a page. `default` is the class of cells that have none.
+    /// Computes the slopes, the classes and the dug soil of the texels of a page in `rect`. `default` is the class of
+    /// cells for which the host gives none.
     pub fn write_texels(&mut self, cells: &mut CellReader<'_>, page: NodeKey, rect: PageRect, default: u8) {
         self.read_heights(cells, page, rect);
         let step_m = (f64::from(texel_cells(page.level)) * cells.terrain.desc.cell_m) as f32;
@@ -211,7 +215,7 @@ impl PageWriter {
         }
     }
 
-    /// Slope at a texel from the texels `distance` away.
+    /// Slope at a texel from the heights `distance` texels away on each side; 0 without ground.
     fn slope_at(&self, [i, j]: [i32; 2], distance: i32, distance_m: f32) -> [f32; 2] {
         let height = |at: [i32; 2]| self.heights[Self::index(at)];
         let own = height([i, j]);
@@ -224,8 +228,9 @@ impl PageWriter {
         ]
     }
 
-    /// Slope of a wall of dug soil, in place of the texel's `own`. A wall that runs across the lattice is a stair of
-    /// cells, whose sides face east and north by turns: light falls on it as on their mean within two cells.
+    /// Slope of a wall of dug soil, in place of the texel's `own`. A wall that runs obliquely to the lattice is a stair
+    /// of cells whose sides face east and north by turns. The result keeps the steepness of `own`, in the mean
+    /// direction of the slopes within two cells.
     fn wall_slope(&self, [x, y]: [i32; 2], own: [f32; 2], distance_m: f32) -> [f32; 2] {
         let mut sum = [0.0f32; 2];
         for at in (PageRect { low: [x - 2, y - 2], high: [x + 3, y + 3] }).places() {
@@ -237,7 +242,7 @@ impl PageWriter {
         if length < 2.5 * steepness { own } else { sum.map(|s| s * steepness / length) }
     }
 
-    /// Computes the slopes of the next coarser level, whose texels are every other one.
+    /// Computes the slopes of the next coarser level, at every second texel of this one.
     fn find_coarse(&mut self, rect: PageRect, distance_m: f32) {
         let (low, high) = (rect.low.map(|v| v - 1), rect.high.map(|v| v + 1));
         for at in (PageRect { low, high }).places().filter(|at| at[0] & 1 == 0 && at[1] & 1 == 0) {
@@ -245,7 +250,7 @@ impl PageWriter {
         }
     }
 
-    /// Slope of the next coarser level at a texel, interpolated between its own texels.
+    /// Slope of the next coarser level at a texel, interpolated between that level's texels.
     fn coarse_at(&self, [i, j]: [i32; 2]) -> [f32; 2] {
         let (x, y) = ([i - (i & 1), i + (i & 1)], [j - (j & 1), j + (j & 1)]);
         let at = |i: i32, j: i32| self.coarse[Self::index([i, j])];
@@ -284,7 +289,7 @@ fn samples(side: i32) -> TexelSamples {
 }
 
 impl TexelSamples {
-    /// Lattice positions of the places around a texel's own, by rows from the south-west.
+    /// Lattice positions of the places, by rows from the south-west. `[x, y]` is the texel's own position.
     fn places(self, [x, y]: [i32; 2]) -> impl Iterator<Item = [i32; 2]> {
         let off = move |k: i32| (2 * k + 1) * self.side / (2 * self.count) - self.side / 2;
         (0..self.count).flat_map(move |j| (0..self.count).map(move |i| [x + off(i), y + off(j)]))

@@ -1,4 +1,5 @@
-//! Pages on the GPU: textures with a slot for each page, of which those used last are kept.
+//! Pages on the GPU: textures with a slot for each page. A new page takes the slot of the page whose last use is
+//! oldest.
 
 use std::collections::HashMap;
 
@@ -17,8 +18,9 @@ use crate::{
 
 /// Slots in a row of the textures.
 pub(super) const SLOTS_IN_ROW: u32 = 32;
-/// Slots that a view begins with, and the most that it may have.
+/// Number of slots that a view begins with.
 const FIRST_SLOTS: u32 = 256;
+/// Largest number of slots of a view.
 const MOST_SLOTS: u32 = 2048;
 
 /// Textures of the pages.
@@ -28,7 +30,7 @@ pub(super) struct PageTextures {
     pub slopes: wgpu::Texture,
     /// Shares of the first four classes, and of the other three with the presence of ground.
     pub classes: [wgpu::Texture; 2],
-    /// Colours of dug soil; a single texel without any where the terrain has no soil.
+    /// Colours of dug soil; a placeholder of one texel if the terrain has no dug soil.
     pub dug: wgpu::Texture,
 }
 
@@ -53,10 +55,11 @@ impl PageTextures {
 #[derive(Clone, Copy)]
 struct PageSlot {
     page: Option<NodeKey>,
-    /// Number of the last picture that used it.
+    /// Number of the last picture that used the page.
     used: u64,
-    /// Whether a texel has no ground, and whether a vertex has none.
+    /// Whether a texel has no ground.
     has_holes: bool,
+    /// Whether a vertex has no ground.
     is_torn: bool,
 }
 
@@ -75,7 +78,7 @@ pub(super) struct Pages {
     half: Vec<[u8; 4]>,
     /// Whether the pages have only vertices: shadow maps need no more.
     is_bare: bool,
-    /// Class of cells without one, with which the pages were filled.
+    /// Class that the pages have for cells for which the host gives none.
     default_class: u8,
     /// Whether the pages have colours of dug soil.
     pub has_dug: bool,
@@ -115,7 +118,7 @@ impl Pages {
             if let Some(part) = PageRect::changed_texels(page, rect) {
                 self.write_texels(device, terrain, (slot as u32, page), part);
             }
-            // Vertices without ground have the height of ground far around them.
+            // A vertex without ground takes its height from ground up to 2^`FARTHEST_RING` cells away.
             let is_near = self.slots[slot].is_torn && page.rect().meets(rect.grown(1 << FARTHEST_RING)).is_some();
             let vertices = if is_near { Some(PageRect::vertices()) } else { PageRect::changed_vertices(page, rect) };
             if let Some(part) = vertices {
@@ -124,8 +127,8 @@ impl Pages {
         }
     }
 
-    /// Returns the slot of a page, which is filled if it was not there. `None` if more pages are used in this picture
-    /// than there is room for.
+    /// Returns the slot of a page. A page without a slot gets one, and its data are written. `None` if this picture
+    /// already uses all slots for other pages.
     fn slot_of(&mut self, device: &Device, terrain: &Terrain, page: NodeKey) -> Option<u32> {
         if let Some(slot) = self.by_key.get(&page) {
             self.slots[*slot as usize].used = self.picture;
@@ -143,8 +146,8 @@ impl Pages {
         Some(slot as u32)
     }
 
-    /// Writes an instance for each patch, with the slot of its page, and fills pages that are not there yet. Patches
-    /// for whose pages there is no room are left out.
+    /// Writes an instance for each patch, with the slot of its page, and fills pages that have no slot yet. If there is
+    /// no room for a page, its patch and all later patches are left out.
     pub fn place(
         &mut self,
         device: &Device,
@@ -168,7 +171,8 @@ impl Pages {
         }
     }
 
-    /// Makes room for more pages, and forgets those that are there. Returns whether there is more room now.
+    /// Makes room for more pages, and forgets all pages so far. Returns false, and changes nothing, at the largest
+    /// number of slots.
     fn grow(&mut self, device: &Device) -> bool {
         let count = (2 * self.slots.len() as u32).clamp(FIRST_SLOTS, MOST_SLOTS);
         if count as usize == self.slots.len() {
@@ -185,7 +189,7 @@ impl Pages {
         self.slots[slot as usize].has_holes
     }
 
-    /// Number of pages that have a texel without ground, and of those that have a vertex without.
+    /// Number of pages that have a texel without ground, and number of pages that have a vertex without ground.
     #[cfg(test)]
     pub fn pages_with_holes(&self) -> [usize; 2] {
         let count = |is: fn(&PageSlot) -> bool| self.slots.iter().filter(|s| s.page.is_some() && is(s)).count();
@@ -236,7 +240,7 @@ impl Pages {
     }
 }
 
-/// Writes a part of a slot, whose side is given in texels.
+/// Writes `bytes` to the rectangle `part` of a slot. `side` is the side of the slot, texels.
 fn write(device: &Device, texture: &wgpu::Texture, (slot, side): (u32, i32), part: PageRect, bytes: &[u8]) {
     let [width, height] = part.size();
     let corner = [slot % SLOTS_IN_ROW, slot / SLOTS_IN_ROW].map(|v| v * side as u32);

@@ -16,7 +16,8 @@ use crate::{
     stage::{OpaqueDraw, OpaqueTarget},
 };
 
-/// Vertices of the pages, and depths of the shadow maps: the others come and go with them.
+/// Vertices of the pages, and depths of the shadow maps: the other textures of the bind group are replaced together
+/// with these.
 type BoundTextures = (wgpu::Texture, Option<wgpu::Texture>);
 
 /// Resources of a view.

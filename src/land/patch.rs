@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::{selection::PATCH, uniforms::PatchInstance};
 use crate::gpu::Device;
 
-/// Indices of a patch: two triangles a square.
+/// Number of indices of a patch, which has two triangles for each square.
 const INDICES: u32 = (PATCH * PATCH * 6) as u32;
-/// Instances for which there is room at first.
+/// Number of instances for which there is room at first.
 const FIRST_INSTANCES: usize = 512;
 
 /// Indices of the triangles of a patch, in rows from the south-west. Each square is split from its south-western to its

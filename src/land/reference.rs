@@ -1,5 +1,5 @@
-//! Reference of the drawn terrain: rays against every triangle of the ground in f64, and the vertices of
-//! `shaders/land/vertex.wgsl` in the same single precision.
+//! Reference of the drawn terrain: rays traced to the triangles of the ground in f64, and the vertices of
+//! `shaders/land/vertex.wgsl` in the shader's single precision.
 
 use glam::{DVec2, DVec3};
 
@@ -17,7 +17,7 @@ pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, 
     let cell_m = terrain.desc.cell_m;
     let plan = DVec2::new(direction.x, direction.y) / cell_m;
     let start = DVec2::new(origin.x, origin.y) / cell_m;
-    // Ends of the stretches of the ray over one square.
+    // Distance along the ray at which it enters `square`, m.
     let mut begin = 0.0;
     let mut square = start.floor();
     loop {
@@ -46,9 +46,9 @@ pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, 
 /// Number of rays to a disc.
 const RAYS: u32 = 9;
 
-/// Returns the share of a disc of the sun's size, in the direction `light`, that the ground leaves in view from a
-/// place, m along the lattice's axes from its origin: the share of rays to points spread over the disc. No ground is
-/// higher than `top_m`.
+/// Returns the share of a disc of the sun's size, in the direction `light`, that the ground does not hide from `place`:
+/// the share of free rays to points spread over the disc. `place` is in metres along the lattice's axes from the
+/// lattice's origin. No ground may be higher than `top_m`.
 pub(crate) fn disc_share(terrain: &Terrain, place: DVec3, light: DVec3, top_m: f64) -> f64 {
     let side = light.any_orthonormal_vector();
     let axes = [side, light.cross(side)];
@@ -63,7 +63,9 @@ pub(crate) fn disc_share(terrain: &Terrain, place: DVec3, light: DVec3, top_m: f
     seen.count() as f64 / f64::from(RAYS)
 }
 
-/// Distance along a ray to the plane of a triangle of a square, if the ray meets the triangle itself.
+/// Distance along a ray, m, to the plane of one of the two triangles of a square; `None` if the ray meets the plane on
+/// the other side of the square's diagonal, or if the triangle has no ground. The caller checks that the ray is over
+/// the square.
 fn range_to_triangle(terrain: &Terrain, square: DVec2, south: bool, origin: DVec3, direction: DVec3) -> Option<f64> {
     let [x, y] = [square.x as i32, square.y as i32];
     let height = |place| terrain.cell_at(place).map(|cell| f64::from(terrain.height(cell)));

@@ -18,14 +18,15 @@ pub(super) const MOST_LEVELS: u8 = 26;
 pub(super) const LEVELS: usize = MOST_LEVELS as usize + 1;
 /// Number of places at which the error of each level is measured.
 const SAMPLES: u32 = 1024;
-/// Quantile of the measured errors that counts as a level's error: three standard deviations of a normal distribution.
+/// Quantile of the measured errors that is taken as a level's error: of a normal distribution, this share lies within
+/// three standard deviations.
 const HELD_SHARE: f64 = 0.9973;
 /// Slope, rise over run, at which the reference height falls with the distance from high ground
 /// ([`Relief::reference_m`]).
 const CONE: f64 = 0.125;
 
-/// Node of the quadtree over the lattice: `NODE` x `NODE` squares whose sides are 2^level cells. Nodes of a level are
-/// counted from the terrain's origin.
+/// Node of the quadtree over the lattice: `NODE` x `NODE` squares whose sides are 2^level cells. `x` and `y` count the
+/// nodes of the level east and north of the terrain's origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct NodeKey {
     pub level: u8,
@@ -44,7 +45,7 @@ impl NodeKey {
         NODE << self.level
     }
 
-    /// Cells of the node, without the edges that it shares with the next ones.
+    /// Cells of the node, without its northern and eastern edges, which it shares with the nodes there.
     pub fn rect(self) -> CellRect {
         let low = self.low();
         CellRect { low, high: low.map(|v| v + self.side()) }
@@ -67,19 +68,20 @@ impl NodeKey {
     }
 }
 
-/// Bounds of the ground in all nodes of a terrain.
+/// Bounds of the heights in all nodes of a terrain. Ground means cells that are no holes.
 #[derive(Default)]
 pub(super) struct Relief {
     /// Identity and revision of the terrain that was read.
     read: Option<(u64, u64)>,
-    /// Lowest and highest height of nodes with ground, m. A node includes its edges.
+    /// Lowest and highest height of each node with ground, m. A node includes all its edges.
     bounds: HashMap<NodeKey, [f32; 2]>,
-    /// Level of the roots, and the roots.
+    /// Level of the roots.
     top: u8,
+    /// Nodes that cover the whole terrain.
     roots: Vec<NodeKey>,
     /// Vertical error of each level, m.
     errors_m: [f64; LEVELS],
-    /// Cells that changed since the errors were measured.
+    /// Number of cells that changed since the errors were measured.
     unmeasured: i64,
     /// Scratch space: nodes that a search has yet to visit.
     open: Vec<NodeKey>,
@@ -101,13 +103,13 @@ impl Relief {
         self.top
     }
 
-    /// Vertical error of each level within which [`HELD_SHARE`] of the ground stays, m.
+    /// Vertical error of each level, m, which [`HELD_SHARE`] of the measured cells do not exceed.
     pub fn errors_m(&self) -> &[f64; LEVELS] {
         &self.errors_m
     }
 
-    /// Takes over the changes of the terrain since the last call. Calls `changed` with each changed rectangle, or with
-    /// `None` if everything may have changed.
+    /// Updates the bounds and the errors after the changes of the terrain since the last call. Calls `changed` with
+    /// each changed rectangle, or with `None` if everything may have changed.
     pub fn update(&mut self, terrain: &Terrain, mut changed: impl FnMut(Option<CellRect>)) {
         let now = (terrain.id, terrain.revision);
         if self.read == Some(now) {
@@ -137,13 +139,14 @@ impl Relief {
         }
     }
 
-    /// Computes the bounds of the nodes that a rectangle of cells touches, up to the largest.
+    /// Computes the bounds of the nodes that a rectangle of cells touches, on all levels.
     fn read_rect(&mut self, terrain: &Terrain, rect: CellRect) {
         self.unmeasured = self
             .unmeasured
             .saturating_add(i64::from(rect.high[0] - rect.low[0]) * i64::from(rect.high[1] - rect.low[1]));
         let mut cells = CellReader::new(terrain);
-        // A node includes the first cells of the next one.
+        // A node includes the first cells of its eastern and northern neighbours: a change of these cells also touches
+        // the node. `rect.high` is exclusive.
         let mut low = rect.low.map(|v| (v - 1).div_euclid(NODE));
         let mut high = rect.high.map(|v| (v - 1).div_euclid(NODE));
         for (x, y) in nodes(low, high) {
@@ -168,7 +171,8 @@ impl Relief {
         };
     }
 
-    /// Finds the smallest level at which at most two by two nodes cover the terrain.
+    /// Finds the roots: the nodes with ground at the lowest level whose nodes are at least as wide as the terrain. They
+    /// are at most two by two.
     fn find_roots(&mut self, terrain: &Terrain) {
         self.roots.clear();
         let Some(all) = terrain.bounds else { return };
@@ -181,9 +185,9 @@ impl Relief {
         self.roots.extend(keys.filter(|key| self.bounds.contains_key(key)));
     }
 
-    /// Returns the reference height, m, from which the eye's height above the ground counts: the maximum, over all
-    /// ground, of its height less an eighth of its distance from the eye. It changes continuously as the eye moves.
-    /// `eye` is in cells.
+    /// Returns the reference height, m, above which the eye's height is measured: the maximum, over all nodes of level
+    /// 0, of the node's highest ground less an eighth of its horizontal distance from the eye. It changes continuously
+    /// as the eye moves, and is 0 without ground. `eye` is in cells.
     pub fn reference_m(&mut self, eye: DVec2, cell_m: f64) -> f64 {
         let mut best = f64::NEG_INFINITY;
         self.open.clear();
@@ -213,17 +217,17 @@ fn nodes(low: [i32; 2], high: [i32; 2]) -> impl Iterator<Item = (i32, i32)> {
 fn leaf_bounds(cells: &mut CellReader<'_>, key: NodeKey) -> Option<[f32; 2]> {
     let [x, y] = key.low();
     let places = || (0..=NODE).flat_map(move |j| (0..=NODE).map(move |i| [x + i, y + j]));
-    // The south-western corner of every triangle lies before the far edges.
+    // No triangle of the node has its south-western corner on the eastern or northern edge.
     if !places().any(|[i, j]| i < x + NODE && j < y + NODE && cells.height([i, j]).is_some()) {
         return None;
     }
-    // Corners of triangles without ground count too.
+    // Corners without ground are drawn at the height of ground near them, so the bounds include this height.
     let heights = places().filter_map(|place| cells.height_or_near(place));
     Some(heights.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)]))
 }
 
-/// Measures how far the triangles of each level lie above or below the cells, at random cells: the error within which
-/// [`HELD_SHARE`] of the places stay, m.
+/// Returns the vertical error of each level, m: the quantile [`HELD_SHARE`] of the distances by which the level's
+/// triangles lie above or below random cells. It is at least that of the next finer level.
 fn level_errors_m(terrain: &Terrain, top: u8) -> [f64; LEVELS] {
     let tiles: Vec<_> = terrain.all().map(|(_, tile)| tile.key).collect();
     let (mut cells, mut chance) = (CellReader::new(terrain), RandomStream::new(0, 44));
@@ -237,14 +241,15 @@ fn level_errors_m(terrain: &Terrain, top: u8) -> [f64; LEVELS] {
             errors.extend(level_error_m(&mut cells, terrain.place_in(tile, cell), level));
         }
         errors.sort_by(f64::total_cmp);
-        // Where no triangle of a level has ground at all corners, the level below is the best estimate.
+        // If no triangle of a level has ground at all corners, the error of the next finer level is the best estimate.
         let own = errors.len().checked_sub(1).map(|last| errors[(last as f64 * HELD_SHARE).round() as usize]);
         held[usize::from(level)] = own.unwrap_or(0.0).max(held[usize::from(level) - 1]);
     }
     held
 }
 
-/// Vertical distance of a cell from the triangle of a level over it, m.
+/// Vertical distance, m, between a cell and the triangle of a level at its place; `None` if the cell or a corner has no
+/// ground.
 fn level_error_m(cells: &mut CellReader<'_>, place: [i32; 2], level: u8) -> Option<f64> {
     let own = f64::from(cells.height(place)?);
     let step = 1 << level;

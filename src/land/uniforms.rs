@@ -62,7 +62,7 @@ pub(super) struct LandUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct PatchInstance {
-    /// South-western corner, in cells from the one under the eye.
+    /// South-western corner, in cells from the cell below the eye.
     pub low: [i32; 2],
     /// Slot of the page.
     pub slot: u32,
@@ -70,7 +70,7 @@ pub(super) struct PatchInstance {
     pub kind: u32,
 }
 
-/// Picture for which patches and pages are ready.
+/// Camera, light and settings of a picture whose patches and pages are ready.
 pub(super) struct LandPicture {
     pub eye: LandEye,
     pub detail: LevelDistances,
@@ -125,8 +125,8 @@ impl LandPicture {
         }
     }
 
-    /// Distance at which the vertices of a level begin to move, and 1 over the distance on which they move, which is 0
-    /// for the largest nodes.
+    /// Distance from the eye, cells, at which the vertices of a level begin to move, and 1 over the distance over which
+    /// they move. The second value is 0 for the largest nodes, whose vertices do not move.
     fn level(&self, level: usize, top: u8) -> [f32; 4] {
         let [start, end] = self.detail.morph(level);
         let moves = level < usize::from(top);

@@ -21,7 +21,8 @@ use crate::{
     terrain::Terrain,
 };
 
-/// Farthest place of an eye on the lattice, cells: instances count their cells in whole numbers from the eye.
+/// Largest coordinate of the eye on the lattice, cells, at which terrain is drawn: instances count cells from the eye
+/// in 32-bit whole numbers.
 const FARTHEST_CELL: f64 = 1e9;
 
 /// Drawn terrain of a view.
@@ -32,7 +33,7 @@ pub(crate) struct LandView {
     shadows: Shadows,
     patches: Vec<LandPatch>,
     instances: Vec<PatchInstance>,
-    /// Whether the host has asked for terrain, and there is some.
+    /// Whether the host has asked for drawn terrain and has set tiles.
     is_there: bool,
     /// Picture of this frame, if terrain is drawn into it.
     picture: Option<LandPicture>,
@@ -71,14 +72,14 @@ impl LandView {
         self.shadows.maps_drawn
     }
 
-    /// Side of the texels, m, of the finest shadow map of the last picture that holds a place relative to the eye, m
-    /// along the lattice's axes, and of the next coarser one.
+    /// Side of the texels, m, of the finest shadow map that contains `place` in the last picture, and of the next
+    /// coarser map. `place` is relative to the eye, m along the lattice's axes.
     #[cfg(test)]
     pub fn shadow_texels_m(&self, place: DVec3) -> Option<[f64; 2]> {
         self.shadows.texels_m(&self.shadows.uniform(self.picture.as_ref()?), place)
     }
 
-    /// Number of pages that have a texel without ground, and of those that have a vertex without.
+    /// Number of pages that have a texel without ground, and number of pages that have a vertex without ground.
     #[cfg(test)]
     pub fn pages_with_holes(&self) -> [usize; 2] {
         self.pages.pages_with_holes()

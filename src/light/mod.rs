@@ -9,12 +9,12 @@ pub use tone::{Exposure, ToneCurve};
 
 /// Wavelengths that stand for red, green and blue by default, nm.
 ///
-/// Chosen for the least colour error against 42 wavelengths, over skies and suns from noon to 6 degrees below the
-/// horizon, clear and hazy, where a channel's light is scaled by the sun's Rec. 709 component
+/// They give the least colour error against 42 wavelengths, over clear and hazy skies with suns from noon to 6 degrees
+/// below the horizon. For this error a channel's light is scaled by the sun's Rec. 709 component
 /// (`planet::spectral::Conversion::per_channel`). The choice was among all triples in steps of 5 nm that contain 550
 /// nm, at which visibility is defined. The error is 1 % in luminance, and 13 % of the luminance in the worst channel.
-/// With the often used 680, 550 and 440 nm it is 15 % and 71 % (35 % and 156 % in haze): air hardly dims a low sun at
-/// 680 nm, while the eye's red lies at 600 to 620 nm.
+/// With the often used 680, 550 and 440 nm these errors are 15 % and 71 % (35 % and 156 % in haze): air hardly dims a
+/// low sun at 680 nm, while the eye's red lies at 600 to 620 nm.
 pub const EARTH_WAVELENGTHS_NM: [f64; 3] = [620.0, 550.0, 450.0];
 
 /// Luminance, cd/m^2, of a linear Rec. 709 colour.

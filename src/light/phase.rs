@@ -78,12 +78,13 @@ impl PhaseLobes {
 }
 
 /// Returns the phase function, 1/sr, of light that was scattered `order` >= 1 times in a row (1: the phase function
-/// itself), at the angle with 1 - cos equal to `versine`. It takes `versine` rather than the cosine because near the
-/// forward peak of droplets (1 - g = 0.007) the cosine has too few digits in f32.
+/// itself), at the angle with 1 - cos equal to `versine`. The function takes `versine` rather than the cosine because
+/// near the forward peak of droplets (1 - g = 0.007) the cosine has too few digits in f32.
 ///
-/// Light that is scattered n times by a Henyey-Greenstein lobe is spread by a lobe of g^n. In a blend whose Draine lobe
-/// has the weight w, the share (1 - w)^n of the light was scattered by the Henyey-Greenstein lobe only. The rest was
-/// scattered by Draine's lobe about n w times and becomes more even: alpha falls with the square of that number.
+/// Light that is scattered n = `order` times by a Henyey-Greenstein lobe is spread by a lobe of g^n. In a blend whose
+/// Draine lobe has the weight w, the share (1 - w)^n of the light was scattered by the Henyey-Greenstein lobe only. The
+/// rest was scattered by Draine's lobe about n w times and becomes more even: alpha falls with the square of that
+/// number.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;

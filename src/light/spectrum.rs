@@ -1,6 +1,6 @@
 //! From wavelengths to colours: black bodies, the CIE 1931 standard observer, and linear Rec. 709.
 
-/// Returns Planck's law per wavelength, up to a factor.
+/// Returns the radiance of a black body per unit of wavelength, up to a constant factor: Planck's law.
 pub fn black_body(wavelength_nm: f64, temperature_k: f64) -> f64 {
     let um = wavelength_nm * 1e-3;
     // Second radiation constant, 14387.77 um K.

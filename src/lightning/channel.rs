@@ -65,7 +65,8 @@ pub struct Channel {
     pub branches: Vec<Branch>,
 }
 
-/// Returns the end of a ground flash: the tip of the mast that it strikes, or the ground at `ground_m` below its start.
+/// Returns the end of a ground flash: the tip of the mast that the flash strikes, or the point at the height `ground_m`
+/// of the ground, straight below the flash's start.
 pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
     let leap = leap_m(flash.strokes()[0].peak_ka);
     let below = flash.place_m;
@@ -109,8 +110,9 @@ impl Channel {
         std::iter::once(self.points_m.as_slice()).chain(self.branches.iter().map(|b| b.points_m.as_slice()))
     }
 
-    /// Ends every path where it first meets an object. `met` returns the point of an interval between two places at
-    /// which it meets an object, 0 to 1; `None` if it meets none. Returns whether the main path was cut.
+    /// Ends every path where it first meets an object. `met` takes the two ends of an interval and returns the position
+    /// between them, 0 to 1, at which the interval meets an object; `None` if it meets none. Returns whether the main
+    /// path was cut.
     pub fn cut(&mut self, met: impl Fn(DVec3, DVec3) -> Option<f64>) -> bool {
         let cut = |points: &mut Vec<DVec3>| {
             let hit = points.windows(2).enumerate().find_map(|(i, p)| Some((i, p[0].lerp(p[1], met(p[0], p[1])?))));
@@ -297,8 +299,8 @@ mod tests {
         assert_eq!(channel.points_m[POINTS - 1].z, 300.0);
     }
 
-    /// A mast of 50 m is struck at least ten times as often as ground of the same area. The mast counts with a circle
-    /// of 10 m around it, the ground with rings of circles of that size beside it.
+    /// A mast of 50 m is struck at least ten times as often as ground of the same area. The area of the mast is a
+    /// circle of 10 m around it. The area of the ground is a ring away from the mast, as large as forty such circles.
     #[test]
     fn a_mast_is_struck_far_more_often_than_the_ground_beside_it() {
         let mast = Mast { tip_m: DVec3::new(0.0, 0.0, 50.0) };

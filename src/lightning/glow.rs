@@ -30,9 +30,9 @@ fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)
 }
 
-/// Returns the light that air with `scattering_per_m` before `range` scatters once towards the eye. The source of 1 cd
-/// lies at the distance `along` in the ray's direction and `h` beside the ray, m. `steps` is the number of samples of
-/// the angle.
+/// Returns the light that air with `scattering_per_m` between the eye and the distance `range` scatters once towards
+/// the eye. The source of 1 cd lies at the distance `along` in the ray's direction and `h` beside the ray, m. `steps`
+/// is the number of samples of the angle.
 #[cfg(test)]
 fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32) -> f64 {
     let phase = |c: f64| {

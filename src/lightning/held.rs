@@ -59,7 +59,7 @@ struct SavedTrigger {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Saved {
-    /// Flashes a minute of each storm cell; `None` for the weather's rate.
+    /// Flashes a minute of each of the weather's storm cells; `None` for the weather's rate.
     flashes_per_minute: Option<f64>,
     /// Whether views limit flicker.
     limits_flicker: bool,

@@ -6,10 +6,10 @@
 //! figures: 0.85 of the peak decays with 150 us, the rest with 5 ms, so that 1e6 W/m (0.85 x 150 us + 0.15 x 5 ms) =
 //! 878 J/m. The spectrum is taken to be that of a black body of 20 000 K, which has 163 lm/W between these wavelengths.
 //!
-//! Before a stroke a leader comes down, the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003,
-//! table 1.1). The tip of a later leader, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985;
-//! Orville and Idone 1982). The steps of the first one are taken to have 0.02 of it for 1 us in each 50 us. The stroke
-//! runs up at a third of the speed of light.
+//! Before a stroke a leader comes down, the first one at 2e5 m/s, later ones at 1e7 m/s (Rakov and Uman 2003, table
+//! 1.1). The tip of a later leader, some 34 m long, has 0.1 of the stroke's light (Idone and Orville 1985; Orville and
+//! Idone 1982). The steps of the first leader are taken to have 0.02 of the stroke's light for 1 us in each 50 us. The
+//! stroke runs up at a third of the speed of light.
 
 use super::flash::{Flash, FlashKind, Stroke};
 
@@ -43,7 +43,8 @@ const SMOOTH_AFTER_S: f64 = 1.5;
 /// Longest time from a flash's first stroke to its last, s. Longer ones hardly ever occur.
 pub const LONGEST_S: f64 = 4.0;
 
-/// Interval over which light is averaged, s of simulation time; a moment if both ends are equal.
+/// Interval over which light is averaged, s of simulation time. If both ends are equal, the light is that of this
+/// instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// Beginning, s.
@@ -106,7 +107,7 @@ pub struct Stretch {
     pub length_m: f64,
     /// Ratio of the light to that of the main channel.
     pub strength: f64,
-    /// Whether it is a branch, which later strokes do not take.
+    /// Whether the part belongs to a branch. Later strokes do not take branches.
     pub is_branch: bool,
 }
 

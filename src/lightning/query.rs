@@ -20,11 +20,12 @@ use crate::{
 pub const MOST_SPAN_S: f64 = 3600.0;
 /// Largest distance for which flashes can be queried, m.
 pub const MOST_DISTANCE_M: f64 = 50_000.0;
-/// Largest horizontal distance of flashes whose light counts, m.
+/// Largest horizontal distance of flashes whose light is included, m.
 pub(crate) const LIGHT_REACH_M: f64 = 30_000.0;
 /// Longest exposure over which light is averaged, s.
 pub const MOST_EXPOSURE_S: f64 = 1.0;
-/// Share of the extinction that counts as loss: light scattered by droplets goes on nearly straight (asymmetry 0.8).
+/// Share of the extinction that is taken as loss of light: light scattered by droplets goes on nearly straight
+/// (asymmetry 0.8).
 pub(crate) const TAKES: f64 = 0.2;
 
 /// A flash as seen and heard from a place.
@@ -96,8 +97,7 @@ pub(crate) fn events(
     Ok(found.iter().map(event).collect())
 }
 
-/// Returns the light of flashes at a place, averaged over `exposure_s` before `time_s`; with 0, the light at that
-/// moment.
+/// Returns the light of flashes at a place, averaged over `exposure_s` before `time_s`; with 0, the light at `time_s`.
 pub(crate) fn light_at(
     world: &World,
     held: &HeldLightning,

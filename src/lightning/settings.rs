@@ -26,8 +26,8 @@ pub struct StormCell {
 /// Settings of a context's flashes, and of how its views show them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightningSettings {
-    /// Flashes a minute of each storm cell, \[0, 60\]. It replaces the weather's rate (3 in a thunderstorm, otherwise
-    /// none).
+    /// Flashes a minute of each of the weather's storm cells, \[0, 60\], in place of the weather's rate (3 in a
+    /// thunderstorm, otherwise none). The host's cells have rates of their own. Default `None`: the weather's rate.
     pub flashes_per_minute: Option<f64>,
     /// The host's storm cells, at most [`MAX_CELLS`]. They replace the weather's, which are one in each square of 20
     /// km. Default none.

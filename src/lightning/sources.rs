@@ -1,4 +1,4 @@
-//! Light sources of a flash: the few points that stand for the parts of its open channel and for its glow in the cloud.
+//! Light sources of a flash: the few points that represent the parts of its open channel and its glow in the cloud.
 
 use std::f64::consts::PI;
 
@@ -19,8 +19,8 @@ const HIDDEN_PARTS: usize = 2;
 pub(crate) struct LightSource {
     /// Position in the host's world, m.
     pub position: DVec3,
-    /// Luminous flux, lm: of an open channel in all directions; of a channel in a cloud, that leaving through base and
-    /// top.
+    /// Luminous flux, lm. For an open channel it is the flux in all directions, for a channel in a cloud the flux that
+    /// leaves through the cloud's base and top.
     pub flux_lm: f64,
     /// Extent of the light around the position, m.
     pub radius_m: f64,
@@ -61,9 +61,10 @@ impl FlashSources {
 }
 
 impl Strike {
-    /// Returns the sources of its light, averaged over a span. A cloud of height H lets (1 - d/H) of the light of a
-    /// source d above its base out through the base, and the rest through the top. Droplets absorb hardly any light, so
-    /// the light wanders until it leaves the cloud (gambler's ruin).
+    /// Returns the sources of its light, averaged over a span. If a source lies at the height d above the base of a
+    /// cloud of thickness H, the share 1 - d/H of its light (at least 0.05) leaves through the base, and the rest
+    /// through the top. Droplets absorb hardly any light, so the light wanders until it leaves the cloud (gambler's
+    /// ruin).
     pub fn sources(&self, span: &Span, course: Course) -> FlashSources {
         let mut sources = FlashSources::default();
         let ends = [self.channel.points_m[0], self.channel.end_m()];

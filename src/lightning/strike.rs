@@ -98,7 +98,7 @@ impl Strike {
         };
         let anchor = world.position_on_map(flash.place_m, ground_m);
         let local = world.frame.frame_at(anchor);
-        // For a time that the weather no longer has, only its own clouds are known.
+        // For a time that the timeline has forgotten, only the weather's own clouds are known.
         let over = world.clouds_over(&conditions, &local, anchor, flash.place_m, flash.time_s).unwrap_or_default();
         let clouds = CloudSpan::of(over.iter().flatten().last().unwrap_or(&conditions));
         let charge_m = air.station_altitude_m + ((air.temperature_c - CHARGE_C) / COOLS_K_M).max(LEAST_M);

@@ -13,7 +13,7 @@ const FARTHEST_M: f64 = 1e12;
 pub struct FlashTrigger {
     /// Time of its first stroke, s of simulation time; not before the present.
     pub time_s: f64,
-    /// Position that it strikes, in the host's world, m. A flash in the cloud passes over it.
+    /// Position that the flash strikes, in the host's world, m. A flash in the cloud passes over this position.
     pub position: DVec3,
     /// Kind of the flash.
     pub kind: FlashKind,

@@ -36,7 +36,7 @@ const LONGEST_FRAME_S: f64 = 0.5;
 /// Illuminance at the eye below which a flash is not drawn, lux.
 const FAINTEST_LUX: f64 = 1e-7;
 /// Illuminance at the eye, as a share of all other light on the ground, below which a flash is not drawn. The larger of
-/// this limit and [`FAINTEST_LUX`] counts.
+/// this limit and [`FAINTEST_LUX`] applies.
 const FAINTEST_SHARE: f64 = 1e-5;
 
 /// Interval of time over which a frame averages the light of flashes.

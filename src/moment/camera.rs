@@ -48,10 +48,10 @@ pub(crate) struct SceneMoment<'a> {
     pub lamps: &'a [HostLight],
     /// The wind that varies in space: a host's grid, or a solved field.
     pub wind_volume: Option<&'a WindVolume>,
-    /// Texture of that wind for shaders.
+    /// Texture of the wind in `wind_volume`, for shaders.
     pub wind_texture: &'a WindTexture,
-    /// Detour of the patches of the weather's low layer in this wind (`src/wind/detour.rs`); `None` where there are no
-    /// patches.
+    /// Detour of the patches of the weather's low layer in the wind of `wind_volume` (`src/wind/detour.rs`); `None`
+    /// where there are no patches.
     pub detour: Option<Detour>,
     /// Wind that carries the air, computed at its first use.
     pub carried: OnceCell<Carrying<'a>>,

@@ -65,7 +65,7 @@ impl<'a> WeatherOver<'a> {
         self.in_regions(position, time_s, self.known(time_s))
     }
 
-    /// Returns the weather `c` of a time with the parts that weather regions have at a place.
+    /// Returns the weather `c` of a time after the weather regions over a place have changed their parts of it.
     pub fn in_regions(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.weather_regions.is_empty() {
             return c;
@@ -75,8 +75,9 @@ impl<'a> WeatherOver<'a> {
     }
 
     /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of
-    /// a weather region counts as if it had always blown. Its displacement is not used: everything that the wind
-    /// carries moves by the world's displacement, at every place, so that nothing jumps at a region's border.
+    /// a weather region counts as if it had always blown. The displacement by a region's wind is not used: everything
+    /// that the wind carries moves by the world's displacement, at every place, so that nothing jumps at a region's
+    /// border.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].

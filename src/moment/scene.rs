@@ -18,18 +18,19 @@ pub struct Light {
     pub bright_limb: DVec3,
     /// Angular radius, rad.
     pub angular_radius: f64,
-    /// Lit part of the face, 0 to 1.
+    /// Lit share of the face, 0 to 1.
     pub lit: f64,
     /// Strength above the air at the planet's three wavelengths, relative to the sun at 1 au.
     pub spectrum: [f64; 3],
-    /// Illuminance above the air on a surface facing it, lux in linear Rec. 709. The luminance-weighted sum of the
-    /// channels is the illuminance.
+    /// Illuminance above the air on a surface that faces the sun or moon, lux in linear Rec. 709. The
+    /// luminance-weighted sum of the channels is the illuminance.
     pub illuminance_lux: [f64; 3],
     /// Ratio of the vertical to the horizontal diameter of the disc, which refraction flattens.
     pub flattening: f64,
-    /// Share of the direct light that the clouds above the place let through, as a mean over all places at its height.
+    /// Share of the direct light that the clouds above the place let through, as a mean over all places at the same
+    /// height.
     pub direct_share: f64,
-    /// Whether its light is bright enough to be drawn.
+    /// Whether the light of the sun or moon is bright enough to be drawn.
     pub matters: bool,
 }
 
@@ -73,8 +74,8 @@ pub struct Scene {
     pub moon: Light,
     /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under a sun at 1 au.
     pub color: [[f64; 3]; 3],
-    /// Whether the moon gives more direct light here than the sun, both without clouds and fog: below these, only the
-    /// one that stands higher would be left.
+    /// Whether the moon gives more direct light here than the sun, compared without clouds and fog. Below clouds and
+    /// fog, only the light of the one that stands higher would be left.
     pub moon_is_brighter: bool,
     /// Light on the ground.
     pub ground: GroundLight,

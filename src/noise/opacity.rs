@@ -28,7 +28,7 @@ impl CloudFunction {
         Ok(Self::of_density(cutoff, density))
     }
 
-    /// Creates the function of a density without checks.
+    /// Creates the function of a density, without checking cutoff and density.
     pub(super) fn of_density(cutoff: f64, density: f64) -> Self {
         Self { cutoff, thickness: 255.0 * optical_thickness(density), bias: 1.0 }
     }

@@ -78,8 +78,8 @@ pub(super) fn axes(size: [u32; 3]) -> usize {
     if size[2] == 1 { 2 } else { 3 }
 }
 
-/// Checks that edges are powers of two, so that every mip level is the exact mean of the one above and cells have
-/// exactly the same positions as on a GPU.
+/// Checks that edges are powers of two within their range, and that the texels are not too many. Powers of two make
+/// every mip level the exact mean of the one above and give cells exactly the same positions as on a GPU.
 fn check_size(size: [u32; 3]) -> Result<()> {
     let axes = axes(size);
     let longest = LONGEST[axes - 2];

@@ -225,9 +225,11 @@ struct NoiseBuild {
     shrink: wgpu::RenderPipeline,
     /// Bind groups in which each level is read to draw the one below it.
     shrink_groups: Vec<wgpu::BindGroup>,
-    /// Level, slice and row of the next pass.
+    /// Mip level of the next pass.
     level: u32,
+    /// Slice of the next pass.
     slice: u32,
+    /// First row of the next pass.
     row: u32,
     /// Index of `slice` among the slices of all mip levels but the first.
     shrunk: u32,

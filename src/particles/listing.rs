@@ -2,8 +2,8 @@
 //!
 //! There are three compute passes. The first marks each thing that can be in the picture, with one bit. The second
 //! assigns the marked things their places in the list, in the order of their numbers (`shaders/falling/order.wgsl`,
-//! `list.wgsl`). The third computes the quad of each, including shelter and lamps, once. The draw then only computes
-//! corners. The number of things stays on the GPU.
+//! `list.wgsl`). The third computes the quad of each marked thing once, including shelter and lamps. The draw then only
+//! computes corners. The number of listed things stays on the GPU.
 
 use crate::gpu::bind::{self, Slot};
 

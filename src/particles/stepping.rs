@@ -5,8 +5,8 @@
 //! lattice gives, until it leaves the cell around the camera.
 //!
 //! During a step the drag is linear and is solved exactly ([`crate::falling::drag::step`]), so steps of any length are
-//! stable. Its rate is that of quadratic drag at the start of the step, so short steps converge to the true motion. A
-//! longer step uses the rate of a particle at terminal velocity, so that it ends at the right fall speed.
+//! stable. The drag's rate is that of quadratic drag at the start of the step, so short steps converge to the true
+//! motion. A longer step uses the rate of a particle at terminal velocity, so that it ends at the right fall speed.
 //!
 //! A particle that leaves its cell, or is left behind by the camera, enters again on the opposite side. Its new place
 //! is random: a hash of its number and of the number of times that it has entered. Its velocity is the wind there less
@@ -75,7 +75,7 @@ pub(crate) struct Stepped<'a> {
     pub sides_m: [f64; SHELLS],
     /// Smallest capacity of each shell, for particles that may come soon.
     pub least_room: u32,
-    /// Position of the camera, m: east, north, up of a point fixed to the world.
+    /// Position of the camera, m, east, north and up from a point fixed to the world.
     pub position_m: DVec3,
     /// Time at the end of the step, s.
     pub time_s: f64,

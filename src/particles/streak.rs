@@ -1,5 +1,5 @@
-//! Parts that effects share to draw precipitation near the camera: the camera, the layer in front of the picture, and
-//! the contrast.
+//! Code that effects share to draw precipitation near the camera: the camera with its exposure, the layer in front of
+//! the picture, and the contrast.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -28,7 +28,7 @@ pub(crate) struct StreakCamera<'a> {
     pub height: u32,
     /// 1 if row 0 of the target is the picture's top, -1 if it is the bottom.
     pub y_sign: f32,
-    /// Position, m: east, north, up of a point fixed to the world.
+    /// Position of the camera, m, east, north and up from a point fixed to the world.
     pub position_m: DVec3,
     /// Velocity of the camera, m/s (east, north, up).
     pub velocity_m_s: DVec3,
@@ -62,7 +62,7 @@ pub(crate) struct DepthRead {
     pub multi: bool,
     /// Whether there is a depth.
     pub any: bool,
-    /// `DEPTH_KINDS` of `common/depth.wgsl`.
+    /// Kinds of depth that the shader must read, one bit each: the value of `DEPTH_KINDS` of `common/depth.wgsl`.
     pub kinds: u32,
 }
 
@@ -72,7 +72,7 @@ impl DepthRead {
         Self { multi: depth.is_some_and(Layer::is_multisampled), any: depth.is_some(), kinds: rays.depth_kinds() }
     }
 
-    /// Returns the variant of a shader file that reads this depth. The file includes `common/host.wgsl`.
+    /// Returns the variant of a shader file that reads this depth. The file must include `common/host.wgsl`.
     pub fn shader(self, name: &str) -> String {
         format!("{name}{}", if self.multi { ":multi" } else { "" })
     }
@@ -83,8 +83,8 @@ impl DepthRead {
     }
 }
 
-/// Layer of precipitation near the camera, composited as one more veil in front of the picture: premultiplied, one
-/// sample per pixel. All effects of a view that draw into it share it: clones are the same layer.
+/// Layer of precipitation near the camera, composited in front of the picture: premultiplied light and opacity, one
+/// sample per pixel. All effects of a view that draw into the layer share it: clones are the same layer.
 #[derive(Clone, Default)]
 pub(crate) struct FallingTexture(Arc<Mutex<Option<(wgpu::Texture, wgpu::TextureView)>>>);
 
@@ -95,8 +95,8 @@ impl FallingTexture {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the layer for a picture of this size, recreated if the size has changed. It still has the content of its
-    /// last draw.
+    /// Returns the layer for a picture of this size, recreated if the size has changed. A layer that is not recreated
+    /// keeps the content of its last draw.
     pub fn view(&self, device: &Device, size: wgpu::Extent3d) -> wgpu::TextureView {
         let mut held = self.locked();
         if held.as_ref().is_none_or(|(t, _)| (t.width(), t.height()) != (size.width, size.height)) {
@@ -129,7 +129,7 @@ impl FallingTexture {
         self.locked().as_ref().map_or(0, |(t, _)| 8 * u64::from(t.width()) * u64::from(t.height()))
     }
 
-    /// Drops the layer, for which the driver may not have had enough memory.
+    /// Drops the layer, for example because the driver did not have enough memory for it.
     pub fn forget(&self) {
         *self.locked() = None;
     }
@@ -155,7 +155,8 @@ pub(crate) fn layer_pass<'a>(
     })
 }
 
-/// Number of angles between line of sight and streaks at which the variance is tabulated.
+/// Number of values of the sine of the angle between line of sight and streaks at which the standard deviation is
+/// tabulated.
 const ANGLES: usize = 9;
 
 /// Contrast of streaks in a picture, for the plan.
@@ -194,7 +195,7 @@ impl StreakContrast {
 
     /// Returns two numbers for pixel `i` with the exposed luminance Y = `picture` (1 is white). The first is the
     /// pixel's relative change dY / (Y + 0.01) by drops or flakes of the exposed luminance L, the second their contrast
-    /// (L - Y) / (Y + 0.01). L follows from `radiance`(direction); with lamps the contrast counts as 1000. The change
+    /// (L - Y) / (Y + 0.01). L follows from `radiance`(direction); with lamps the contrast is set to 1000. The change
     /// is a sample from the distribution over the pixels of a picture, so only the statistics of many pixels are
     /// meaningful.
     pub fn at(&self, i: usize, ndc: DVec2, picture: f64, radiance: impl Fn(DVec3) -> DVec3) -> [f64; 2] {

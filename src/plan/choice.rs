@@ -41,8 +41,8 @@ pub(super) struct Choices {
     pub worth: [Estimate; MOST_STEPS],
     /// Steps of the parts that are present.
     there: Set,
-    /// Steps that keep the tolerance with the least work; `None` if no set keeps it. Without a tolerance, those of the
-    /// pinned parts.
+    /// Set of steps that keeps the tolerance with the least work; `None` if no set keeps it. Without a tolerance, the
+    /// steps of the pinned parts that are taken.
     cheapest: Option<Set>,
 }
 

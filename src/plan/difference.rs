@@ -38,7 +38,8 @@ pub fn difference(a: &[f64], b: &[f64], white: f64) -> Result<Difference> {
     Ok(Difference { median: percentile(&errors, 0.5), p95: percentile(&errors, 0.95), worst: errors[errors.len() - 1] })
 }
 
-/// Returns the smallest of the `sorted` numbers that at least `share` of them do not exceed; 0 for an empty list.
+/// Returns the percentile of numbers in ascending order: the smallest number that is at least as large as the share
+/// `share` of them. 0 for an empty list.
 pub fn percentile(sorted: &[f64], share: f64) -> f64 {
     let rank = (sorted.len() as f64 * share).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)

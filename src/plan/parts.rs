@@ -28,8 +28,8 @@ pub struct Part {
 /// Way in which the gauge finds the change of a picture due to leaving a part out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// The gauge composes the picture without the part, in this channel. Parts that share a channel each count with the
-    /// change due to all of them together.
+    /// The gauge composes the picture without the part, in this channel. Where several parts share a channel, each gets
+    /// the change due to all of them together.
     Composed(usize),
     /// A closed form gives the change due to each rung (`plan::Unseen`). For the last rung the gauge adds the change
     /// due to the part's stand-in, in this channel.

@@ -21,7 +21,8 @@ use crate::{
 pub struct PartPlan {
     /// Part that this entry plans.
     pub part: &'static Part,
-    /// Rung at which the part is drawn once its fade has ended; 0, all of it, if the picture has none of it.
+    /// Rung at which the part is drawn once its fade has ended. It is 0, the rung with all of the part, if the part is
+    /// absent from the picture.
     pub rung: usize,
     /// Share of the part that is drawn: 1 on its first rung, 0 on its last. It lies between them during a fade and on
     /// middle rungs.
@@ -89,7 +90,8 @@ impl Plan {
         (self.milliseconds, self.gave_way) = (None, GaveWay::Nothing);
     }
 
-    /// Returns the rung of every part once its fade has ended; 0, all of it, for a part of which the picture has none.
+    /// Returns the rung of every part once its fade has ended. It is 0, the rung with all of the part, for a part that
+    /// is absent from the picture.
     pub fn rungs(&self) -> Vec<usize> {
         self.parts.iter().map(|p| p.rung).collect()
     }
@@ -101,9 +103,9 @@ pub struct Prediction {
     /// Predicted time of the weather in this frame, ms; `None` before the first gauge, and before the first reported
     /// time.
     pub milliseconds: Option<f64>,
-    /// Error of what this frame leaves out. A part that still fades counts as drawn. `None` before the first gauge.
+    /// Error of what this frame leaves out. A part that still fades is taken as drawn. `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// Predicted bound of the error, and error that the gauge measured, of the newest gauged picture.
+    /// For the newest gauged picture: the predicted bound of the error, and the error that the gauge measured.
     pub checked: Option<[f64; 2]>,
 }
 

@@ -16,7 +16,8 @@ const WHOLE: usize = 64;
 const TRIALS: usize = 3;
 /// Number of sets to which further steps are added, by each of the two criteria of [`Search::downwards`].
 const FRONT: usize = 3;
-/// Strain above which other parts are not expected to compensate.
+/// Strain (share of the tolerance that a set uses up) above which changes by other parts are not expected to
+/// compensate.
 const MOST_STRAIN: f64 = 3.0;
 /// Amount added to each strain, so that a set without strain is not infinitely good.
 const LEAST_STRAIN: f64 = 0.1;
@@ -195,7 +196,7 @@ fn greedy(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut i
     }
 }
 
-/// Gives steps of one part back so that others fit, as long as that saves more.
+/// Gives steps of one part back so that steps of other parts fit, as long as the exchange saves more work.
 fn exchanged(free: Free<'_>, start: Set, work: &impl Fn(Set) -> f64, strain: &mut impl FnMut(Set) -> f64) -> Set {
     let mut best = start;
     for part in free.parts() {

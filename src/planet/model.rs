@@ -215,7 +215,8 @@ impl Planet {
     /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`. Every spectrum is the Earth's
     /// (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor, which is
     /// linear between this planet's three wavelengths and constant outside. Haze follows a power of the wavelength
-    /// between two of them (Angstrom 1929), also extrapolated beyond. At the planet's own wavelengths it is unchanged.
+    /// between two neighbours of these three (Angstrom 1929), which is extrapolated beyond the outer two. At the
+    /// planet's own wavelengths all values are unchanged.
     pub fn at_wavelengths(&self, wavelengths_nm: [f64; 3]) -> Self {
         let shaped = |own: [f64; 3], law: &dyn Fn(f64) -> f64| {
             let factor = |i: usize| own[i] / law(self.wavelengths_nm[i]).max(f64::MIN_POSITIVE);

@@ -117,7 +117,7 @@ pub(crate) struct SpectralTriple {
     /// Planet at these wavelengths; its solar irradiance does not matter.
     pub planet: Planet,
     /// Columns of a matrix: for each of these wavelengths, the three transfers at the whole planet's own wavelengths
-    /// that have the same colour as a unit transfer.
+    /// that have the same colour as a unit transfer at this wavelength alone.
     pub columns: [[f64; 3]; 3],
 }
 
@@ -160,9 +160,10 @@ pub struct Conversion {
 }
 
 impl Conversion {
-    /// Creates the conversion in which each wavelength stands for one channel: its transfer times the sun's component.
-    /// The wavelengths must stand for red, green and blue in this order (`EARTH_WAVELENGTHS_NM` do, as well as three
-    /// can). Colours are never negative, and the conversion also suits lamps, fog and clouds given in Rec. 709.
+    /// Creates the conversion in which each wavelength gives one component of the colour: its transfer times that
+    /// component of the sun's colour. The wavelengths must represent red, green and blue in this order
+    /// (`EARTH_WAVELENGTHS_NM` do, as well as three can). Colours are never negative, and the conversion also suits
+    /// lamps, fog and clouds given in Rec. 709.
     pub fn per_channel() -> Self {
         let sun = sun_rec709();
         let mut matrix = [[0.0; 3]; 3];

@@ -78,7 +78,7 @@ pub(super) struct ShaftKind {
 /// Number of pipelines held for a view: enough for a few weathers that alternate.
 const MOST_PIPELINES: usize = 16;
 
-/// Pass of a view, created when it first has rain areas.
+/// Pass of a view, created when the view first has rain areas.
 pub(super) struct AreaPass {
     blocks: UniformBlock,
     /// Layouts of group 0 for depth with one and with several samples.
@@ -88,7 +88,7 @@ pub(super) struct AreaPass {
     /// Placeholder for a missing layer behind the picture.
     no_layers: wgpu::TextureView,
     pipelines: LruCache<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    /// Depth and layer behind the picture of the bind group, and the group.
+    /// Depth and layer behind the picture to which the bind group refers, and the bind group.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::BindGroup)>,
     /// Whether pixels count how often they are drawn, instead of showing light.
     counts: bool,
@@ -135,7 +135,8 @@ pub(super) struct Columns<'a> {
     pub scene: &'a Scene,
     /// Matrix from camera-relative east, north, up to clip space.
     pub clip: DMat4,
-    /// Whether fog is drawn in front of the picture; it contains the weather's own rain, which columns replace.
+    /// Whether fog is drawn in front of the picture. The fog contains the weather's own rain, which the columns
+    /// replace.
     pub veiled: bool,
 }
 

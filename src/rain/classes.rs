@@ -12,8 +12,8 @@ const DRAWN_MM: (f64, f64) = (0.5, 6.0);
 /// Drops of each class in one shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Classes {
-    /// Table of the shader, per class: diameter, m; fall speed, [`SPEED_UNIT`]; number of drops in a shell of the
-    /// classes up to and including this one; 0.
+    /// Table of the shader, per class: diameter, m; fall speed, [`SPEED_UNIT`]; number of drops, in a shell, of this
+    /// class and all smaller ones; 0.
     pub table: [[f32; 4]; CLASSES],
     /// Number of drops in a shell.
     pub per_shell: u32,

@@ -19,7 +19,7 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// State for rain on cones that a view holds, created when it first draws them.
+/// State for rain on cones that a view holds, created when the view first draws cones.
 pub(super) struct ConePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,

@@ -1,8 +1,8 @@
 //! Rain on three nested cones around the camera (after Wang and Wade 2004): a texture of streaks, created once, moves
 //! as the drops do.
 //!
-//! Each cone stands for the drops in a band of distances; in the two outer bands the far end is 2.8 times the near end.
-//! Let a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
+//! Each cone shows the drops in a band of distances. In the two outer bands the far end is 2.8 times the near end. Let
+//! a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
 //! about V stays the same. Its coordinate s = ln tan(theta / 2), the latitude of Mercator's projection, changes at the
 //! constant speed |V| / r. Its streak has the length |V| t / r in s for any theta, where t is the exposure time. The
 //! texture is therefore mapped to (azimuth, s) and moves along s. Streaks then converge in the directions V and -V, as
@@ -15,7 +15,7 @@
 //!
 //! No state is carried from frame to frame. A cone shows a set of streaks at a random offset, moved by the wind, the
 //! fall and the camera's motion since the set's birth, less than a second before. These motions are exact at any time,
-//! and the same on every channel of a simulator. After its life another set replaces it. At any time a set is being
+//! and the same in every view of a simulator. After its life another set replaces it. At any time a set is being
 //! replaced in at most one cone, so that one more look-up a pixel suffices for all cones.
 
 use glam::{DVec2, DVec3};
@@ -35,7 +35,7 @@ use crate::{
 pub const CONES: usize = 3;
 /// Ends of the cones' bands of distances, m.
 pub const BANDS_M: [f64; CONES + 1] = {
-    // Half of this, the end of the first band, is where single drops of the innermost shell fade out.
+    // Single drops of the innermost shell fade out at half of this distance, the end of the first band.
     let drops = HIDDEN_M;
     [0.1875, 0.5 * drops, 0.5 * FURTHER * drops, 4.0 * drops]
 };
@@ -51,9 +51,10 @@ pub(crate) const STREAKS: [u32; 4] = [48, 192, 768, 3072];
 const LENGTH: f64 = 5.0;
 /// Half the width of a streak, texels; its profile is a parabola.
 const HALF_WIDTH: f64 = 0.8;
-/// Time from one set of the innermost cone to the next, s; each further cone has twice the time of the one before.
+/// Time from one set of the innermost cone to the next, s. Each farther cone takes twice as long as the next nearer
+/// one.
 const LIFE_S: f64 = 0.2;
-/// Times at which sets are born, in lives of the innermost cone; chosen so that no two cones replace a set at once.
+/// Birth time of set 0 of each cone, in units of [`LIFE_S`], chosen so that no two cones replace a set at once.
 const PHASES: [f64; CONES] = [0.5, 1.0, 0.0];
 /// Share of a set's life in which it grows from 0 to its full depth, while the set before it shrinks.
 const GROWS: f64 = 0.1;
@@ -85,7 +86,7 @@ struct Mean {
     /// Fall speed, m/s, weighted by the discs.
     fall_m_s: f64,
     /// Time to fall one metre, s, weighted by the discs. The distance that the wind carries drops in under a roof is
-    /// proportional to it.
+    /// proportional to this time.
     fall_s_per_m: f64,
 }
 
@@ -111,7 +112,7 @@ impl Mean {
 }
 
 /// Returns two unit vectors at right angles to `axis` and to each other: east and north, turned by the shortest
-/// rotation that turns down to `axis`.
+/// rotation that takes the downward direction to `axis`.
 fn frame(axis: DVec3) -> (DVec3, DVec3) {
     let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Z, axis);
     (turn * DVec3::X, turn * DVec3::Y)
@@ -188,8 +189,8 @@ impl ConeUniform {
     }
 
     /// Adapts the cones to drops that are drawn one by one: of the drops nearer than `distance_m`, the share `drops` is
-    /// drawn so and left out of the cones. All optical depths are multiplied by `share`. If single drops reach into a
-    /// band, its cone begins where they end.
+    /// drawn so and left out of the cones. All optical depths are multiplied by `share`. If all drops up to
+    /// `distance_m` are drawn one by one and this distance lies inside a band, the band's cone begins there.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {
             let (near, far) = (BANDS_M[j], BANDS_M[j + 1]);
@@ -235,7 +236,7 @@ fn streaks() -> Vec<Streak> {
         for i in 0..count {
             let [a, b] = [0, 1].map(|k| random3([0x5712_ea45, k << 8 | channel as u32, i]).map(share));
             let d = super::sizes::table_diameter_mm(&table, a[2]);
-            // Distance of the drop, in units of that of the band's middle.
+            // Distance of the drop, in units of the distance of the band's middle.
             let distance = libm::cbrt(1.0 + (FURTHER.powi(3) - 1.0) * b[0]) / (0.5 * (1.0 + FURTHER));
             all.push(Streak {
                 middle: DVec2::new(a[0], a[1]) * f64::from(SIDE),

@@ -2,17 +2,17 @@
 //! a picture.
 //!
 //! Streaks lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
-//! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. It is drawn w wide, where
-//! w is D or a minimum width in pixels, and L + w long. Its mean cover over this area is c = (pi D^2 / 4) / ((L + w)
-//! w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the
-//! square of their mean. For n drops per cubic metre the variance is therefore
+//! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. Its streak is drawn w
+//! wide, where w is D or a minimum width in pixels, and L + w long. The mean cover over the streak is c = (pi D^2 / 4)
+//! / ((L + w) w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08
+//! times the square of their mean. For n drops per cubic metre the variance is therefore
 //!
 //! ```text
 //! integral of 1.08 n (pi D^2 / 4)^2 / ((L + w) w) dr.
 //! ```
 //!
-//! With w = D near the eye and w = a r beyond, for a pixel of the angle a, the integral has a closed form: each
-//! doubling of the distance adds as much as the one before.
+//! With w = D near the eye and w = a r farther away, where a is the angle of the minimum width, the integral has a
+//! closed form: each doubling of the distance adds as much as the one before.
 //!
 //! A contrast gain g raises a streak's cover from c to 1 - (1 - c)^g.
 
@@ -30,9 +30,9 @@ use crate::{
 /// chart's error.
 const CONES_MISS: f64 = 0.3;
 
-/// Returns the variance from pixel to pixel of the share that drops between two distances (m) cover. `pixel_angle` is
-/// the angle of a pixel, rad, `along_m` the distance that drops move across the line of sight during the exposure, m,
-/// and `gain` the contrast gain.
+/// Returns the variance, from pixel to pixel, of the share of a pixel that drops between two distances (m) cover.
+/// `pixel_angle` is the angle of a pixel, rad, `along_m` the distance that drops move across the line of sight during
+/// the exposure, m, and `gain` the contrast gain.
 pub fn cover_variance(
     classes: &Classes,
     pixel_angle: f64,
@@ -48,7 +48,8 @@ pub fn cover_variance(
         let wide = (d / a).clamp(near_m, far_m);
         let antiderivative = |r: f64| libm::log(r / (l + a * r)) / (a * l);
         let beyond = antiderivative(far_m) - antiderivative(wide);
-        // Width for all drops beyond, which are drawn wider than they are: that at the geometric mean of the distances.
+        // Width of all drops beyond `wide`, which are drawn wider than they are. It is taken at the geometric mean of
+        // `wide` and `far_m`.
         let w = a * (wide * far_m).sqrt();
         let sum = (wide - near_m) / ((l + d) * d) * gained(d / (l + d), gain).powi(2)
             + beyond * gained(d * d / ((l + w) * w), gain).powi(2);
@@ -62,7 +63,8 @@ fn gained(cover: f64, gain: f64) -> f64 {
     if gain == 1.0 { 1.0 } else { (1.0 - (1.0 - cover.min(1.0)).powf(gain)) / cover }
 }
 
-/// Distances between which drops count, m: from about where near drops have faded in to where cones end.
+/// Distances between which drops are taken into account, m: from about where near drops have faded in to where cones
+/// end.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
 
 /// Change of a picture by its streaks.
@@ -91,7 +93,7 @@ impl Streaks {
     /// `picture` is the luminance without streaks, `hidden` the optical depth of the streaks.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));
-        // Adds, for no streaks at all, the mean light that they bring.
+        // Subtracts, for no streaks at all, the mean light that the streaks add.
         [(CONES_MISS * streaks) as f32, (streaks - hidden * contrast) as f32, 0.0]
     }
 }

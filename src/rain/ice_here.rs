@@ -15,8 +15,8 @@ use crate::{
 pub(super) struct Ice {
     /// Precipitation at the camera; `None` without stones.
     here: Option<Falling>,
-    /// Last count of stones: precipitation, factor on fall speeds at the altitude ([`drops::factor_in`]) and largest
-    /// number for which they were counted, and the stones.
+    /// Last count of stones: precipitation, factor on fall speeds at the station's altitude ([`drops::factor_in`]) and
+    /// largest number for which they were counted, and the stones.
     counted: Option<(Falling, f64, u32, Stones)>,
 }
 

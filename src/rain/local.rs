@@ -2,8 +2,8 @@
 //!
 //! The weather and each area have their own number of drops in every class. At each place these numbers are averaged
 //! with the areas' shares there as weights. Only the drops whose index is below the average are drawn. A drop's index
-//! does not depend on its place, so the rain is thinned evenly, and every channel keeps the same drops. A camera with
-//! no rim nearby sees one rain, without this average.
+//! does not depend on its place, so the rain is thinned evenly, and every view keeps the same drops. A camera with no
+//! rim nearby sees one rain, without this average.
 
 use std::ops::Range;
 
@@ -62,7 +62,7 @@ pub(crate) enum Local {
 }
 
 impl Local {
-    /// Finds the rain within `reach_m` of a camera under the columns of `field`.
+    /// Finds the rain within `reach_m` of a camera, from the rain of the weather and of the columns of `field`.
     pub fn new(weather: &Falling, field: &AreaField, eye: EyeInWorld<'_>, reach_m: f64) -> Self {
         let mut local = Self::Pure(*weather);
         for (i, column) in field.columns.iter().enumerate() {
@@ -93,7 +93,7 @@ impl Local {
 }
 
 impl Classes {
-    /// Returns classes with the larger of both numbers in each class.
+    /// Returns classes that have, in each class, the larger of the numbers of `self` and `other`.
     pub(crate) fn enveloped(&self, other: &Self) -> Self {
         let (mut upto, mut envelope) = (0.0, *self);
         for k in 0..CLASSES {
@@ -108,7 +108,7 @@ impl Classes {
     }
 
     /// Returns these classes for a part of all drops: flux, extinction and the number of all drops (drawn drops times
-    /// weight) are multiplied by `share`. Each drop then stands for itself alone.
+    /// weight) are multiplied by `share`. Each drawn drop then represents one drop.
     pub(crate) fn part(&self, share: f64) -> Self {
         let mut part = *self;
         part.flux.iter_mut().for_each(|c| c.2 *= share);

@@ -31,7 +31,7 @@ use crate::{
     surroundings::{self, SurroundingsBlock},
 };
 
-/// Layer of drops, composited as one more veil in front of the picture: premultiplied, one sample a pixel.
+/// Layer of drops, composited in front of the picture: premultiplied light and opacity, one sample a pixel.
 pub(crate) struct RainLayer {
     /// Block of drops ([`RainUniform`]), followed by that of splashes ([`SPLASHES`]).
     block: UniformBlock,
@@ -48,14 +48,14 @@ pub(crate) struct RainLayer {
     cones: Option<ConePass>,
     /// Pass that steps drops, once any are stepped.
     stepped: Option<Box<StepPass>>,
-    /// Pass for hail and pellets, created when the first fall.
+    /// Pass for hail and pellets, created when the first stones fall.
     stones: Option<StonePass>,
     /// Whether the layer counts how often its pixels are drawn, instead of showing the drops' light.
     counts: bool,
     /// Placeholder for a missing depth.
     none: Option<wgpu::TextureView>,
     texture: FallingTexture,
-    /// Depth of the bind group of group 0, and the group.
+    /// Depth to which the bind group of group 0 refers, and the bind group.
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
 }
 
@@ -220,7 +220,8 @@ impl RainLayer {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
                 // The drops' pipeline layout has no group before this one. On OpenGL the group then has other binding
-                // points, and wgpu 30 does not notice this, nor that a group has been set if it is the same one.
+                // points. wgpu 30 does not notice this, and it ignores a group that is set already, so the group is
+                // first removed.
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, surroundings, &[]);
             }

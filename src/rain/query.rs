@@ -31,7 +31,7 @@ pub struct RainAt {
     /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
     /// Velocity, m/s (east, north, up), of the drop that divides the falling water into halves: one half falls more
-    /// steeply, the other less. Take occluder maps along this direction. 0 without rain.
+    /// steeply, the other less. Take occluder maps along this direction. The velocity is 0 if no rain falls.
     pub fall_velocity_m_s: DVec3,
     /// Hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
@@ -45,7 +45,7 @@ pub struct RainAt {
     pub stones_per_m2_s: f64,
 }
 
-/// Distance in front of a surface of the point for which shelter by boxes is tested, m.
+/// Distance from a surface to the point in front of it for which shelter by boxes is tested, m.
 const BEFORE_M: f64 = 0.05;
 
 /// Surface on which rain may land, or an opening through which it may fall.
@@ -53,9 +53,9 @@ const BEFORE_M: f64 = 0.05;
 pub struct RainSurface {
     /// Position in the host's world.
     pub position: DVec3,
-    /// Direction that the wet side faces, (east, north, up) at the position; any length but 0.
+    /// Direction that the wet side faces, (east, north, up) at the position. Any finite length above 1e-9 is allowed.
     pub normal: DVec3,
-    /// Velocity of the surface, m/s (east, north, up), each within \[-1000, 1000\].
+    /// Velocity of the surface, m/s (east, north, up), each component within \[-1000, 1000\].
     pub velocity_m_s: DVec3,
     /// Area, m^2, \[0, 1e6\].
     pub area_m2: f64,
@@ -64,7 +64,7 @@ pub struct RainSurface {
 /// Precipitation that lands on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainOn {
-    /// Water, mm/h: litres per square metre and hour.
+    /// Rain and drizzle, mm/h: litres per square metre of the surface and hour.
     pub rate_mm_h: f64,
     /// Number of drops on the whole surface, 1/s.
     pub drops_per_s: f64,
@@ -75,7 +75,7 @@ pub struct RainOn {
 }
 
 impl RainSurface {
-    /// Checks the ranges of normal and velocity.
+    /// Checks the ranges of normal, velocity and area.
     fn validate(&self) -> Result<()> {
         let length = self.normal.length();
         if !(length.is_finite() && length > 1e-9) {
@@ -89,9 +89,9 @@ impl RainSurface {
 }
 
 /// Returns the drops and stones in the air at a place, and the wind that carries them: the wind at 10 m with its gusts,
-/// or the wind that varies in space there. There are none above the cloud that they fall from. Within rain areas
-/// ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) they are those of the areas, mixed with the
-/// rest at the rims.
+/// or the wind that varies in space there. Above the cloud that they fall from, there are no drops or stones. Within
+/// rain areas ([`Context::set_rain_areas`](crate::context::Context::set_rain_areas)) the drops and stones are those of
+/// the areas, mixed with the weather's own at the rims.
 fn drops_at(world: &World, position: DVec3, time_s: f64) -> Result<(DropSizes, StoneSizes, DVec3)> {
     let place = world.frame.place_at("position", position)?.place;
     let c = world.weather_at(position, time_s)?;

@@ -9,40 +9,43 @@ use crate::{
 /// Method by which a view draws rain. It does not change the precipitation itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
-    /// Single drops to 1.9 m, and cones beyond, to 14.8 m. Under a budget ([`crate::plan`]) less is drawn if the
-    /// picture changes little without it.
+    /// Single drops up to 1.9 m from the camera, and cones from there to 14.8 m. Rain farther away is extinction, drawn
+    /// with the fog. Near a wind that varies in space the drops are stepped, as with [`RainModel::Integrated`]. Under a
+    /// budget ([`crate::plan`]) the drops, or the drops and the cones, are left out if the picture changes little
+    /// without them.
     #[default]
     Automatic,
-    /// No drops: all rain is extinction. Costs nothing in addition to the fog.
+    /// No drops: all rain is extinction. This costs nothing in addition to the fog.
     Veil,
     /// Streaks on three nested cones around the camera ([`super::cones`]), without splashes. The cost depends only on
     /// the picture's size; it is below that of drops only on devices without compute shaders.
     Cones,
-    /// Single drops only, to 4 m. Each drop's place follows from (seed, number, time), without a state
-    /// ([`super::lattice`]). If lamps light the rain, cones show it beyond 4 m.
+    /// Single drops only, up to 4 m from the camera. Each drop's place follows from (seed, number, time), without a
+    /// state ([`super::lattice`]). If lamps light the rain, cones show it beyond 4 m.
     Drops,
-    /// Drops stepped through a wind that varies in space (`particles::stepping`), to 4 m. Needs compute shaders.
+    /// Drops stepped through a wind that varies in space (`particles::stepping`), up to 4 m from the camera. This model
+    /// needs compute shaders.
     Integrated,
 }
 
-/// Settings by which a view draws rain, hail and their splashes. They change neither the precipitation itself nor the
-/// place of any drop.
+/// Settings by which a view draws rain, hail and their splashes. They do not change the precipitation itself. Of the
+/// settings only `model` affects the places of drops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RainSettings {
     /// Exposure time of the picture, s, [1e-4, 0.1]. A longer exposure makes streaks longer and fainter. Default
     /// [`RainSettings::SHUTTER_CAMERA_60_S`].
     pub shutter_s: f64,
-    /// Largest number of drawn drops, [1000, 8 000 000]. If more would be drawn, each drawn drop stands for several.
+    /// Largest number of drawn drops, [1000, 8 000 000]. If more would be drawn, each drawn drop represents several.
     /// `None`, the default: 400 000, or 100 000 on a software driver.
     pub most_drops: Option<u32>,
     /// Method by which rain is drawn.
     pub model: RainModel,
     /// Factor by which falling rain and hail stand out more than in nature, [1, 16]. Default 1: as in nature. With a
     /// gain g, a streak, stone or splash has the opacity 1 - (1 - c)^g instead of c. Real rain does not look like that;
-    /// the gain makes rain visible to trainees on a simulator's display. The extinction of the veil is reduced to
-    /// match, so that the mean visibility of objects some tens of metres away stays the same. The gain does not affect
-    /// light, visibility, water or queries. Set the same value on all channels of a simulator.
-    /// [`RainSettings::TRAINER`] has the value for trainers.
+    /// the gain makes rain visible to trainees on a simulator's display. The extinction of the rain drawn with the fog
+    /// is reduced to match, so that objects some tens of metres away are on average as visible as without the gain. The
+    /// gain changes only the picture: light, water and the results of queries do not depend on it. Set the same value
+    /// in all views of a simulator. [`RainSettings::TRAINER`] has the value for training simulators.
     pub contrast_gain: f64,
 }
 
@@ -60,9 +63,9 @@ impl RainSettings {
     pub const SHUTTER_CAMERA_60_S: f64 = 1.0 / 60.0;
     /// Short exposure of a camera in good light, s: drops are short streaks.
     pub const SHUTTER_CAMERA_500_S: f64 = 1.0 / 500.0;
-    /// Contrast gain for trainers: rain by day is as visible on an 8-bit display as in a film.
+    /// Contrast gain for training simulators: rain by day is as visible on an 8-bit display as in a film.
     pub const GAIN_TRAINER: f64 = 4.0;
-    /// Rain for trainers: [`RainSettings::GAIN_TRAINER`], all else at its default.
+    /// Settings for training simulators: [`RainSettings::GAIN_TRAINER`], all else at its default.
     pub const TRAINER: Self = Self {
         shutter_s: Self::SHUTTER_CAMERA_60_S,
         most_drops: None,

@@ -1,13 +1,13 @@
-//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. It is the f64 twin of
-//! `shaders/rain/shaft.wgsl` and `shaders/rain/area.wgsl`.
+//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. This file is the f64
+//! twin of `shaders/rain/shaft.wgsl` and `shaders/rain/area.wgsl`.
 //!
-//! A column is the area's plan carried up to its cloud along the slant of the falling drops. The part of a ray inside
-//! it is found exactly: the intersection with an ellipse or a convex polygon in the plan and with two levels in height.
-//! It is cut where the rim and the soft top end, and the rain on each of the four pieces is integrated with four Gauss
-//! points. The pattern of curtains is a sum of waves that fall as the drops do. The result is multiplied by the
-//! pattern's mean along the ray, which is exact for each of two parts: the first half kilometre inside the column, and
-//! the rest. The weather's own rain is drawn with the fog, so a column counts only the difference of its extinction
-//! from that rain.
+//! A column is the area's plan carried up to its cloud along the slant of the falling drops. The segment of a ray
+//! inside the column is found exactly: the intersection with an ellipse or a convex polygon in the plan and with two
+//! levels in height. The segment is cut where the rim and the soft top end, and the rain on each of the four pieces is
+//! integrated with four Gauss points. The pattern of curtains is a sum of waves that fall with the drops. The result is
+//! multiplied by the pattern's mean along the ray, which is exact for each of two stretches: the first half kilometre
+//! inside the column, and the rest. The weather's own rain is drawn with the fog, so a column adds only the difference
+//! between its own extinction and that of the weather's rain.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -26,10 +26,10 @@ use crate::{
 
 /// Depth of the columns below the level of their plan, m: they reach into valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
-/// Distance into a dense column from which most of its light comes, m.
+/// Length of the front stretch of a dense column, from which most of the column's light comes, m.
 const FRONT_M: f64 = 500.0;
 
-/// Part `Column` of the block in `shaders/rain/area.wgsl`, which describes the fields.
+/// Structure `Column` of the block in `shaders/rain/area.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct ColumnUniform {
@@ -86,7 +86,7 @@ pub(crate) struct EyeInWorld<'a> {
     pub altitude_m: f64,
 }
 
-/// Column near a camera, in camera-relative east, north, up, m.
+/// Column of a rain area, in camera-relative east, north, up, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RainColumn {
     /// Centre of the plan, east and north of the camera, m.
@@ -102,7 +102,7 @@ pub(crate) struct RainColumn {
     pub near: f64,
     /// Distance that the drops have fallen, m, modulo the pattern's period.
     fallen: f64,
-    /// Later columns that overlap it: bit `j` is set for column `j`.
+    /// Later columns of the list that overlap this one: bit `j` is set for column `j`.
     pub later: u32,
 }
 
@@ -127,7 +127,7 @@ pub(crate) struct AreaField {
 fn ramp_mean(top: f64, soft: f64, a: f64, b: f64) -> f64 {
     let below = |z: f64| {
         let x = ((top - z) / soft).clamp(0.0, 1.0);
-        // Integral from the top down, before the factor `soft`.
+        // Integral of the ramp from `z` up to `top`.
         (((top - z) / soft - x).max(0.0) + 0.5 * x * x) * soft
     };
     if (b - a).abs() < 0.01 * soft {
@@ -147,8 +147,8 @@ impl RainColumn {
         if shown <= 0.0 || shaft.top_m.max(own.top_m) <= shaft.ground_m - BELOW_M {
             return None;
         }
-        // Lowers a far column on a curved planet: as much as the ground at its centre lies below the camera's
-        // horizontal plane.
+        // Lowers a far column on a curved planet: by how far the planet's level surface has sunk below the camera's
+        // horizontal plane at the column's centre.
         let level = |altitude: f64| {
             let sunk = away.z - (shaft.center_altitude_m - eye.altitude_m);
             altitude - eye.altitude_m + sunk
@@ -172,8 +172,8 @@ impl RainColumn {
 
     /// Returns whether two columns may overlap.
     fn meets(&self, other: &Self) -> bool {
-        // Adds the difference of the columns' sideways displacements by their slants, over the height from the cloud
-        // down to the valleys.
+        // Adds the difference between the horizontal shifts of the two slanted columns over the height from the higher
+        // cloud down to the valleys.
         let height = (self.top.max(other.top) - self.ground.min(other.ground) + BELOW_M).max(0.0);
         let aside = (self.shaft.lean - other.shaft.lean).length() * height;
         (self.center - other.center).length() < self.shaft.radius_m + other.shaft.radius_m + aside
@@ -191,8 +191,8 @@ impl RainColumn {
         smoothstep(0.0, self.shaft.rim_m, self.shaft.outline.depth(self.turned(q)))
     }
 
-    /// Returns the interval of t in which the point q + u t of the plan is at least `inset` m inside the outline: a
-    /// ray's position in the plan at the distance t.
+    /// Returns the interval of t in which the point q + u t is at least `inset` m inside the outline. This point is the
+    /// position of a ray in the plan at the distance t, m.
     fn chord(&self, q: DVec2, u: DVec2, inset: f64) -> Option<[f64; 2]> {
         match &self.shaft.outline {
             Outline::Ellipse(semi) => {
@@ -325,7 +325,8 @@ impl AreaField {
     }
 
     /// Returns the optical depth that column `i` adds to a ray from `origin` (relative to the camera) along `d`, up to
-    /// the distance `range`. `None` if the ray misses the column.
+    /// the distance `range`, m. If `patterned` is set, the depth includes the pattern of curtains. `None` if the ray
+    /// misses the column.
     pub fn met(&self, i: usize, origin: DVec3, d: DVec3, range: f64, patterned: bool) -> Option<f64> {
         let c = &self.columns[i];
         let lean = c.shaft.lean;
@@ -338,7 +339,7 @@ impl AreaField {
         let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top.max(self.own_top) - origin.z) / up];
         let mut end = range.min(a.max(b)).min(last);
         if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
-            // Ends a ray without an object at the ground.
+            // Ends a ray that meets no object at the level of the ground.
             end = end.min((c.ground - origin.z) / up);
         }
         let begin = first.max(a.min(b)).max(0.0);

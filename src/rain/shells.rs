@@ -24,7 +24,7 @@ pub const REACH_M: f64 = 0.5 * SIDE_M * WIDER[SHELLS - 1];
 /// Distance at which a shell begins to fade out and the next larger one to fade in, as a share of the shell's reach
 /// (half its side). Both fades end at the full reach.
 pub(crate) const FADE: f64 = 0.85;
-/// Distance from the camera, m, within which the drawn drops replace the extinction of the drops: the middle of the
+/// Distance from the camera within which rain is drawn as drops instead of as extinction, m: the middle of the
 /// outermost shell's fade.
 pub const HIDDEN_M: f64 = 0.5 * (1.0 + FADE) * REACH_M;
 /// Distance below which drops fade out towards the camera, m: `NEAREST` of `shaders/rain/drops.wgsl`.
@@ -50,7 +50,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Creates the moment of `shell` after the air has moved by `displacement_m` and drops have fallen for `time_s`.
+    /// Creates the displacement of the lattice of `shell` after the air has moved by `displacement_m` and drops have
+    /// fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -67,16 +68,16 @@ impl Moment {
         place
     }
 
-    /// Returns the place of a camera at `position_m` (east, north, up of a point fixed to the world) in the cell that
-    /// moves with the air. A drop's position relative to the camera is its start less its fall less this place.
+    /// Returns the place of a camera at `position_m` (east, north and up from a point fixed to the world) in the cell
+    /// that moves with the air. A drop's position relative to the camera is its start less its fall less this place.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))
     }
 }
 
-/// Returns the share of each of its drops that `shell` shows at `distance_m`, 0 to 1: it fades in where the smaller
-/// shell fades out, and fades out where the larger one fades in.
+/// Returns the share of each drop of `shell` that is shown at `distance_m`, 0 to 1. The shell fades in where the next
+/// smaller shell fades out, and fades out where the next larger shell fades in.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);

@@ -9,8 +9,8 @@ use crate::falling::{lattice::short_seed, random3};
 const SIDE_M: f64 = 0.5;
 /// Number of cells along a side of the square around the camera in which splashes are drawn.
 const CELLS: u32 = 40;
-/// Lifetime of a splash, s: of the crown, some milliseconds per millimetre of the drop's diameter, and of the flight of
-/// its droplets.
+/// Lifetime of a splash, s. It covers the crown, which lasts some milliseconds per millimetre of the drop's diameter,
+/// and the flight of the crown's droplets.
 pub const LIFE_S: f64 = 0.08;
 /// Distance at which splashes have faded, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
@@ -19,7 +19,7 @@ const MOST_SLOTS: u32 = 8;
 /// Smallest diameter of drops whose crown is drawn, mm: the crowns of smaller drops are too small to see.
 pub const LEAST_MM: f64 = 1.2;
 
-/// Number of groups of drops, equal in number; each group has its mean size.
+/// Number of groups of drops. All groups have the same number of drops, and each group is drawn with its mean size.
 const SIZES: usize = 8;
 /// Ratio of the number of slots to the mean number of splashes at a time on level ground. It is above 1 because
 /// windward slopes get more drops.
@@ -108,9 +108,9 @@ impl Splashes {
     }
 
     /// Returns the drops that may have landed and whose splash is visible at `time_s`, within ten metres to each side
-    /// of a camera at `position_m` (east, north, up of a point fixed to the world). They include drops that land only
-    /// on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for any
-    /// ground.
+    /// of a camera at `position_m` (east, north and up from a point fixed to the world). They include drops that land
+    /// only on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for
+    /// any ground.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;
@@ -137,9 +137,9 @@ impl Splashes {
         ((MARGIN * self.standing()).ceil() as u32).min(MOST_SLOTS)
     }
 
-    /// Returns the block for a camera at a place (east, north, up of a point fixed to the world, m) and a height above
-    /// the ground, m. The share `shown` of the splashes is drawn. `depth_grain` is the error of the host's depth: an
-    /// absolute step, and a relative part.
+    /// Returns the block for a camera at a place (east, north and up from a point fixed to the world, m) and a height
+    /// above the ground, m. The share `shown` of the splashes is drawn. `depth_grain` is the error of the host's depth:
+    /// an absolute step, and a relative part.
     pub(crate) fn uniform(
         &self,
         (position_m, height_m): (DVec3, f64),

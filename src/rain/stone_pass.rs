@@ -23,7 +23,7 @@ pub(crate) struct StoneDraw {
 }
 
 impl StoneDraw {
-    /// Returns what a picture draws of these stones.
+    /// Creates the draw of `stones` with their uniform block.
     pub fn new(stones: &Stones, block: StoneUniform) -> Self {
         Self { block, falling: stones.drawn, landings: stones.landings() }
     }

@@ -156,8 +156,8 @@ impl Stones {
         s
     }
 
-    /// Computes the landings and the table, and turns the classes' numbers of stones, in 256ths, into whole sums up to
-    /// each class.
+    /// Computes the landings and the table, and replaces the number of stones of each class, in 256ths, by the whole
+    /// number of stones of all classes up to this one.
     fn count(&mut self, classes: &[StoneClass; STONE_CLASSES]) {
         let room = f64::from(MOST_SLOTS) / (LIFE_S * SIDE * SIDE);
         let mut landings = [0.0; STONE_CLASSES];
@@ -185,8 +185,8 @@ impl Stones {
         }
     }
 
-    /// Returns the optical depth of the drawn stones between the camera and objects beyond their reach. It counts the
-    /// stones' discs, half of their extinction; the other half is diffraction.
+    /// Returns the optical depth of the drawn stones between the camera and objects beyond their reach. It includes
+    /// only the stones' discs, which are half of their extinction. The other half is diffraction.
     pub fn hidden_depth(&self) -> f64 {
         let edge = 0.5 * (1.0 + FADE);
         self.reach.iter().map(|(reach, extinction)| 0.5 * extinction * edge * reach).sum()
@@ -212,8 +212,8 @@ impl Stones {
         self.standing().ceil() as u32
     }
 
-    /// Returns the block for a camera at `position_m` (east, north, up of a point fixed to the world), `height_m` above
-    /// the ground, after the air has moved by `displacement_m`.
+    /// Returns the block for a camera at `position_m` (east, north and up from a point fixed to the world), `height_m`
+    /// above the ground, after the air has moved by `displacement_m`.
     pub(crate) fn uniform(&self, position_m: DVec3, height_m: f64, displacement_m: DVec3, time_s: f64) -> StoneUniform {
         let cell = |x: f64| (x / SIDE).floor();
         let turns = time_s / LIFE_S;

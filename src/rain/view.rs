@@ -60,7 +60,7 @@ pub(crate) struct RainView {
     areas: Option<Box<AreaPass>>,
     /// Hail and ice pellets at the camera.
     ice: Ice,
-    /// Displacement of the air at the births of the cones' sets.
+    /// Displacement of the air at the births of the cones' sets of streaks.
     births: Remembered,
     /// Whether drops were stepped in the last frame.
     is_stepped: bool,
@@ -71,7 +71,8 @@ pub(crate) struct RainView {
 /// Number of precipitations whose classes are cached: more than the weather's and all areas' together.
 const COUNTED: usize = 32;
 
-/// Smallest share with which a nearby rain area counts for the cones, so that they exist before the camera enters it.
+/// Smallest weight of a nearby rain area in the rain for which cones are made, so that they exist before the camera
+/// enters it.
 const LEAST_OF_CONES: f64 = 1e-2;
 
 impl RainView {
@@ -151,9 +152,10 @@ impl RainView {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }
 
-    /// Returns ([extinction, distance], share) for the weather's own rain: the extinction of its drops and cones if all
-    /// are drawn, 1/m, the distance up to which they are drawn, m, and the share that is drawn. The extinction is that
-    /// of the drops' discs, which is half of the total (the other half is diffraction), times the contrast gain.
+    /// Returns ([extinction, distance], share) for the weather's own rain and the stones. The extinction, 1/m, is that
+    /// of all drops and stones that can be drawn near the camera, the distance, m, is that up to which they are drawn,
+    /// and the share is the drawn share of this extinction. The extinction is that of the discs of drops and stones,
+    /// which is half of the total (the other half is diffraction), times the contrast gain.
     fn hidden(&mut self, device: &Device, now: &SceneMoment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
@@ -228,7 +230,7 @@ impl RainView {
     }
 
     /// Sets the pattern of the columns of rain areas, and the extinction that is drawn as drops near the camera and
-    /// subtracted from them.
+    /// subtracted from the columns.
     fn set_near(&mut self, device: &Device, now: &SceneMoment<'_>) {
         let scene = &now.scene;
         let falling = self.own;
@@ -270,7 +272,8 @@ impl RainView {
         Ok(true)
     }
 
-    /// Returns the drops that fall around the camera, and the block for their numbers at each place if these differ.
+    /// Returns the drops that fall around the camera, and the block with the number of drops at each place if it
+    /// differs from place to place.
     fn falling_here(&mut self, device: &Device, scene: &Scene) -> (Classes, Option<LocalUniform>) {
         let weather = self.own;
         match self.local.unwrap_or(Local::Pure(weather)) {
@@ -363,7 +366,7 @@ impl RainView {
         let most = self.settings.most_on(device);
         let stones = self.ice.stones(scene, &self.settings, most);
         let height_m = scene.place.altitude_m - scene.conditions.air.station_altitude_m;
-        // Taken out of `self`, because the calls below need it mutably.
+        // Takes the births out of `self`, because the calls below need `self` mutably.
         let births = std::mem::take(&mut self.births);
         let carried = |from| wind.since(from, &births);
         let cones = (wet && self.has_cones(now)).then(|| {

@@ -35,7 +35,8 @@ impl<'a> RegionsOver<'a> {
         self.list.is_empty()
     }
 
-    /// Returns the weather `c` of the time with the parts that regions have at a position.
+    /// Returns the weather at a position: the world's weather `c` at this time, merged with the weathers of the regions
+    /// there.
     pub fn weather_at(&self, position: DVec3, c: &Conditions) -> Conditions {
         let point = PlanPoint::new(self.world, position);
         let mut here = RegionsHere::NONE;

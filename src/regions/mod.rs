@@ -1,8 +1,9 @@
 //! Weather regions: parts of the world with a weather of their own, such as a fog bank, a snow shower or a sandstorm.
 //!
-//! A region has a shape on the ground plan ([`RegionShape`]), a perimeter outside it over which its weather fades into
-//! what holds around it, a velocity, and a whole [`Weather`](crate::weather::Weather) of which it takes some parts
-//! ([`WeatherParts`](crate::weather::WeatherParts)). Columns are vertical: height has no effect on the weight.
+//! A region has a shape on the ground plan ([`RegionShape`]), a perimeter outside the shape over which the region's
+//! weather fades into the weather around it, a velocity, and a whole [`Weather`](crate::weather::Weather) of which it
+//! takes some parts ([`WeatherParts`](crate::weather::WeatherParts)). Columns are vertical: height has no effect on the
+//! weight.
 //!
 //! # Weight
 //! Let d be the horizontal distance from the shape, m, 0 inside, and P the perimeter. The weight of a region is its
@@ -12,11 +13,12 @@
 //! # Overlap
 //! For each part of the weather, the world's weather and the regions have shares a_k whose sum is 1. Regions are taken
 //! in the order of the list. A region of weight w that *covers* a part gets the share w, and all earlier shares are
-//! multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge it: these together get the
-//! share 1 - (1 - m)(1 - w), where m is their share before, and divide it in proportion to their weights; all other
-//! shares are multiplied by 1 - w. A region that covers the part also multiplies the weights of the earlier merging
-//! regions by 1 - w. Two regions that merge and both have the weight 1 thus give the mean of both; at their perimeters
-//! the regions count by their weights. The shares are continuous in all weights.
+//! multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge it. All these regions
+//! together get the share 1 - (1 - m)(1 - w), where m is the sum of the shares of the earlier ones so far. They divide
+//! it in proportion to their weights. All other shares are multiplied by 1 - w. A region that covers the part also
+//! multiplies the weights of the earlier merging regions by 1 - w. Two regions that merge and both have the weight 1
+//! thus give the mean of both. In a perimeter, a smaller weight gives a smaller share. The shares are continuous in all
+//! weights.
 //!
 //! # Merging
 //! A quantity x of a part is the sum of a_k x_k: extinction (not visibility), rates of precipitation, temperature,
@@ -28,9 +30,9 @@
 //! The optical depth between two points is the integral of the sum of a_k(s) e_k(s), where e_k is the extinction of the
 //! medium k with its own heights. The path (`RegionWay`) is divided into pieces: long ones where all weights are
 //! constant, and pieces of at most P / 32 in a perimeter, or longer ones where a weight changes by less than 1e-3 from
-//! the middle to either end. Within a piece the shares are those of its middle, and the depth of each medium is its
-//! closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at its
-//! ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
+//! the middle to either end. Within a piece the shares are those of its middle, and the optical depth of each medium
+//! has a closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at
+//! its ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
 
 mod field;
 mod merge;

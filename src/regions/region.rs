@@ -23,7 +23,7 @@ const MOST_VERTICAL_M_S: f64 = 50.0;
 /// ground plan would lie over the region again.
 pub(super) const FARTHEST_M: f64 = 3e5;
 
-/// Place of a region: its shape, its motion, and how much it acts.
+/// Shape, place, motion and strength of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionPlan {
@@ -133,7 +133,7 @@ impl RegionPlan {
         }
     }
 
-    /// Returns the weight of the region at a distance from its border, m, negative inside.
+    /// Returns the weight of the region at `distance_m` from its border. The distance is negative inside.
     pub(super) fn weight(&self, distance_m: f64) -> f64 {
         let outward = if distance_m <= 0.0 {
             0.0

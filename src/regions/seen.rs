@@ -14,9 +14,10 @@ pub(crate) struct SeenRegion<'a> {
     pub region: &'a HeldRegion,
     /// Position of the camera on the plan, m to the right of the centre and ahead of it.
     pub camera_m: DVec2,
-    /// Right on the plan, (east, north) at the camera. Its length is that of a metre at the camera on the plan.
+    /// Vector to the right on the plan, (east, north) at the camera. Its length is the length on the plan of a metre at
+    /// the camera.
     pub right: DVec2,
-    /// Ahead on the plan, likewise.
+    /// Vector ahead on the plan, (east, north) at the camera, of the same length.
     pub ahead: DVec2,
     /// Distance of the camera from the border, m, negative inside. Beyond the perimeter it may be less than the true
     /// distance, but not less than the perimeter.

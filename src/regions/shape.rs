@@ -70,7 +70,8 @@ impl RegionShape {
         }
     }
 
-    /// Returns the distance of the shape's farthest point from its centre, m.
+    /// Returns the radius, m, of the smallest circle around the centre that holds the shape; for a rectangle with round
+    /// corners, of a larger one.
     pub(crate) fn radius_m(&self) -> f64 {
         match self {
             Self::Rectangle { half_m, .. } => DVec2::from(*half_m).length(),

@@ -87,7 +87,7 @@ impl<'a> RegionWay<'a> {
         self.over.is_empty()
     }
 
-    /// Returns the regions that the path may meet. The indices in the [`RegionsHere`] of a piece count in this order.
+    /// Returns the regions that the path may meet. The indices in the [`RegionsHere`] of a piece refer to this order.
     pub fn regions(&self) -> impl Iterator<Item = &'a HeldRegion> {
         self.over.list.iter().map(|on| on.region)
     }

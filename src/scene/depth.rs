@@ -1,4 +1,5 @@
-//! Depth conventions: conversion of a host's depth samples and projection to rays in the world and metres along them.
+//! Depth conventions: conversion of a host's projection to rays in the world, and of its depth samples to metres along
+//! the rays.
 //!
 //! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1). With the rows r_x, r_y,
 //! r_z and r_w of the host's projection:
@@ -9,8 +10,8 @@
 //! (r_x - x r_w) . p = (r_y - y r_w) . p = 0                the ray of the pixel at (x, y) in normalised coordinates
 //! ```
 //!
-//! The ray and d leave one unknown, the distance. [`ViewRays`] does this algebra in f64 once a frame. A pixel then
-//! costs three multiply-adds and one division in f32, without cancellation:
+//! On the ray of a pixel, d gives the only unknown, the distance. [`ViewRays`] does this algebra in f64 once a frame. A
+//! pixel then costs three multiply-adds and one division in f32, without cancellation:
 //!
 //! * the depth is first turned so that 0 is far: e = d or e = 1 - d. The latter is exact in f32 for d >= 1/2. The
 //!   constants 1/far and 1/near - 1/far are formed in f64, never as a difference on the GPU;
@@ -132,16 +133,19 @@ pub struct ViewRays {
     kind: u32,
     /// Coefficients of `e = turn.x + turn.y depth`. e is 0 at the far end, or at the near end for logarithmic depth.
     turn: DVec2,
-    /// Ray origin and (unnormalised) direction at the picture's centre, and their change per unit of ndc x and y.
+    /// Ray origin at the picture's centre, and its change per unit of normalised x and of normalised y.
     origin: [DVec3; 3],
+    /// Ray direction, not normalised, at the picture's centre, and its change per unit of normalised x and y.
     direction: [DVec3; 3],
     /// Perspective: `w = scale / (e - pole . (1, x, y))`. Parallel rays: `t = (e - pole . (1, x, y)) scale`, m.
     pole: DVec3,
+    /// Scale in the formulas of `pole`.
     scale: f64,
     /// Distance from the camera's plane per unit of clip w, m.
     plane_scale: f64,
-    /// Constants of logarithmic depth: `ln(c far + 1)`, and in `inverse_c` 1/c, m.
+    /// Constant `ln(c far + 1)` of logarithmic depth.
     log_far: f64,
+    /// Constant 1/c of logarithmic depth, m.
     inverse_c: f64,
 }
 

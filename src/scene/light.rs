@@ -72,8 +72,8 @@ impl FlashLamp {
         let hidden = self.down_share.is_some();
         LightUniform {
             position: self.position.as_vec3().to_array(),
-            // For a hidden flash, smoothstep(0, 1, c) stands for Lambert's c, the cosine of the angle from straight
-            // down. For an open flash, `end` makes the step 1 to all sides.
+            // For a flash inside a cloud, smoothstep(0, 1, c) replaces Lambert's c, the cosine of the angle from
+            // straight down. For an open flash, `end` makes the step 1 to all sides.
             end: if hidden { 0.0 } else { -2.0 },
             direction: [0.0, 0.0, -1.0],
             steepness: 1.0,

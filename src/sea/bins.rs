@@ -22,13 +22,15 @@ pub(super) const BINS: usize = 672;
 /// Maximum number of systems: the wind sea and the swells.
 pub(super) const MAX_SYSTEMS: usize = 5;
 
-/// Frequencies, in peaks of the wind sea, between which tiles take over from single waves.
+/// Frequencies, in multiples of the wind sea's peak frequency, between which the energy passes from single waves to
+/// tiles.
 const HANDOVER: [f64; 2] = [3.0, 4.0];
-/// Highest wave number of the tiles over that where they begin. At most three tiles of the ladder then hold energy.
+/// Ratio of the tiles' highest wave number to the wave number at which they begin. At most three tiles of the ladder
+/// then have energy.
 const TILED_RANGE: f64 = 45.0;
 /// Highest wave number of the tiles, 1/m: the finest tile has none above.
 const FINEST_PER_M: f64 = 560.0;
-/// Ratio of wave numbers over which the tiles' energy ends.
+/// Ratio of the two wave numbers between which the tiles' energy fades to 0.
 const END_RATIO: f64 = 1.5;
 
 /// Form of the spreading of a system over directions.
@@ -47,11 +49,11 @@ pub(super) struct WaveSystem {
     pub m0_m2: f64,
     pub peak_rad_s: f64,
     pub gamma: f64,
-    /// Vector in which it travels, east and north. Its length, at most 1, is the share that travels so; the rest is
-    /// spread over all directions.
+    /// Direction in which the system travels (east, north). The vector's length, at most 1, is the share of the waves
+    /// that travel in this direction; the rest is spread over all directions.
     pub toward: DVec2,
     pub spreading: Spreading,
-    /// Share of the variance that is said for deep water, of which the depth leaves a part (TMA), 0 to 1.
+    /// Share of the variance that is given for deep water, 0 to 1. The depth takes some of this share away (TMA).
     pub deep_share: f64,
     /// Whether the depth shapes the spectrum (TMA).
     pub is_shaped: bool,
@@ -71,8 +73,8 @@ impl WaveSystem {
         Heading { certain: self.toward.length().min(1.0), mean: libm::atan2(self.toward.y, self.toward.x) }
     }
 
-    /// Returns the density of the variance over frequency but for its level: shape over w / wp, times the depth's
-    /// share.
+    /// Returns the density of the variance over frequency without its level: the spectrum's shape at w / wp, times the
+    /// share that the depth leaves.
     fn shape(&self, w_rad_s: f64, depth_m: f64) -> f64 {
         let deep = jonswap_shape(w_rad_s / self.peak_rad_s, self.gamma);
         if self.is_shaped && deep > 0.0 { deep * depth_share(w_rad_s, depth_m) } else { deep }
@@ -123,7 +125,7 @@ pub(super) fn bin_rad_s(bin: f64) -> f64 {
     LOWEST_RAD_S * libm::exp2(bin / BINS_PER_OCTAVE as f64)
 }
 
-/// The drawn part of a sea's spectrum.
+/// The spectrum of a sea as it is drawn, in bins of frequency.
 #[derive(Clone, Debug)]
 pub(super) struct Bins {
     pub systems: Vec<WaveSystem>,
@@ -136,7 +138,7 @@ pub(super) struct Bins {
     pub beta: Vec<[f64; MAX_SYSTEMS]>,
     /// Wave number per bin, 1/m.
     pub k_per_m: Vec<f64>,
-    /// Level of each system: its density over frequency is this times its shape, m^2 s.
+    /// Level of each system, m^2 s. The density of its variance over frequency is the level times its shape.
     pub level: [f64; MAX_SYSTEMS],
     /// Wave number at which the tiles' energy ends, 1/m.
     pub end_per_m: f64,
@@ -168,7 +170,7 @@ impl Bins {
     }
 
     /// Fills the bins. The first system is the wind sea. `most_slope` is the mean square slope at which the tiles end;
-    /// infinite where the spectrum itself was asked for.
+    /// infinite if the settings give the height of the waves.
     pub fn fill(&mut self, systems: &[WaveSystem], most_slope: f64) {
         for bins in [&mut self.waves_m2, &mut self.tiles_m2] {
             bins.fill([0.0; MAX_SYSTEMS]);
@@ -207,7 +209,8 @@ impl Bins {
         share * share
     }
 
-    /// Fills the energies of a system, whole. Returns its variance at the depth.
+    /// Fills in the whole energy of a system, not yet divided into single waves and tiles. Returns the system's
+    /// variance at the depth.
     fn fill_system(&mut self, s: usize) -> f64 {
         let system = self.systems[s];
         let (mut whole, mut deep) = (0.0, 0.0);
@@ -235,8 +238,8 @@ impl Bins {
         level * whole
     }
 
-    /// Returns the wave number at which the tiles' energy ends: that of their range, or where the slopes reach
-    /// `most_slope`.
+    /// Returns the wave number at which the tiles' energy ends: the end of their range, or a lower one at which the
+    /// slopes reach `most_slope`.
     fn end(&self, most_slope: f64) -> f64 {
         let begin = wave_number(HANDOVER[0] * self.peak_rad_s, self.depth_m);
         let range = (TILED_RANGE * begin).min(FINEST_PER_M);
@@ -245,7 +248,8 @@ impl Bins {
             let k = self.k_per_m[b];
             let more: f64 = k * k * self.waves_m2[b].iter().sum::<f64>();
             if slope + more > most_slope {
-                // Interpolated, so that the end moves continuously; it lies in the middle of the fading range.
+                // The wave number is interpolated, so that the end moves continuously. It lies in the middle of the
+                // range in which the energy fades.
                 let part = (most_slope - slope) / more;
                 let next = self.k_per_m.get(b + 1).copied().unwrap_or(k);
                 return range.min((k + part * (next - k)) * END_RATIO.sqrt());

@@ -55,9 +55,10 @@ pub fn wave_length_m(period_s: f64, depth_m: f64) -> f64 {
     2.0 * PI / wave_number(2.0 * PI / period_s, depth_m)
 }
 
-/// Returns the wave length in deep water, m, of waves of a period (as seen from the ground) that run with a current of
-/// `current_m_s`, negative against them; `None` where the current blocks them, from -g T / (8 pi) on. The phase speed
-/// over the ground c solves (c - U)^2 = c0 c, with c0 that of still water (Longuet-Higgins and Stewart 1961).
+/// Returns the wave length in deep water, m, of waves of a period (as seen from the ground) on a current along their
+/// direction. `current_m_s` is negative for a current against the waves. Returns `None` if the current blocks the
+/// waves, at -g T / (8 pi) and below. The phase speed over the ground c solves (c - U)^2 = c0 c, with c0 that of still
+/// water (Longuet-Higgins and Stewart 1961).
 pub fn wave_length_on_current_m(period_s: f64, current_m_s: f64) -> Option<f64> {
     let still_m_s = GRAVITY_M_S2 * period_s / (2.0 * PI);
     let inner = 1.0 + 4.0 * current_m_s / still_m_s;

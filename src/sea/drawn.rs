@@ -83,7 +83,7 @@ impl DrawnTiles {
         Self { shapes: empty(), slopes: empty(), covariances, work: [texels(), texels()], finest: texels() }
     }
 
-    /// Takes over the tiles of a surface.
+    /// Fills all mip levels from the tiles of a surface.
     pub fn fill(&mut self, surface: &SeaSurface) {
         for (t, tile) in surface.tiles().iter().enumerate() {
             if tile.variance_m2 <= 0.0 {

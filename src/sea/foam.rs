@@ -11,18 +11,19 @@ pub const FRESH_DECAY_S: f64 = 2.54;
 /// Mean reflectance of foam of all ages (Koepke 1984).
 pub const MEAN_REFLECTANCE: f64 = 0.22;
 
-/// Share of the area under foam that belongs to waves that break now. Crests break for about a second, and what they
-/// leave fades within some four.
+/// Share of the area under foam that belongs to waves that break now. Crests break for about a second, and the foam
+/// that they leave fades within some four seconds.
 pub(super) const BREAKING_SHARE: f64 = 0.25;
-/// Number of ages for which foam that waves left is counted, and the step between them, s.
+/// Number of ages at which foam that earlier waves have left is computed, and the step between these ages, s.
 pub(super) const AGES: usize = 4;
 pub(super) const AGE_STEP_S: f64 = 0.9;
 /// Salinity of the sea for which [`SALT_DECAY_S`] holds, g/kg.
 const SALT_G_KG: f64 = 35.0;
-/// Range of compressions about the threshold over which foam begins, as a share of the threshold.
+/// Half-width of the range of compressions about the threshold over which foam begins: a share of the threshold, and a
+/// compression that is added.
 const EDGE: f64 = 0.05;
 const LEAST_EDGE: f64 = 1e-3;
-/// Standard deviations beyond which a normal distribution has nothing.
+/// Standard deviations beyond which a normal distribution is taken as 0.
 const FARTHEST_TAIL: f64 = 6.0;
 /// Least standard deviation of the compression that is known by its variance alone.
 const LEAST_DEVIATION: f64 = 0.02;
@@ -62,7 +63,7 @@ pub fn fold_threshold(share: f64, variance: f64) -> f64 {
 /// of deviation `s` is added to a known compression.
 fn compressed_area(threshold: f64, known: f64, s: f64) -> f64 {
     let x = (threshold - known) / s;
-    // A billionth: calm water has no foam at all.
+    // The rest is a billionth. Without it calm water has no foam at all.
     if x > FARTHEST_TAIL {
         return 0.0;
     }
@@ -79,7 +80,8 @@ pub(super) struct FoamLaw {
     pub variance: f64,
     /// Standard deviation of the compression by short waves, whose past is known by their variance alone.
     pub short_deviation: f64,
-    /// Share of its first area that foam of each age has.
+    /// Weight of foam at each age: the share of its first area that is left, times one factor for all ages. With it,
+    /// foam of all ages covers the area that breaking waves do not.
     pub kept: [f64; AGES],
 }
 
@@ -103,8 +105,8 @@ impl FoamLaw {
         }
     }
 
-    /// Returns the share of a place under foam, from its compression now and that by long waves at each age, for waves
-    /// of a share of their height on the open sea.
+    /// Returns the share of a place under foam, from its compression now and that by long waves at each age.
+    /// `height_share` is the height of the waves over that on the open sea.
     pub fn share(&self, now: f64, past: [f64; AGES], height_share: f64) -> f64 {
         let edge = EDGE * self.from.abs() + LEAST_EDGE;
         let breaking = smoothstep(self.from - edge, self.from + edge, now);

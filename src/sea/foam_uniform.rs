@@ -14,13 +14,13 @@ const LACE_COARSE_M: f64 = 17.3;
 const LACE_TURN: DVec2 = DVec2::new(0.8, 0.6);
 const STREAK_LONG_M: f64 = 120.0;
 const STREAK_WIDE_M: f64 = 12.0;
-/// Angle between two directions of streaks. Directions are fixed, and streaks go over from one to the next: turned
-/// about the world's origin they would sweep over places far from it.
+/// Angle between two directions of streaks. Streaks fade from one fixed direction to the next. If they turned about the
+/// world's origin instead, they would sweep over places far from the origin.
 const STREAK_STEP_DEG: f64 = 22.5;
 /// Winds, m/s, between which foam that waves left is gathered in patches along the wind: streaks show from Beaufort's 7
 /// on, which begins at 14 m/s.
 const STREAK_WINDS_M_S: [f64; 2] = [6.0, 16.0];
-/// How far the strongest wind gathers it.
+/// Value of [`FoamUniform::gathered`] in the strongest winds.
 const MOST_GATHERED: f64 = 0.9;
 
 /// Block of foam in a frame.

@@ -2,7 +2,7 @@
 //!
 //! The height comes from one law of fetch (Kahma and Calkoen 1992), capped by the fully developed sea (Pierson and
 //! Moskowitz 1964). The time that a fetch needs comes from the Coastal Engineering Manual (2002, II-2-35), so that wind
-//! that lasts raises the sea as a growing fetch would. Wind that falls leaves a sea that runs out of its basin.
+//! that lasts raises the sea as a growing fetch would. When the wind falls, the sea fades as its waves leave the basin.
 
 use glam::DVec2;
 
@@ -23,14 +23,15 @@ const PEAK_POWER: f64 = -0.27;
 /// Coefficients of the time that a fetch needs: t = 77.23 F^0.67 / (U^0.34 g^0.33) (Coastal Engineering Manual 2002).
 const DURATION: f64 = 77.23;
 const DURATION_POWER: f64 = 0.67;
-/// Region, m, that the waves of an open sea leave after the wind has fallen: the size of a depression.
+/// Size of the region, m, that the waves of an open sea leave after the wind has fallen: that of a depression.
 const OPEN_REGION_M: f64 = 5e5;
 /// Range of the peak, rad/s: periods of 31 s to 1 s.
 const PEAKS_RAD_S: [f64; 2] = [0.2, 6.0];
-/// Wind below which the sea counts as calm, m/s.
+/// Wind up to which the sea is taken as calm, m/s.
 const CALM_M_S: f64 = 0.5;
-/// Times, s, in which the peak and a reported height, the mean direction, and the shortest waves follow the weather to
-/// 1/e. They keep every amplitude continuous when the weather is cut.
+/// Times, s, in which the difference from the weather falls to 1/e: that of the peak and of a given height, that of the
+/// mean direction, and that of the shortest waves. They keep every amplitude continuous when the weather changes at
+/// once.
 const PEAK_TIME_S: f64 = 600.0;
 const TURNING_TIME_S: f64 = 3600.0;
 const SHORT_TIME_S: f64 = 60.0;
@@ -80,7 +81,8 @@ pub fn kept_variance_m2(wind_m_s: f64, fetch_m: Option<f64>) -> f64 {
     }
 }
 
-/// Returns how far a sea is developed under a wind, 0 while it grows to 1: it begins at half of the full variance.
+/// Returns how far a sea is developed under a wind: 0 up to half of the fully developed variance, rising to 1 at the
+/// full one.
 fn development(m0_m2: f64, wind_m_s: f64) -> f64 {
     let developed = developed_variance_m2(wind_m_s);
     if wind_m_s <= CALM_M_S || m0_m2 >= developed { 1.0 } else { smoothstep(0.5, 1.0, m0_m2 / developed) }
@@ -105,14 +107,15 @@ pub fn gamma_of_variance(m0_m2: f64, wind_m_s: f64) -> f64 {
     GROWING_GAMMA + (1.0 - GROWING_GAMMA) * development(m0_m2, wind_m_s)
 }
 
-/// Influence of the weather of a moment on the sea.
+/// Influence of the weather at a time on the sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WaveForcing {
     pub wind_m_s: f64,
     /// Unit vector in which the wind blows, east and north; zero without wind.
     pub toward: DVec2,
     pub fetch_m: Option<f64>,
-    /// Share in which a given height replaces the wind's, 0 to 1, and its variance, m^2.
+    /// Share in which a height that the weather gives replaces that of the wind, 0 to 1, and the variance of the given
+    /// height, m^2.
     pub given: f64,
     pub given_m2: f64,
     /// Variance of the swell, m^2, its peak, rad/s, and the unit vector in which it travels.
@@ -151,16 +154,17 @@ impl WaveForcing {
 pub(super) struct GrowthState {
     /// Variance of the wind sea, m^2.
     pub m0_m2: f64,
-    /// Share of it that a given height decides, 0 to 1.
+    /// Share of the variance that a given height decides, 0 to 1.
     pub given: f64,
-    /// Its peak, rad/s, and peak enhancement.
+    /// Peak of the wind sea, rad/s, and its peak enhancement.
     pub peak_rad_s: f64,
     pub gamma: f64,
-    /// Vector in which it travels. Its length is the share that travels so; the rest is spread over all directions.
+    /// Direction in which the wind sea travels (east, north). The vector's length is the share of the waves that travel
+    /// in this direction; the rest is spread over all directions.
     pub toward: DVec2,
-    /// Wind to which the shortest waves have come, m/s.
+    /// Wind to which the shortest waves have adapted, m/s.
     pub short_wind_m_s: f64,
-    /// Variance of the swell, m^2, and the same times its peak and times its direction.
+    /// Variance of the swell, m^2; the variance times the swell's peak; and the variance times its direction.
     pub swell_m2: f64,
     pub swell_peaks: f64,
     pub swell_toward: DVec2,

@@ -30,15 +30,15 @@ use crate::{
 pub(crate) struct HeldSea {
     sea: Option<PreparedSea>,
     regions: Vec<PlacedRegion>,
-    /// Tracks of the hulls that the host lists, and of those whose waves are still there.
+    /// Tracks of the hulls that the host lists, and of earlier hulls whose waves are still there.
     tracks: Vec<HullTrack>,
     /// Wakes of the last time that was asked for.
     wakes: Mutex<KeptWakes>,
-    /// Number that no other settings have had.
+    /// Revision of the settings: a number that no other settings have had.
     revision: u64,
     /// States at the ends of changes that the timeline has forgotten or may forget next.
     kept: Vec<DatedGrowth>,
-    /// Values that follow from all this and from the timeline; empty until the first query.
+    /// Values that follow from the settings, from `kept` and from the timeline; empty until the first query.
     workshop: Mutex<Option<Box<SeaWorkshop>>>,
 }
 
@@ -51,7 +51,7 @@ struct SavedSwell {
     spread_deg: Option<f64>,
 }
 
-/// Wakes of a time; the key is the time's bits and the number of the hulls' last change.
+/// Wakes at a time. The key is the time's bits and the revision of the hulls.
 #[derive(Default)]
 struct KeptWakes {
     key: Option<(u64, u64)>,
@@ -268,7 +268,7 @@ impl HeldSea {
         Ok(())
     }
 
-    /// Takes the sea's part out of a saved state.
+    /// Removes the sea's keys from a saved state and reads them.
     ///
     /// # Errors
     /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
@@ -299,8 +299,8 @@ impl HeldSea {
         self.regions.iter().map(|placed| &placed.region)
     }
 
-    /// Replaces the hulls. One that was listed before goes on with its track; the waves of one that is no longer listed
-    /// stay until they have faded.
+    /// Replaces the hulls. A hull that was listed before continues its track. The waves of a hull that is no longer
+    /// listed stay until they have faded.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for too many, for two of the same number, or naming the hull and its field; nothing

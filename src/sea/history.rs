@@ -1,17 +1,16 @@
 //! The waves that the weather's timeline has raised until a given time: the growth law, integrated from change to
 //! change.
 //!
-//! Between changes the law is in closed form. During a change the weather is taken at 64 moments of the change, which
-//! follow from the change alone; so the state at a time depends neither on the calls that were made before nor on
-//! changes that begin later.
+//! Between changes the law is in closed form. During a change the weather is taken at 64 times, which follow from the
+//! change alone. The state at a time therefore depends neither on earlier calls nor on changes that begin later.
 //!
-//! The weather before all changes counts as having lasted for ever. If the first change of all takes no time, so does
-//! the weather that it brings: it is the one with which a host begins.
+//! The weather before all changes is taken to have lasted for ever. If the first change of all takes no time, the
+//! weather that it brings is taken so too, because it is the weather with which a host begins.
 
 use super::growth::{GrowthState, WaveForcing};
 use crate::weather::Timeline;
 
-/// Steps in which the law is led through a change.
+/// Number of steps in which the law is integrated over a change.
 const STEPS: f64 = 64.0;
 
 /// A state and its simulation time, s.
@@ -21,7 +20,7 @@ pub(super) struct DatedGrowth {
     pub state: GrowthState,
 }
 
-/// Leads a state to a later time. No change begins or ends in between.
+/// Advances a state to a later time. No change begins or ends in between.
 fn led(timeline: &Timeline, fetch_m: Option<f64>, start: &DatedGrowth, until_s: f64) -> GrowthState {
     // A change that has ended hides all earlier ones, which the timeline may forget at any time.
     let (_, changes) = timeline.parts();

@@ -23,7 +23,8 @@ pub struct SeaHull {
     /// Position of the middle of the waterline in the host's world at the time `at_s`, m, within 1e12 of the origin.
     /// Its height does not matter.
     pub position_m: [f64; 3],
-    /// Heading at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0. The hull moves along it.
+    /// Heading at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0. The hull moves in the
+    /// direction of its heading.
     pub heading_deg: f64,
     /// Speed through the water, m/s. Range [0, 60], default 0.
     pub speed_m_s: f64,

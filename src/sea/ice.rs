@@ -1,9 +1,9 @@
 //! Ice on the sea: what a field of floes leaves of waves of a frequency.
 //!
-//! Two laws act together. Energy fades along the way through the ice by Meylan, Bennetts and Kohout (2014), whose rate
-//! was measured where floes covered nearly all of the sea; here it counts by the share that they cover. A thin rigid
-//! floe follows the mean of the waves under it: over a disc of radius r the mean of a wave is 2 J1(k r) / (k r) of its
-//! height (the force of Froude and Krylov), so waves shorter than a floe do not lift it.
+//! Two laws act together. Energy fades along the way through the ice at the rate of Meylan, Bennetts and Kohout (2014).
+//! The rate was measured where floes covered nearly all of the sea; here it is multiplied by the share that floes
+//! cover. A thin rigid floe follows the mean of the waves under it: over a disc of radius r the mean of a wave is 2
+//! J1(k r) / (k r) of its height (the force of Froude and Krylov), so waves shorter than a floe do not lift it.
 
 use serde::{Deserialize, Serialize};
 

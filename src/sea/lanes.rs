@@ -13,7 +13,7 @@ use super::{
 
 /// Waves that are summed at a time.
 const LANES: usize = 4;
-/// Most groups of them: a list has at most some 320 waves.
+/// Largest number of groups of [`LANES`] waves. A list has at most some 320 waves.
 const MOST_GROUPS: usize = 128;
 
 /// Properties of [`LANES`] waves, in the form in which they are summed.
@@ -33,7 +33,7 @@ struct WaveGroup {
     rise_y: Vec4,
     /// Frequency, rad/s.
     w: Vec4,
-    /// Sine and cosine of the phase of [`AGE_STEP_S`].
+    /// Sine and cosine of the phase that passes in [`AGE_STEP_S`].
     step_sin: Vec4,
     step_cos: Vec4,
 }
@@ -117,7 +117,7 @@ impl WaveLanes {
         })
     }
 
-    /// Takes over waves, which must be sorted from long to short, at a time.
+    /// Fills the lanes with waves, which must be sorted from long to short, at a time.
     pub fn fill(&mut self, waves: &[SeaWave], time_s: f64) {
         self.groups.clear();
         for list in [&mut self.variance_m2, &mut self.lowering_m, &mut self.length_m] {
@@ -161,7 +161,7 @@ impl WaveLanes {
         IncludedLanes { waves, variance_m2: last(&self.variance_m2), lowering_m: last(&self.lowering_m) }
     }
 
-    /// Returns the displacement of the particle at rest at a place, and leaves the phases there.
+    /// Returns the displacement of the particle at rest at a place, and writes the waves' phases there to `phases`.
     pub fn displacement(&self, rest: DVec2, included: &IncludedLanes, phases: &mut Phases) -> Displacement {
         let mut sums = [Vec4::ZERO; 5];
         let groups = self.groups.iter().take(included.waves.div_ceil(LANES));

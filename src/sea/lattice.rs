@@ -5,11 +5,11 @@
 //! The spectrum decides only which cells hold energy, so a change of weather changes amplitudes and never a phase.
 //! Cells are jittered, so the sum never repeats.
 //!
-//! A cell's energy is handed to its halves as far as each half has enough of it: a share that rises smoothly from 0 at
-//! 19/20 of a threshold to all at the threshold. What a half is too weak for goes to the other half if that is
-//! strong enough, and else stays with the cell's own wave. So about as many waves are listed for every sea, all about
-//! equally strong; every amplitude is a continuous function of the spectrum; and the energy of each half octave is kept
-//! exactly.
+//! A cell hands its energy to its halves. Of each half's energy a share is handed down that rises smoothly from 0 at
+//! 0.94 of a threshold to 1 at the threshold. The energy that a weak half does not take goes to the other half if that
+//! is strong enough. Otherwise it stays with the cell's own wave. So every sea has about the same number of waves, all
+//! about equally strong. Every amplitude is a continuous function of the spectrum, and the energy of each half octave
+//! is kept exactly.
 
 use std::f64::consts::TAU;
 
@@ -28,14 +28,15 @@ use crate::{
 const ROOT_BINS: usize = BINS_PER_OCTAVE / 2;
 /// Directions of the finest cells.
 const DIRECTIONS: usize = 512;
-/// Depth at which cells begin to be halved in frequency too.
+/// Depth in the tree from which on cells are halved in frequency too.
 const FIRST_FREQUENCY_HALVING: usize = 3;
-/// Measure of a wave, as a share of all. It lists some 280 waves, as repeating as 240 equal ones: heights some
-/// kilometres apart then correlate by 0.2 to 0.26 at the worst of many shifts.
+/// Threshold of a cell's measure, as a share of the measure of all waves. It gives some 280 waves. Their sum repeats as
+/// little as that of 240 equal waves: heights some kilometres apart then correlate by 0.2 to 0.26 at the worst of many
+/// shifts.
 const THRESHOLD: f64 = 1.0 / 390.0;
 /// Share of the threshold from which a cell begins to take energy.
 const BEGIN: f64 = 0.94;
-/// Share of a cell's measure that counts energy; the rest counts slope, so that short waves are not too few.
+/// Weight of energy in a cell's measure. The rest is the weight of slope, so that short waves are not too few.
 const ENERGY_SHARE: f64 = 0.93;
 
 /// Power by which the energy per octave falls over frequency above the peak (JONSWAP's tail).
@@ -98,7 +99,8 @@ impl LatticeCell {
         let numbers = [self.bin, self.bins, self.direction, self.directions];
         let name = numbers.into_iter().fold(0u64, |name, number| (name << 16) | number as u64);
         let mut chance = RandomStream::new(seed, mixed(name));
-        // Wide cells lie in the tail, whose energy per octave falls as w^-4: there the place follows the energy.
+        // Wide cells lie in the tail, whose energy per octave falls as w^-4. The random frequency in a cell follows
+        // this fall.
         let bin = std::f64::consts::LN_2 / BINS_PER_OCTAVE as f64;
         let falls = 1.0 - libm::exp(-TAIL_POWER * bin * self.bins as f64);
         let w = bin_rad_s(self.bin as f64 - libm::log(1.0 - chance.even() * falls) / (TAIL_POWER * bin));
@@ -149,7 +151,7 @@ impl Lister<'_> {
         amount
     }
 
-    /// Lists the waves of a cell and those inside it, whose energy is `scale` times that of the spectrum.
+    /// Lists the waves of a cell and of the cells inside it, with `scale` times the energy of the spectrum.
     fn list(&mut self, cell: &LatticeCell, amount: &CellEnergy, scale: f64) {
         // No half has enough for a wave if the whole has not.
         let halves = if amount.measure > BEGIN * THRESHOLD { cell.halves() } else { None };

@@ -1,10 +1,11 @@
 //! Mesh of the drawn sea: square rings of blocks around the camera, on a lattice that is fixed in the world.
 //!
-//! A level has blocks of 8 by 8 cells. Its cells are twice as long as those of the level inside it. Around the camera
-//! a level is a square of 8 by 8 blocks with a hole where the finer level lies (geometry clipmaps, Losasso and Hoppe
+//! A level has blocks of 8 by 8 cells. Its cells are twice as long as those of the level inside it. Around the camera a
+//! level is a square of 8 by 8 blocks with a hole where the finer level lies (geometry clipmaps, Losasso and Hoppe
 //! 2004). Towards its outer edge every second vertex moves onto its even neighbour, until the level has the vertices of
-//! the next one (continuous distance-dependent level of detail, Strugar 2010). The distance is the larger of the two
-//! level coordinates and the camera's height, so that a camera that rises leaves the finest level without a jump.
+//! the next coarser one (continuous distance-dependent level of detail, Strugar 2010). The distance is the largest of
+//! the two horizontal coordinates and the camera's height, so that a camera that rises leaves the finest level without
+//! a jump.
 //!
 //! Vertices are whole numbers of the finest cell. Two levels that meet therefore have the same bits at their common
 //! vertices, and the same function of the place displaces both: there are no cracks. Vertices stay at their places in
@@ -18,14 +19,15 @@ pub(super) const FINEST_M: f64 = 1.0 / 32.0;
 pub(super) const CELLS: u32 = 8;
 /// Blocks from the middle of a level to its edge.
 const HALF: i64 = 4;
-/// Distances from the camera, in sides of a level's blocks, between which its vertices move onto those of the next.
-/// The hole of a level ends nearer than the first (2.5), and the level ends beyond the second (3).
+/// Distances from the camera, in sides of a level's blocks, between which its vertices move onto those of the next
+/// coarser one. The hole of a level ends nearer than the first (2.5), and the level ends beyond the second (3).
 pub(super) const MORPH: [f64; 2] = [2.52, 2.98];
 /// Levels, at most: the coarsest has cells of 32 km.
 pub(super) const LEVELS: u32 = 21;
 /// Blocks of all levels, at most.
 pub(super) const MOST_BLOCKS: usize = 64 + 48 * (LEVELS as usize - 1);
-/// Places on the lattice count from an anchor near the camera, which is a multiple of this, m.
+/// Step of the anchor, m. Places on the lattice are relative to an anchor near the camera, whose coordinates are
+/// multiples of this step.
 const ANCHOR_M: f64 = 16.0;
 /// Least ratio of the distance of a cell to its length; the shaders' twin is `SEA_CELLS_TO_DISTANCE`.
 pub(super) const CELLS_TO_DISTANCE: f64 = 11.9;
@@ -82,7 +84,8 @@ impl MeshEye {
         (self.place_m / ANCHOR_M).round() * ANCHOR_M
     }
 
-    /// Returns the finest level that is drawn: the first that has not yet become the next one under the camera.
+    /// Returns the finest level that is drawn: the first whose vertices under the camera have not all moved onto those
+    /// of the next coarser one.
     pub fn first_level(&self) -> u32 {
         (0..LEVELS - 1).find(|level| MORPH[1] * side_m(*level) > self.height_m).unwrap_or(LEVELS - 1)
     }

@@ -1,7 +1,7 @@
 //! The sea: waves that have the spectrum and the height that were asked for, queries of their surface, and its picture.
 //!
 //! The surface is a function of (seed, time, settings, the weather's timeline). All views and machines see the same
-//! sea, and any time can be asked, past or future. Waves, laws and queries are in f64; the picture is held against
+//! sea, and any time can be asked, past or future. Waves, laws and queries are in f64; tests compare the picture with
 //! them.
 //!
 //! # Model
@@ -12,16 +12,15 @@
 //! * Waves longer than about a tenth of those at the peak are single waves on a fixed lattice of frequencies and
 //!   directions, 250 to 310 at a time. They do not repeat.
 //! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about
-//!   0.6 % of the variance, and half of the slopes. They end where the slopes of all drawn waves reach Cox and Munk's
-//!   (1954) for the wind, at the latest at 45 times the wave number where they begin; the rest is known by its
-//!   variance.
+//!   0.6 % of the variance, and half of the slopes. They end where the mean square slope of all drawn waves reaches
+//!   that of Cox and Munk (1954) for the wind, at the latest at 45 times the wave number at which they begin. Of
+//!   shorter waves only the variance is known.
 //! * Every wave has a fixed frequency, direction and phase and an amplitude that follows the spectrum: no random
 //!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
 //! * [`SingleWave`]s of the host are added to the surface, after the spectrum.
 //! * [`SeaIce`] dampens each wave by its frequency and length.
 //! * [`SeaHull`]s raise wakes along their tracks: bow and stern waves by length, beam, draught and speed (Michell
-//!   1898),
-//!   carried on as rays, so that they bend where the hull turned; and the foam of the hull's wash.
+//!   1898). They are carried on as rays, so that they bend where the hull turned. The hull's wash adds foam.
 //! * [`SeaRegion`]s are water with a level or a share of the waves of its own, or places without water.
 //! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is
 //!   corrected for it. A query solves for the particle that is at the place.
@@ -32,16 +31,16 @@
 //! # Picture
 //! The sea is an opaque thing in the host's depth. Its mesh is square rings around the camera on a lattice that is
 //! fixed in the world (`mesh.rs`). A vertex sums the single waves and looks the tiles up, as far as the cells there
-//! resolve them. What they do not resolve is in the slopes of the pixels; what a pixel does not resolve is known by its
-//! covariances, so that all of it together is Cox and Munk's at every distance (`shaders/sea/surface.wgsl`). Pixels
-//! mirror the sky with the mean reflectance of such slopes, sun and moon by their distribution, and show the light out
-//! of the water (`shaders/sea/light.wgsl`). Foam is where waves are compressed, and where they were 0.9 to 3.6 s ago:
-//! it stays with the water, thins, and breaks up into lace and, in strong wind, streaks (`shaders/sea/foam.wgsl`).
-//! Phases are reduced in f64 about an anchor near the camera.
+//! resolve them. Waves that the cells do not resolve are in the slopes of the pixels. Of waves that a pixel does not
+//! resolve, only the covariances of the slopes are known. All slopes together have Cox and Munk's variance at every
+//! distance (`shaders/sea/surface.wgsl`). Pixels mirror the sky with the mean reflectance of such slopes, sun and moon
+//! by their distribution, and show the light out of the water (`shaders/sea/light.wgsl`). Foam is where waves are
+//! compressed, and where they were 0.9 to 3.6 s ago: it stays with the water, thins, and breaks up into lace and, in
+//! strong wind, streaks (`shaders/sea/foam.wgsl`). Phases are reduced in f64 about an anchor near the camera.
 //!
 //! # Settings
 //! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
-//! settings there is no sea. Regions are set apart, since hulls move.
+//! settings there is no sea. Regions have a call of their own, since hulls move.
 //!
 //! # Cost
 //! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
@@ -58,8 +57,8 @@
 //!
 //! # What is not here
 //! No shore: its laws are here, but the surface does not use them yet. Wakes are those of deep water. A lake has the
-//! waves of the sea around it, as high as its region says; pictures show no lakes. There is no `candidates.rs`,
-//! because there is one way to draw it; no `reference.rs`, because all that queries use is the f64 reference.
+//! waves of the sea around it, as high as its region says; pictures show no lakes. There is no `candidates.rs`, because
+//! there is one way to draw the sea; no `reference.rs`, because all that queries use is the f64 reference.
 
 mod bins;
 mod clarity;

@@ -47,7 +47,8 @@ pub struct SeaStatistics {
     pub mean_from_deg: f64,
     /// Mean square slope of the surface: Cox and Munk's for the wind, or that of the waves if it is larger.
     pub mean_square_slope: f64,
-    /// Part of it that the waves of the surface have; the rest is in waves too short for it.
+    /// Mean square slope of the waves of the surface. The rest of `mean_square_slope` is in waves too short for the
+    /// surface.
     pub drawn_square_slope: f64,
     /// Height of the largest wave expected in an hour, m, crest to trough, plus the heights of all single waves.
     pub highest_in_hour_m: f64,
@@ -61,7 +62,7 @@ pub struct SeaStatistics {
     pub attenuation_per_m: [f64; 3],
 }
 
-/// Systems of waves, and the wind under which the short ones stand.
+/// Systems of waves, and the wind to which the short waves have adapted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Systems {
     list: [WaveSystem; MAX_SYSTEMS],
@@ -143,7 +144,7 @@ impl PreparedSea {
     fn wind_sea(&self, grown: &GrowthState) -> (WaveSystem, f64, f64) {
         let toward = match self.settings.from_deg {
             Some(deg) => toward_of(deg),
-            // A height that is asked for without any wind comes from north, as a calm does.
+            // If a height is set and there has been no wind, the waves come from north, as a calm does.
             None if grown.toward == DVec2::ZERO => toward_of(0.0),
             None => grown.toward,
         };
@@ -176,7 +177,8 @@ impl PreparedSea {
         }
     }
 
-    /// Returns a system no steeper than seas are. Settings are checked; weathers may ask for more.
+    /// Returns a system with its height limited by [`MOST_STEEPNESS`]. Settings are checked beforehand, but a weather
+    /// may give steeper waves.
     fn limited(&self, system: WaveSystem) -> WaveSystem {
         let most_m = MOST_STEEPNESS * wave_length_m(TAU / system.peak_rad_s, self.settings.depth_m);
         WaveSystem { m0_m2: system.m0_m2.min(variance_m2(most_m)), ..system }
@@ -206,7 +208,8 @@ pub(super) struct SeaWorkshop {
     queries: u64,
 }
 
-/// The weather's timeline with its revision, and the states that the sea has kept of what it forgot.
+/// The weather's timeline with its revision, and the states of growth that the sea has kept from changes that the
+/// timeline has forgotten.
 #[derive(Clone, Copy)]
 pub(super) struct WeatherPast<'a> {
     pub timeline: &'a Timeline,
@@ -236,12 +239,12 @@ impl SeaWorkshop {
         }
     }
 
-    /// Returns the states at the beginnings and ends of the timeline's changes.
+    /// Returns the states of growth at the beginnings and ends of the timeline's changes.
     pub fn history(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>) -> &GrowthHistory {
         if self.timeline_revision != Some(past.revision) {
             self.history.fill(past.timeline, sea.settings.fetch_m, past.kept);
             self.timeline_revision = Some(past.revision);
-            // Kept surfaces are those of the timeline before.
+            // The kept surfaces belong to the earlier timeline.
             self.surfaces.iter_mut().for_each(|kept| kept.time_s = f64::NAN);
         }
         &self.history
@@ -319,7 +322,7 @@ impl SeaWorkshop {
             sea.singles.iter().map(|wave| own(wave) * (TAU * wave.turns_per_m) * (TAU * wave.turns_per_m)).sum::<f64>();
         let energy = |b: usize| self.bins.waves_m2[b].iter().chain(&self.bins.tiles_m2[b]).sum::<f64>();
         let second: f64 = (0..BINS).map(|b| energy(b) * bin_rad_s(b as f64 + 0.5).powi(2)).sum();
-        // Per bin the density over frequency falls as 1 / w.
+        // A bin's width in frequency grows as w, so the density is the energy over w.
         let dense = |b: usize| energy(b) / bin_rad_s(b as f64 + 0.5);
         let peak = (0..BINS).fold(0, |best, b| if dense(b) > dense(best) { b } else { best });
         let open = 1.0 - sea.settings.ice.map_or(0.0, |ice| ice.cover);
@@ -339,7 +342,8 @@ impl SeaWorkshop {
         self.foam = FoamLaw::new(share, [compression, tiles], sea.settings.salinity_g_kg);
     }
 
-    /// Returns the frequency of the highest density, which lies in or beside a bin: a parabola through three.
+    /// Returns the frequency of the highest density, rad/s, in or beside a bin: the top of a parabola through the
+    /// densities of three bins.
     fn peak_rad_s(&self, bin: usize) -> f64 {
         let dense = |b: usize| {
             let energy: f64 = self.bins.waves_m2[b].iter().chain(&self.bins.tiles_m2[b]).sum();

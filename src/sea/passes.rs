@@ -1,4 +1,4 @@
-//! GPU resources with which the sea is drawn: pipeline, blocks, blocks of the mesh, and textures of the tiles.
+//! GPU resources with which the sea is drawn: pipeline, uniform blocks, blocks of the mesh, and textures of the tiles.
 
 use std::sync::Arc;
 
@@ -84,20 +84,20 @@ pub(super) struct SeaDraw<'a> {
 }
 
 impl SeaDraw<'_> {
-    /// Returns the blocks that are drawn together, with the number of their band: those of each level in turn, apart by
-    /// their marks.
+    /// Returns the blocks that are drawn together, with the number of their band: those of each level in turn,
+    /// separated by their marks.
     fn bands(&self) -> impl Iterator<Item = (usize, &[MeshBlock])> {
         let alike = |a: &MeshBlock, b: &MeshBlock| (a.level, a.marks) == (b.level, b.marks);
         self.blocks.chunk_by(alike).map(|blocks| (MARKS * blocks[0].level as usize + blocks[0].marks as usize, blocks))
     }
 }
 
-/// Distance between two bands in the buffer, bytes: the largest that a device may ask for.
+/// Distance between two bands in the buffer, bytes: the largest alignment that a device may require.
 const BAND_STRIDE: usize = 256;
 /// Bands of all levels.
 const BANDS: usize = MARKS * LEVELS as usize;
 
-/// Waves that the pixels of each band sum, and of all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
+/// Values of each band, and values with all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
 pub(super) struct SeaBands {
     pub layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,

@@ -13,7 +13,8 @@ use crate::{
 
 /// Maximum number of regions.
 pub const MAX_SEA_REGIONS: usize = 64;
-/// Depth below a region's level, and height above it, from which on a position is on the planet's other side, m.
+/// Depth below a region's centre, and height above it, from which on a position is taken to be on the planet's other
+/// side, m.
 const OTHER_SIDE_M: f64 = 3e6;
 /// Largest speed of a region, m/s.
 const MOST_SPEED_M_S: f64 = 60.0;
@@ -21,8 +22,8 @@ const MOST_SPEED_M_S: f64 = 60.0;
 /// Kind of water inside a region.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SeaRegionKind {
-    /// No water: inside a hull or an empty dock. It counts before all other regions. Queries there answer the surface
-    /// of the water around, by which a hull floats.
+    /// No water: inside a hull or an empty dock. A dry region takes precedence over all other kinds. Queries inside it
+    /// return the surface of the water around, by which a hull floats.
     Dry,
     /// The sea, at its own level, with lower waves: a harbour.
     Sheltered,
@@ -30,7 +31,8 @@ pub enum SeaRegionKind {
     Lake {
         /// Level without waves, m above mean sea level. Range [-500, 9000].
         level_m: f64,
-        /// Depth below it, m. Range [0.1, 12 000]. The waves keep the lengths that they have over the sea's depth.
+        /// Depth below the level, m. Range [0.1, 12 000]. The waves keep the lengths that they have over the sea's
+        /// depth.
         depth_m: f64,
     },
 }
@@ -47,7 +49,7 @@ pub struct SeaRegion {
     /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
     /// matter.
     pub center_m: [f64; 3],
-    /// Heading of `ahead` at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0.
+    /// Heading of the direction ahead at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
     /// Velocity east and north, m/s, of at most 60 m/s. Default 0: the region stands.
     pub velocity_m_s: [f64; 2],
@@ -147,7 +149,7 @@ impl PlacedRegion {
         self.radius_m
     }
 
-    /// Returns a vector (east, north) in directions to the right and ahead at a time.
+    /// Returns the components of a vector (east, north) to the right and ahead at a time.
     fn headed(&self, v: DVec2, time_s: f64) -> DVec2 {
         let past_s = time_s - self.region.at_s;
         let turns = (self.region.heading_deg + self.region.turn_deg_s * past_s) / 360.0;
@@ -167,7 +169,7 @@ impl PlacedRegion {
         Some(self.headed(self.offset_from_center(position, time_s)?, time_s))
     }
 
-    /// Returns the part of a vector of the host's world to the right and ahead at a time.
+    /// Returns the components of a vector of the host's world to the right and ahead at a time.
     pub fn turned(&self, v: DVec3, time_s: f64) -> DVec2 {
         self.headed((self.to_enu * v).truncate(), time_s)
     }
@@ -182,7 +184,7 @@ impl PlacedRegion {
 }
 
 /// Returns the water at a position and time; `None` where there is none around. `is_sea` says whether there is sea
-/// outside all regions. Later regions count before earlier ones, dry ones before all.
+/// outside all regions. Later regions are applied to the water of earlier ones, and dry ones after all others.
 pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, time_s: f64) -> Option<WaterBody> {
     let mut water = is_sea.then_some(WaterBody::OPEN);
     let mut is_dry = false;

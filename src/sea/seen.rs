@@ -25,7 +25,8 @@ pub(super) const FLAT_MIP: f32 = 5.0;
 const MARGIN: f32 = 1.001;
 
 /// Blocks of a level that are drawn together (`SeaBand` of `shaders/sea/uniform.wgsl`): the single waves that their
-/// pixels sum, the first and the one after the last, and the regions that may lie in them.
+/// pixels sum, given by the first and the one after the last, and the numbers of regions and wakes that may reach the
+/// blocks.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct SeaBand {
@@ -71,7 +72,7 @@ impl PixelFilter {
 }
 
 /// Returns the covariances of the slopes of all single waves that a pixel shows in a direction at a distance from the
-/// eye, and half the variance of those that are not in the mesh.
+/// eye, and half the variance of the slopes that are not in the mesh.
 fn seen_slopes(sea: &SeaUniform, waves: &[WaveUniform], range: f32, direction: [f32; 2]) -> [f32; 4] {
     let level = (range * range - sea.height * sea.height).max(0.0).sqrt();
     let distance = (level * direction[0].abs().max(direction[1].abs())).max(sea.height);
@@ -103,8 +104,8 @@ fn direction(row: usize) -> [f32; 2] {
     [libm::cosf(angle), libm::sinf(angle)]
 }
 
-/// Returns the covariances of a tile's slopes that are shown at a mip level: two levels are mixed, and the coarser one
-/// has what both have.
+/// Returns the covariances of a tile's slopes that are shown at a mip level: two levels are mixed. The slopes of the
+/// coarser one are in both, so that only the rest of the finer one becomes smaller.
 fn shown_slopes(tile: &TileSlopes, mip: f32) -> [f32; 3] {
     let (low, part) = (mip as usize, 1.0 - mip.fract());
     let [fine, coarse] = [low, low + 1].map(|level| tile[level.min(MIPS - 1)]);
@@ -163,7 +164,7 @@ pub(super) fn band_of(sea: &SeaUniform, waves: &[WaveUniform], blocks: &[MeshBlo
         nearest = nearest.min((off(0) * off(0) + off(1) * off(1) + sea.height * sea.height).sqrt());
         farthest = farthest.max(far(0)).max(far(1));
     }
-    // Waves before the first are wholly in the slopes of the vertices.
+    // The longer waves before the first are wholly in the slopes of the vertices.
     let smooth = CELLS_TO_DISTANCE as f32 / (2.0 * SMOOTH_CELLS * farthest * MARGIN);
     let last = PixelFilter::at(sea, nearest).last * MARGIN;
     let first = waves.partition_point(|wave| wave.turns_per_m < smooth);

@@ -40,7 +40,7 @@ pub(super) struct RegionsEye<'a> {
     pub time_s: f64,
 }
 
-/// Regions that a camera may see, in the order in which they count.
+/// Regions that a camera may see, in the order in which they are applied.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SeenRegions {
     pub list: Vec<RegionUniform>,
@@ -83,7 +83,7 @@ impl SeenRegions {
         }
     }
 
-    /// Whether water that moves `displaced_m` at most may reach a region from a block of the mesh.
+    /// Whether the water of a block of the mesh, which moves by at most `displaced_m`, may reach a region.
     pub fn touch(&self, block: &MeshBlock, displaced_m: f64) -> bool {
         let (middle, radius_m) = block.circle();
         let around = radius_m + displaced_m;

@@ -77,8 +77,8 @@ pub(super) struct SeenWakes {
 }
 
 impl SeenWakes {
-    /// Takes over the wakes within the camera's reach: all of them, or the nearest [`MAX_SEA_HULLS`] with no more than
-    /// [`MOST_TRACK_STATES`] states, in the order of `wakes`.
+    /// Collects the wakes within `eye.reach_m` of the camera: all of them, or the nearest [`MAX_SEA_HULLS`] with no
+    /// more than [`MOST_TRACK_STATES`] states, in the order of `wakes`.
     pub fn fill(&mut self, wakes: &[Wake], eye: &MeshEye) {
         self.list.clear();
         self.states.clear();
@@ -111,7 +111,7 @@ impl SeenWakes {
         }
     }
 
-    /// Whether water that moves `displaced_m` at most may be in a wake, from a block of the mesh.
+    /// Whether the water of a block of the mesh, which moves by at most `displaced_m`, may be in a wake.
     pub fn touch(&self, block: &MeshBlock, displaced_m: f64) -> bool {
         let (middle, radius_m) = block.circle();
         let around = radius_m + displaced_m;

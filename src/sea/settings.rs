@@ -35,7 +35,7 @@ pub enum WindSea {
     },
     /// WMO sea state (code 3700), 0 to 9: the middle of its range of heights, fully developed.
     SeaState(u8),
-    /// Beaufort number. Range [0, 12]: what a wind of 0.836 B^1.5 m/s keeps up over the fetch.
+    /// Beaufort number B. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch.
     Beaufort(f64),
 }
 

@@ -13,7 +13,8 @@ use crate::error::{Error, Result, check_range};
 
 /// Maximum number of single waves.
 pub const MAX_SINGLE_WAVES: usize = 16;
-/// Largest height of a regular wave over its length in deep water; at a depth times tanh(k h) (Miche 1944).
+/// Largest height of a regular wave over its length in deep water. At a depth the limit is this times tanh(k h) (Miche
+/// 1944).
 pub const MOST_SINGLE_STEEPNESS: f64 = 0.142;
 
 /// Length or period of a wave; the other follows from the depth.
@@ -29,8 +30,8 @@ pub enum WaveScale {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SingleWave {
-    /// Height from trough to crest, m. Range [0, 40]; the steepnesses of all single waves together are at most 0.142
-    /// (Miche 1944), each being height over length, over tanh(k h).
+    /// Height from trough to crest, m. Range [0, 40]. The steepness of a wave is its height over its length times
+    /// tanh(k h). The steepnesses of all single waves together are at most 0.142 (Miche 1944).
     pub height_m: f64,
     /// Length or period.
     pub scale: WaveScale,

@@ -12,7 +12,7 @@ pub const DEVELOPED_ALPHA: f64 = 0.0081;
 
 /// Returns the shape of JONSWAP's spectrum at `x` = w / wp, without a dimension: x^-5 exp(-1.25 x^-4) gamma^r with r =
 /// exp(-(x - 1)^2 / (2 s^2)), s = 0.07 below the peak and 0.09 above (Hasselmann et al. 1973). The spectrum is alpha
-/// g^2 wp^-5 times it, m^2 s/rad; gamma 1 is that of Pierson and Moskowitz.
+/// g^2 wp^-5 times this shape, m^2 s/rad; gamma 1 is that of Pierson and Moskowitz.
 pub fn jonswap_shape(x: f64, gamma: f64) -> f64 {
     if x < 0.2 {
         return 0.0; // exp(-781) and less.

@@ -20,7 +20,7 @@ pub fn cosine_power_width(s: f64) -> f64 {
 }
 
 /// Returns the exponent `s` of Mitsuyasu et al. (1975) at `r` = w / wp, for a wind over phase speed of the peak: 11.5
-/// (U / cp)^-2.5 at the peak, r^5 below it and r^-2.5 above.
+/// (U / cp)^-2.5 at the peak, times r^5 below it and r^-2.5 above.
 pub fn mitsuyasu_exponent(r: f64, wind_over_speed: f64) -> f64 {
     let peak = 11.5 * libm::pow(wind_over_speed, -2.5);
     peak * libm::pow(r, if r < 1.0 { 5.0 } else { -2.5 })

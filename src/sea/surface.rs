@@ -104,7 +104,7 @@ struct IncludedWaves {
     tiles: [bool; TILES],
     raised_m: f64,
     error_m: f64,
-    /// Share of their amplitude that all of them have.
+    /// Factor on the amplitudes of all waves.
     share: f64,
 }
 
@@ -151,7 +151,7 @@ impl SeaSurface {
         Self { lanes: WaveLanes::default(), tiles, still, variance_m2: 0.0 }
     }
 
-    /// Takes over waves, which must be sorted from long to short, and tiles at a time.
+    /// Fills the surface with waves, which must be sorted from long to short, and with tiles, at a time.
     pub(super) fn fill(
         &mut self,
         waves: &[SeaWave],
@@ -181,8 +181,8 @@ impl SeaSurface {
     }
 
     /// Returns the water at a place (east and north of the world's origin, m), with waves of at least `shortest_m` and
-    /// tiles that have such waves. All waves have the share of their amplitude that the water says. The point's
-    /// `surface` is left to the caller, who knows the world.
+    /// tiles that have such waves. The amplitudes of all waves are multiplied by the water's `wave_share`. The caller,
+    /// who knows the world, fills in the point's `surface`.
     pub fn within(&self, water: &WaterBody, place_m: DVec2, shortest_m: f64) -> SeaPoint {
         let share = water.wave_share;
         let included = IncludedWaves { share, ..self.included(shortest_m) };
@@ -220,7 +220,8 @@ impl SeaSurface {
         self.solve(place_m, &self.included(0.0), &mut phases, steps).off.length()
     }
 
-    /// Solves for the particle that is at a place in at most so many steps, and leaves the phases there.
+    /// Solves for the particle that is at a place, in at most `most_steps` steps. Writes the waves' phases at the
+    /// particle to `phases`.
     fn solve(
         &self,
         place_m: DVec2,

@@ -1,10 +1,10 @@
 //! Short waves in square tiles that repeat: a fixed ladder of tiles, each eight times as long as the next and turned
 //! against it, whose waves are summed by Fourier transforms.
 //!
-//! A tile has waves of 4 to 45 periods in its length. Between 4 and 5.7 periods it takes over from the next longer
-//! tile, at fixed wave numbers, so that a change of weather changes amplitudes and no phase. Heights between the
-//! samples come from cubic B-splines. Their coefficients are transformed in place of the heights, so that each wave
-//! comes back with its own amplitude, and what is left of the error is images of the shortest waves.
+//! A tile has waves of 4 to 45 periods in its length. Between 4 and 5.7 periods the energy passes to it from the next
+//! longer tile. These wave numbers are fixed, so that a change of weather changes amplitudes and no phase. Heights
+//! between the samples come from cubic B-splines. Their coefficients are transformed in place of the heights, so that
+//! each wave comes back with its own amplitude, and what is left of the error is images of the shortest waves.
 
 use std::f64::consts::{PI, TAU};
 
@@ -28,7 +28,7 @@ pub(super) const TILES: usize = 3;
 const FINEST_M: f64 = 0.5;
 const RATIO: f64 = 8.0;
 const LADDER: usize = 7;
-/// Periods in a tile's length between which it takes over from the next longer one.
+/// Periods in a tile's length between which the energy passes to it from the next longer one.
 const TAKEOVER: [f64; 2] = [4.0, 5.656_854_249_492_38];
 /// Fewest periods in a tile's length.
 pub(super) const LEAST_PERIODS: f64 = TAKEOVER[0];
@@ -36,10 +36,11 @@ pub(super) const LEAST_PERIODS: f64 = TAKEOVER[0];
 const MOST_PERIODS: i32 = 45;
 /// Turn of each tile against the next, rad: the golden angle.
 const TURN: f64 = 2.399_963_229_728_653;
-/// Values at each sample: height, displacement, velocity (vertical, then along the tile), acceleration likewise.
+/// Values at each sample: height, displacement along the tile's two axes, then velocity and acceleration, each first
+/// vertical and then along the two axes.
 pub(super) const VALUES: usize = 9;
 
-/// A pair of waves of a tile: the wave vector (x, y) and its opposite.
+/// A pair of waves of a tile: the wave vector (x, y), in periods along a side, and its opposite.
 #[derive(Clone, Copy, Debug)]
 struct WavePair {
     x: i32,
@@ -52,7 +53,7 @@ struct WavePair {
     amplitudes_m: [f64; 2],
 }
 
-/// Properties of all waves of a length: by x^2 + y^2.
+/// Properties of all waves of one length. Rings are indexed by x^2 + y^2.
 #[derive(Clone, Copy, Debug, Default)]
 struct WaveRing {
     k_per_m: f64,
@@ -266,7 +267,7 @@ impl WaveTile {
         }
     }
 
-    /// Returns the fields at a place, summed wave by wave: the truth that transforms and splines are held against.
+    /// Returns the fields at a place, summed wave by wave: the exact values for tests of transforms and splines.
     #[cfg(test)]
     pub fn direct(&self, place_m: DVec2, time_s: f64) -> [f64; VALUES] {
         let mut out = [0.0; VALUES];
@@ -294,7 +295,8 @@ pub(super) struct TileWork {
     transform: Transform,
     /// Pairs of real fields as real and imaginary parts.
     squares: [Vec<[Complex; SIDE]>; VALUES.div_ceil(2)],
-    /// Factor by periods along one side: 1 / sinc^4, so that the B-spline gives back a wave's own amplitude.
+    /// Factors, indexed by the periods along one side: 1 / sinc^4, so that the B-spline gives back a wave's own
+    /// amplitude.
     sharpening: Vec<f64>,
 }
 

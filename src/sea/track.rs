@@ -210,7 +210,8 @@ impl HullTrack {
         self.ended_s.is_none_or(|ended_s| time_s - ended_s < MOST_AGE_S)
     }
 
-    /// Writes the states of the hull at a time and before, from new to old, that raised waves which are still there.
+    /// Writes the states of the hull up to a time, from new to old, as far back as the waves that they raised are still
+    /// there.
     pub fn states(&self, time_s: f64, states: &mut Vec<TrackNode>) {
         states.clear();
         let last_s = self.ended_s.map_or(time_s, |ended_s| ended_s.min(time_s));

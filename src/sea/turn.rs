@@ -10,7 +10,8 @@ pub(super) fn fraction(x: f64) -> f64 {
     x - ((x + ROUNDER) - ROUNDER)
 }
 
-/// Returns the sine of 2 pi `quarter`, within \[-0.25, 0.25\]: Taylor's series to the power 15, within 7e-12.
+/// Returns the sine of 2 pi `quarter`, for `quarter` within \[-0.25, 0.25\]: Taylor's series to the power 15, with an
+/// error of at most 7e-12.
 #[inline(always)]
 fn sine(quarter: f64) -> f64 {
     let x = std::f64::consts::TAU * quarter;
@@ -30,13 +31,13 @@ pub(super) fn sin_cos(turns: f64) -> (f64, f64) {
     let u = fraction(turns);
     let size = u.abs();
     let rest = 0.5 - size;
-    // The sine is symmetric about a quarter turn; the cosine is the sine of what is missing to one.
+    // The sine is symmetric about a quarter turn. The cosine of an angle is the sine of a quarter turn less the angle.
     let folded = if size < rest { size } else { rest };
     (sine(folded.copysign(u)), sine(0.25 - size))
 }
 
-/// Returns the sine of 2 pi `quarter`, within \[-0.25, 0.25\]: the polynomial of power 9 with the least error, 4e-9
-/// before rounding.
+/// Returns the sine of 2 pi `quarter`, for `quarter` within \[-0.25, 0.25\]: the polynomial of power 9 with the least
+/// error, 4e-9 before rounding.
 #[inline(always)]
 fn sine_four(quarter: Vec4) -> Vec4 {
     let z = quarter * quarter;

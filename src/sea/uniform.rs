@@ -54,8 +54,8 @@ pub(super) struct SeaUniform {
     pub foam: FoamUniform,
 }
 
-/// Map around a camera: the camera-relative place (east, north, up) of the sea's level by the place on the map, as a
-/// Taylor series of second order. In a curved world its error is 0.03 mm at 1 km and 3 m at 50 km.
+/// Map around a camera: the camera-relative place (east, north, up) of the sea's level as a function of the place on
+/// the map, by a Taylor series of second order. In a curved world its error is 0.03 mm at 1 km and 3 m at 50 km.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SeaChart {
     /// Place below the camera.
@@ -63,7 +63,7 @@ pub(super) struct SeaChart {
     /// Derivatives to the east and to the north.
     pub east: DVec3,
     pub north: DVec3,
-    /// Half the second derivatives east east and north north, and that east north.
+    /// Second derivatives: half of that by east and east, that by east and north, half of that by north and north.
     pub bend: [DVec3; 3],
 }
 
@@ -93,7 +93,8 @@ impl SeaChart {
         }
     }
 
-    /// Returns the camera-relative place of a place on the map, m from the camera's.
+    /// Returns the camera-relative place of a place on the map. `m` is its offset in metres from the camera's place on
+    /// the map.
     pub fn at(&self, m: DVec2) -> DVec3 {
         let [xx, xy, yy] = self.bend;
         self.foot + self.east * m.x + self.north * m.y + xx * (m.x * m.x) + xy * (m.x * m.y) + yy * (m.y * m.y)
@@ -160,8 +161,8 @@ impl DrawnSea<'_> {
     }
 
     /// Returns the covariances of all slopes, and the variance of those that are drawn. Ripples that are too short to
-    /// be drawn have what the drawn ones lack of the sea's mean square slope, in the proportions of Cox and Munk (1954)
-    /// along and across the wind.
+    /// be drawn have the rest of the sea's mean square slope, in the proportions of Cox and Munk (1954) along and
+    /// across the wind.
     fn slopes(&self) -> [f32; 4] {
         let [xx, xy, yy] = self.sums.slopes;
         let drawn = xx + yy;
@@ -175,7 +176,7 @@ impl DrawnSea<'_> {
             .map(|v| v as f32)
     }
 
-    /// Returns the wind that the sea's mean square slope stands for, m/s (Cox and Munk 1954).
+    /// Returns the wind that gives the sea's mean square slope, m/s (Cox and Munk 1954).
     fn wind_m_s(&self) -> f64 {
         (self.statistics.mean_square_slope - 0.003).max(0.0) / 0.005_12
     }

@@ -20,9 +20,10 @@ use crate::{
     stage::{DepthAccess, DrawContext, DrawnEffect, Exchange, FrameContext, OpaqueDraw, Output, Outputs, Stages},
 };
 
-/// Greatest height above the sea from which it is drawn, m. From higher up the planet's ground stands for it.
+/// Greatest height above the sea from which it is drawn, m. From higher up the planet's ground is drawn instead.
 const MOST_HEIGHT_M: f64 = 1e5;
-/// Least distance from the camera at which waves are drawn, m: it keeps distances above 0 for a camera at the surface.
+/// Least height of the camera above the sea's level that drawing uses, m. It keeps distances above 0 for a camera at
+/// the surface.
 const LEAST_HEIGHT_M: f64 = 0.1;
 /// Greatest depth below the level from which the sea is drawn, m: that of a camera in a trough.
 const DEEPEST_TROUGH_M: f64 = 30.0;
@@ -103,7 +104,7 @@ impl SeaView {
         eye.blocks(shows, &mut self.blocks);
     }
 
-    /// Marks the blocks that regions or wakes may reach, and leaves out those without water.
+    /// Marks the blocks that regions or wakes may reach, and removes those without water.
     fn mark_blocks(&mut self) {
         if self.regions.list.is_empty() && self.wakes.list.is_empty() && self.is_open {
             return;
@@ -131,7 +132,7 @@ impl SeaView {
     ) -> Result<()> {
         let (now, world) = (context.now, context.world);
         let surface = held.surface(world, now.time_s)?;
-        // From below the surface is not drawn. In a harbour it is lower than on the open sea.
+        // The surface is not drawn from below. In a harbour its waves are lower than on the open sea.
         let water = held.water_at(now.eye, now.time_s).unwrap_or(WaterBody::OPEN);
         let water = WaterBody { lake: None, ..water };
         if surface.within(&water, eye.place_m, 0.0).height_m > now.scene.place.altitude_m {

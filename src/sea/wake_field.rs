@@ -1,15 +1,16 @@
 //! Waves of a hull along its track: the surface at a place.
 //!
 //! A hull raises waves at its bow and at its stern (Michell 1898, for parabolic waterlines and upright sides). A wave
-//! that left the track u seconds ago and is D away now has the phase -g u^2 / (4 D) (Cauchy and Poisson), and a place
-//! has the waves of those times for which that phase is stationary: where
+//! that left the track u seconds ago has the phase -g u^2 / (4 D) at a place at the distance D (Cauchy and Poisson).
+//! The place has the waves of those times for which this phase is stationary:
 //!
-//! S(u) = D^2 - u V . r / 2 = 0, with the velocity V of the hull then and the way r from there to the place.
+//! S(u) = D^2 - u V . r / 2 = 0. V is the velocity of the hull's bow or stern at that time, and r, of length D, the way
+//! from there to the place.
 //!
 //! On a straight track S is a parabola and its two zeros are Kelvin's diverging and transverse waves; where they meet
 //! is the cusp. On a turning track S is followed from node to node, so wakes bend as they do at sea: waves crowd on the
-//! inner side and part on the outer one. Near cusps the sum of both waves is Airy's function, here by its modulus and
-//! phase, within some percent (Ursell 1960 has the theory). Waves are those of deep water.
+//! inner side and part on the outer one. Near cusps the sum of both waves is Airy's function (Ursell 1960). It is
+//! computed from its modulus and phase within some percent. Waves are those of deep water.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -24,29 +25,33 @@ use crate::numerics::smoothstep;
 
 /// Froude numbers of the hull between which it begins to plane.
 const PLANING: [f64; 2] = [0.5, 0.9];
-/// Constant of the modulus of Airy's functions: pi^-1/2 (x + c)^-1/4 is that of Ai(0) at x = 0.
+/// Constant c of the modulus of Airy's functions, pi^-1/2 (x + c)^-1/4. With it the modulus is exact at x = 0.
 const MODULUS: f64 = 0.3987;
 /// Ai(0).
 const AIRY_0: f64 = 0.355_028_053_887_817;
-/// Phase of Airy's functions at 0 beyond that of their expansion, rad, and how fast it falls.
+/// Difference at x = 0 between the phase of Airy's functions and that of their asymptotic expansion, rad, and the rate
+/// at which the difference falls with x^(3/2).
 const PHASE: [f64; 2] = [-PI / 12.0, 2.2];
-/// Argument beyond a cusp from which on Ai counts as 0.
+/// Argument of Ai beyond a cusp above which Ai is taken as 0.
 const LAST_AIRY: f64 = 6.0;
-/// Ratios of the distance to that of a cusp between which what lies beyond cusps ends.
+/// Ratios of a place's distance to the distance of the cusp between which the waves beyond the cusp fade out.
 const BEYOND: [f64; 2] = [1.2, 1.6];
-/// Least second derivative of S, over that on a straight track, and the range in which cusps come and go.
+/// Least second derivative of S, as a ratio to that on a straight track, and the range of the ratio over which the
+/// waves beyond cusps fade in.
 const LEAST_BEND: f64 = 0.1;
 const CUSP_BENDS: [f64; 2] = [0.05, 0.3];
 /// Steepness a k that waves of a hull approach and do not pass: steeper ones break.
 const MOST_STEEPNESS: f64 = 0.3;
-/// Distance from a line, m, and difference of velocities, m/s, up to which a track is straight.
+/// Distance from a line, m, and difference of velocities, m/s, up to which a track is taken as straight.
 const STRAIGHT_M: f64 = 2e-3;
 const STRAIGHT_M_S: f64 = 1e-4;
-/// Lengths of the hull by which waves at their beginning count as farther away: the formulas hold far from the hull.
+/// Way, in lengths of the hull, by which the height of waves is computed as if they were farther away: the formulas
+/// hold far from the hull.
 const BEGINNING: f64 = 0.1;
 /// Speeds, m/s, between which a hull begins to raise waves.
 const SPEEDS_M_S: [f64; 2] = [0.7, 1.5];
-/// Steepnesses between which waves of a hull break before they are limited, and the foam of the steepest.
+/// Steepnesses between which waves of a hull begin to break, before [`MOST_STEEPNESS`] limits them, and the share of
+/// foam on the crests of the steepest.
 const BREAKS: [f64; 2] = [0.35, 1.0];
 const BROKEN_SHARE: f64 = 0.6;
 /// Foam of the hull's wash: its share astern, the time in which it fades to 1/e, s, its half width over the beam, and
@@ -77,7 +82,7 @@ pub(super) struct WakeState {
 }
 
 impl WakeState {
-    /// Returns the velocity of a place so far ahead of the middle, m/s.
+    /// Returns the velocity of the point of the hull `off_middle_m` ahead of its middle, m/s.
     fn velocity(&self, off_middle_m: f64) -> DVec2 {
         self.node.velocity() + self.node.ahead.perp() * (self.turn_rad_s * off_middle_m)
     }
@@ -118,7 +123,7 @@ impl EndState {
         }
     }
 
-    /// Returns S of a place and its slope by age; passages that meet in the state have the same.
+    /// Returns S of a place and its derivative by age. Both are equal for the two passages that meet in this state.
     fn s(&self, place_m: DVec2) -> [f64; 2] {
         let to_place = place_m - self.place_m;
         let along = self.velocity.dot(to_place);
@@ -169,13 +174,13 @@ impl Passage {
     fn new(newer: &EndState, older: &EndState) -> Self {
         let length_s = older.age_s - newer.age_s;
         let way = older.place_m - newer.place_m;
-        // By age places run astern.
+        // With growing age the places run astern.
         let [v, w] = [newer, older].map(|end| -end.velocity * length_s);
         let cubic = [newer.place_m, v, way * 3.0 - v * 2.0 - w, v + w - way * 2.0];
         Self { start_s: newer.age_s, length_s, cubic }
     }
 
-    /// Returns the source some seconds of age after the newer state.
+    /// Returns the source that is `past_s` seconds older than the newer state.
     fn at(&self, place_m: DVec2, past_s: f64) -> WakeSource {
         let h = self.length_s;
         let t = past_s / h;
@@ -201,11 +206,11 @@ impl Passage {
 enum WakeWave {
     Diverging,
     Transverse,
-    /// Part of the waves of a cusp that reaches beyond it.
+    /// Waves of a cusp at a place beyond the cusp.
     BeyondCusp,
 }
 
-/// Zeros and the least value of S in a half of a passage: ages after its beginning.
+/// Ages, s after the beginning of half a passage, at which S is 0 or has its least value.
 struct HalfPassage {
     zeros: [Option<f64>; 2],
     least: Option<f64>,
@@ -233,7 +238,7 @@ impl Wake {
     pub(super) fn fill(&mut self, track: &HullTrack, time_s: f64) {
         self.states.clear();
         self.states.reserve_exact(MOST_NODES);
-        // Nodes and a leg's own are joined before the oldest go.
+        // The track's nodes and those of its leg are joined before the oldest are dropped.
         self.nodes.clear();
         self.nodes.reserve_exact(2 * MOST_NODES);
         (self.hull, self.time_s) = (track.hull, time_s);
@@ -270,7 +275,7 @@ impl Wake {
         }
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for WakeState { node: state, .. } in &self.states {
-            // Energy spreads at half the hull's speed at most, to the sides by 0.36 of its way.
+            // Energy spreads at half the hull's speed at most, to the sides by at most 0.36 of the hull's way.
             let reach = 0.36 * state.speed_m_s * (self.time_s - state.time_s) + self.hull.length_m;
             low = low.min(state.place_m - reach);
             high = high.max(state.place_m + reach);
@@ -302,8 +307,8 @@ impl Wake {
             let mut first = newer.s(place_m);
             for older in ends {
                 let last = older.s(place_m);
-                // Where S is positive at both ends and does not fall towards the other, it has no zero and no least
-                // value between.
+                // If S is positive at both ends of a passage, it has a zero or a least value in between only if it
+                // falls at the first end and rises at the last.
                 if first[0] <= 0.0 || last[0] <= 0.0 || (first[1] < 0.0 && last[1] > 0.0) {
                     self.add_passage(&Passage::new(&newer, &older), [first, last], asked, sum);
                 }
@@ -370,7 +375,7 @@ impl Wake {
         let share = share * smoothstep(SPEEDS_M_S[0], SPEEDS_M_S[1], speed);
         let [s, slope, bend] = source.s;
         let is_beyond = wave == WakeWave::BeyondCusp;
-        // What lies beyond a cusp has the waves of the cusp, which is as far away as it would be if S were 0.
+        // A place beyond a cusp has the waves of the cusp. The cusp is at the distance at which S would be 0.
         let far = if is_beyond { (distance * distance - s).max(1e-12).sqrt() } else { distance };
         let cosine = (2.0 * far / (speed * u)).clamp(1e-3, 1.0);
         let factor = g * u / (2.0 * far * far * far);
@@ -395,7 +400,8 @@ impl Wake {
             let argument = second * second / (4.0 * four_thirds);
             let later = PHASE[0] / (1.0 + PHASE[1] * argument * argument.sqrt());
             let turned = if wave == WakeWave::Diverging { FRAC_PI_4 - later } else { later - FRAC_PI_4 };
-            // The zero was found on a parabola; the phase is stationary there.
+            // The zero was found on a parabola, so that S is not quite 0. The phase is stationary there, and its
+            // correction is of second order in S.
             let left = 0.5 * factor * s * s * slope / (slope * slope + 1e-6 * speed2 * speed2 * u * u);
             let size = size / (0.25 * second * second + MODULUS * four_thirds).sqrt().sqrt();
             (size, exact + left.clamp(-0.5, 0.5) + turned)
@@ -407,8 +413,8 @@ impl Wake {
         Some(WaveShape { k, amplitude_m: amplitude_m * limit, phase, raw_steepness })
     }
 
-    /// Returns the wave number, rad/m, of waves whose direction has a cosine with the course, and their amplitude as a
-    /// complex number, m, before they spread (Michell 1898).
+    /// Returns the wave number, rad/m, of waves whose direction has the given cosine with the course, and their
+    /// amplitude before they spread, m, as a complex number (Michell 1898).
     fn raised(&self, speed: f64, cosine: f64, end: HullEnd) -> (f64, DVec2) {
         let hull = &self.hull;
         let along = GRAVITY_M_S2 / (speed * speed * cosine);

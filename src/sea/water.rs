@@ -82,9 +82,9 @@ pub fn mean_reflectance(cos_view: f64, mean_square: f64, index: f64) -> f64 {
     reflectance_by_steps((cos_view, 0.5 * mean_square), index, 48)
 }
 
-/// Returns the mean reflectance for the variance of slopes along one axis, by so many pairs of steps over 6 deviations
-/// both ways: along the view by Simpson's rule, up to where facets turn away from the eye; across by trapezoids, which
-/// converge like exponentials for such integrands.
+/// Returns the mean reflectance for the variance of slopes along one axis, integrated over 6 deviations both ways.
+/// Along the view it takes `steps` pairs of steps by Simpson's rule, up to where facets turn away from the eye. Across
+/// the view it takes `steps` trapezoids on one side, which converge like exponentials for such integrands.
 fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32) -> f64 {
     let cos = cos_view.clamp(0.0, 1.0);
     let sin = (1.0 - cos * cos).sqrt();
@@ -133,10 +133,10 @@ const PURE_ATTENUATION_PER_M: [f64; 3] = [0.0168, 0.0607, 0.342];
 const ATTENUATED_NM: [f64; 3] = [450.0, 550.0, 650.0];
 
 /// Returns how bright a body of deep water is, seen from straight above, over the light that enters it, at 450, 550 and
-/// 650 nm, for its diffuse attenuation, 1/m. Below the surface the reflectance is 0.33 b / a (Morel and Prieur 1977)
-/// with b what water and particles scatter back and a the absorption. Particles follow from the attenuation of blue
-/// light over that of pure water by way of chlorophyll: K - Kw = 0.11 C^0.67, and they scatter 0.416 C^0.766 (0.002 +
-/// 0.01 (0.5 - 0.25 log C)) back (Morel and Maritorena 2001).
+/// 650 nm, for its diffuse attenuation, 1/m. Below the surface the reflectance is 0.33 b / a (Morel and Prieur 1977).
+/// Here b is the light that water and particles scatter back, and a the absorption. The attenuation K of blue light and
+/// that of pure water, Kw, give the chlorophyll C by K - Kw = 0.11 C^0.67. Particles then scatter back 0.416 C^0.766
+/// (0.002 + 0.01 (0.5 - 0.25 log C)) (Morel and Maritorena 2001).
 pub(super) fn body_reflectance(attenuation_per_m: [f64; 3], index: f64) -> [f64; 3] {
     let green_blue = (attenuation_per_m[0] - PURE_ATTENUATION_PER_M[0]).max(1e-4) / 0.11;
     let chlorophyll = libm::pow(green_blue, 1.0 / 0.67).clamp(0.01, 10.0);

@@ -104,7 +104,7 @@ mod tests {
                 for sine in [-0.01, -0.002, 0.0, 0.004, 0.01, 0.03, 0.1, 0.19, 0.21, 0.5, 0.9, 0.999] {
                     let depth = DiscDepth::new(&air, altitude_m, sine, radius);
                     for k in -10..=10 {
-                        // Refraction lifts it near the horizon.
+                        // Refraction lifts the disc near the horizon.
                         let lift = if sine < 0.03 { 0.009 } else { 0.0 };
                         let seen: f64 = sine + lift + radius * f64::from(k) / 10.0;
                         if !(0.0..=1.0).contains(&seen) {

@@ -1,4 +1,4 @@
-//! Tables of the sky that follow the weather's air. They are built in parts, at most one part a frame for all views.
+//! Tables of the sky that follow the weather's air. They are built in steps, at most one step a frame for all views.
 
 use std::{
     ops::{Deref, DerefMut},
@@ -16,7 +16,7 @@ pub(crate) struct FollowedSky {
     cache: Option<PathBuf>,
     /// First planet, until its tables are in the cache.
     first: Option<Planet>,
-    /// Frame of the last part of a build.
+    /// Frame in which the last step of a build was done.
     frame_id: Option<u64>,
     /// Light that was read back, and the revision of the tables that it belongs to.
     light: Option<(u64, Arc<LightTable>)>,
@@ -44,7 +44,7 @@ impl FollowedSky {
         self.cache.clone()
     }
 
-    /// Changes the settings. Nothing is shown until the next call, as for new tables.
+    /// Changes the settings. Nothing is shown until the next build, as for new tables.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the setting; GPU faults. Nothing changes then.

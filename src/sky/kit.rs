@@ -1,8 +1,8 @@
 //! Resources that all tables of one device with the same settings share: pipelines, builds in progress, and the
 //! finished tables of every planet that is still shown.
 //!
-//! A planet is built once for all who request it: a later request joins the build or takes the finished tables. Each
-//! part of a build is submitted separately under the kit's lock, so that parts reach the queue in order, whichever
+//! A planet is built once for all who request it: a later request joins the build or takes the finished tables. A build
+//! takes several submissions. Each is made under the kit's lock, so that they reach the queue in order, whichever
 //! frames they belong to. The kit does not keep tables alive; they are freed when nobody shows them any more.
 
 mod empty_set;
@@ -23,7 +23,7 @@ use super::settings::{SkyModel, SkySettings};
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
 
-/// Kits of a device, one for each setting in use. Any thread.
+/// Kits of a device, one for each [`SkySettings`] in use. Any thread.
 #[derive(Default)]
 pub struct SkyLibrary {
     kits: Mutex<Vec<Weak<Kit>>>,
@@ -90,7 +90,7 @@ struct Build {
     triples: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
     /// Bind group of the tables that each pass reads.
     reads: Vec<wgpu::BindGroup>,
-    /// Number of strips done, over all triples.
+    /// Number of strips submitted, over all triples.
     next: usize,
 }
 
@@ -118,7 +118,8 @@ pub(crate) struct BuildStep {
     pub done: f64,
 }
 
-/// Pipelines and builds for one setting on one device. Any thread; its lock must be the last that a thread takes.
+/// Pipelines and builds for one [`SkySettings`] on one device. Any thread; its lock must be the last that a thread
+/// takes.
 pub(crate) struct Kit {
     pub device: Arc<Device>,
     pub settings: SkySettings,
@@ -136,7 +137,7 @@ pub(crate) struct Kit {
     draft: Option<Level>,
     /// Pass that adds up triples, where there are several.
     parts: Option<PartPass>,
-    /// Whether the first texel has been drawn.
+    /// Whether the test of the first texel has passed (`first.rs`).
     begun: AtomicBool,
     work: Mutex<BuildQueue>,
 }
@@ -388,9 +389,9 @@ impl Kit {
     }
 
     /// Returns the tables of a checked planet: those that someone shows, those from the cache's file, or new ones. New
-    /// ones are built in sixteen parts, with a wait for the GPU after each, and then written to the cache. The host's
-    /// context is entered for each part and left during each call of `progress`, which gets the share done. The build
-    /// ends if `progress` returns false.
+    /// ones are built in sixteen steps, with a wait for the GPU after each, and then written to the cache. The host's
+    /// OpenGL context is entered for each step and left during each call of `progress`, which gets the share done. The
+    /// build ends if `progress` returns false.
     pub fn build(
         &self,
         planet: &Planet,

@@ -140,11 +140,11 @@ pub struct Observer {
     pub lamps: [Option<Lamp>; 2],
     /// Strength of refraction for the discs, as a share of the standard one, `[0, 1]`.
     pub refraction: f64,
-    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while two
+    /// Whether the tables follow every change of altitude and sun, however small. Otherwise they are kept while both
     /// changes are small. The sine of each lamp's elevation may change by 2e-5, or by 2e-4 in a frame that works on the
-    /// planet's tables. The altitude may change by 0.2 % and 1 cm; and, if that is more, by a thousandth of the air's
-    /// smallest scale height (1.2 m in clear air), but by no more than 30 % of the altitude and 5 cm. Kept tables are
-    /// off by at most 0.4 % by day, and 0.9 % at dusk near the horizon.
+    /// planet's tables. The altitude may change by the larger of two values. One is 0.2 % of the altitude plus 1 cm.
+    /// The other is a thousandth of the air's smallest scale height (1.2 m in clear air), but at most 30 % of the
+    /// altitude plus 5 cm. Kept tables are off by at most 0.4 % by day, and 0.9 % at dusk near the horizon.
     pub exact: bool,
 }
 

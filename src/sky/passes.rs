@@ -94,7 +94,7 @@ pub(crate) fn linear_sampler(device: &Device) -> wgpu::Sampler {
     })
 }
 
-/// Pipelines, layouts and sampler that all builds of one setting share.
+/// Pipelines, layouts and sampler that all builds with the same [`SkySettings`] share.
 pub(crate) struct Builder {
     shared_layout: wgpu::BindGroupLayout,
     tables_layout: wgpu::BindGroupLayout,
@@ -223,7 +223,8 @@ impl FadePasses {
         bind(device, &self.layout, &[tex(table)])
     }
 
-    /// Draws the light of `first` into `target`, and blends the light of `other` over it with the share given there.
+    /// Draws the light of `first` into `target`, and blends the light of `other` over it with the share that `other`
+    /// gives.
     pub fn show_light(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -81,7 +81,7 @@ impl Probe {
     /// Creates a probe and builds the tables of `planet`.
     ///
     /// # Errors
-    /// Fails for settings or a planet out of range, and for GPU faults.
+    /// [`crate::Status::InvalidArgument`] for settings or a planet out of range; GPU faults.
     pub fn new(device: &std::sync::Arc<Device>, settings: &SkySettings, planet: &Planet) -> Result<Self> {
         let mut tables = SkyTables::new(device, settings)?;
         let mut encoder = device.device.create_command_encoder(&Default::default());

@@ -15,7 +15,7 @@ pub(crate) enum PassKind {
     Once,
 }
 
-/// Tables of a build. `Sources`, `Lights` and the two `Once` are its results.
+/// Tables of a build. `Sources`, `Lights`, `OnceGas` and `OnceHaze` are its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Name {
     Nothing,
@@ -90,7 +90,7 @@ pub(crate) struct Pass {
     pub kind: PassKind,
     /// Order that is gathered.
     pub order: u32,
-    /// Whether the orders after it are added as a geometric series.
+    /// Whether the orders after this one are added as a geometric series.
     pub last: bool,
     /// Tables that the pass reads: sources, radiances, light, sum of sources, sum of light, norms, as `sky/build.wgsl`
     /// binds them.

@@ -63,8 +63,8 @@ pub struct SkySettings {
     /// Number of wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`. The default, 3, are the
     /// planet's own. More wavelengths are spread over the visible range, and combined into three values at the planet's
     /// wavelengths that give the same colour (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]).
-    /// Colours are then right where three wavelengths are too few, but the build takes that many times as long. See
-    /// [`crate::sky`] for errors and costs.
+    /// Colours are then right where three wavelengths are too few, but the time of a build grows in proportion to their
+    /// number. See [`crate::sky`] for errors and costs.
     pub wavelengths: u32,
     /// Number of scattering orders that are computed one by one, `[3, 16]`, default 5. Higher orders are added as a
     /// geometric series.

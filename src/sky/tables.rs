@@ -1,4 +1,4 @@
-//! Tables over a planet as one simulator shows them. They are built at once or in parts, and follow a change of the
+//! Tables over a planet as one simulator shows them. They are built at once or in steps, and follow a change of the
 //! planet's air without a jump.
 
 use std::path::Path;
@@ -50,9 +50,9 @@ struct TablesFade {
 /// Weight at which a fade ends.
 #[derive(Clone, Copy)]
 enum FadeTo {
-    /// All of the tables to show next.
+    /// Weight 1: only the tables to show next are then shown.
     End,
-    /// The place of the present air between both tables.
+    /// Weight by the place of the present air between the airs of both tables.
     Air,
 }
 
@@ -63,21 +63,21 @@ enum State {
     /// Build of the tables to show next, and the number of calls since it began.
     Building(Arc<Ticket>, u32),
     /// Fade to the tables to show next. Their weight is 0 in the call in which observers draw them for the first time,
-    /// and while the air has not yet left that of the shown tables.
+    /// and while the present air is still that of the shown tables.
     Fading(TablesFade),
     /// Tables that the last call has finished.
     Built(Arc<TableSet>),
 }
 
-/// One call in this many does not continue the build. In that call observers draw their own tables for the sun and
-/// altitude of the moment.
+/// One call in this many does not continue the build. In that call observers draw their own tables for the present sun
+/// and altitude.
 const REST: u32 = 8;
 /// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
-/// Largest step of the weight per call while the air changes. It spreads over several calls the change that took place
-/// during a build.
+/// Largest step of the weight per call while the air changes. A change that took place during a build is thereby spread
+/// over several calls.
 const ALONG: f32 = 1.0 / 64.0;
-/// Share done from which a build is never abandoned for another planet.
+/// Smallest finished share at which a build is no longer abandoned for another planet.
 const KEPT_FROM: f64 = 0.5;
 /// Change of the weight that is too small to draw.
 const UNSEEN_SHARE: f32 = 1e-4;
@@ -299,7 +299,8 @@ impl SkyTables {
     }
 
     /// Continues a fade. A fade that follows the air ends when the air rests or changes in another direction. From then
-    /// on the mix of that moment is shown; a mix of draft and whole tables instead fades to its end.
+    /// on the mix reached so far is shown. A mix of draft and whole tables instead fades on until the tables to show
+    /// next are shown alone.
     fn fade(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -354,8 +355,8 @@ impl SkyTables {
     }
 
     /// Light of the sky as it is shown, over altitudes and sun angles. The first call after a build reads it back,
-    /// which waits for the GPU; later calls, and all look-ups in the result, do not wait. It is dark before the first
-    /// planet is shown.
+    /// which waits for the GPU; later calls, and all look-ups in the result, do not wait. The light is dark before the
+    /// first planet is shown.
     ///
     /// # Errors
     /// GPU faults.
@@ -370,9 +371,9 @@ impl SkyTables {
         })
     }
 
-    /// Builds and shows the tables of `planet` now, in sixteen parts with a wait for the GPU after each; or reads them
+    /// Builds and shows the tables of `planet` now, in sixteen steps with a wait for the GPU after each; or reads them
     /// from the directory `cache`, in which new tables are kept afterwards. `progress` gets the share done after each
-    /// part. If it returns false the build ends, and what was shown before stays. If a file of the cache is damaged or
+    /// step. If it returns false the build ends, and what was shown before stays. If a file of the cache is damaged or
     /// cannot be written, this is logged, and the tables are built and shown all the same.
     ///
     /// # Errors

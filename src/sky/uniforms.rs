@@ -6,7 +6,8 @@ use super::Planet;
 use super::reference::medium::Medium;
 use super::settings::SkySettings;
 use crate::planet::spectral::SpectralTriple;
-/// Factor on the values of the table of light.
+/// Factor by which the texels of the light table are larger than the light that they store. Twin of `LIGHT_SCALE` of
+/// `sky/build.wgsl` and `SKY_LIGHT_SCALE` of `sky/lookup.wgsl`.
 pub(crate) const LIGHT_SCALE: f32 = 4096.0;
 
 /// Mirrors `SkyAir` of `sky/air.wgsl`.
@@ -74,7 +75,7 @@ impl AirUniform {
         }
     }
 
-    /// Converts the air to the medium that the reference integrates.
+    /// Converts the air to a [`Medium`], the form that the functions of the f64 reference take.
     pub fn medium(&self) -> Medium {
         let f = |v: [f32; 3]| v.map(f64::from);
         Medium {
@@ -88,7 +89,8 @@ impl AirUniform {
         }
     }
 
-    /// Airs of all triples of wavelengths of a set.
+    /// Returns an air for each of `parts`, the triples of a set of wavelengths. Its `part_a`, `part_b` and `part_c` are
+    /// the triple's columns, `layer` is the triple's index, and `layers` the number of triples.
     pub fn of_parts(parts: &[SpectralTriple]) -> Vec<Self> {
         let one = |(layer, part): (usize, &SpectralTriple)| {
             let [part_a, part_b, part_c] = part.columns.map(|c| c.map(|v| v as f32));
@@ -98,7 +100,8 @@ impl AirUniform {
         parts.iter().enumerate().map(one).collect()
     }
 
-    /// Interpolates between two airs, for look-ups during a fade of the tables.
+    /// Interpolates between this air and `other`, whose weight is `t`. Look-ups use the result while the tables of one
+    /// planet fade to those of another.
     pub fn mix(&self, other: &Self, t: f32) -> Self {
         let a: [f32; 36] = bytemuck::cast(*self);
         let b: [f32; 36] = bytemuck::cast(*other);

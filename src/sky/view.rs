@@ -143,7 +143,7 @@ impl Observer {
     }
 }
 
-/// Sine of the angle below the horizon below which nothing of the moon's disc is visible.
+/// Sine of the depth under the horizon at which nothing of the moon's disc is visible any more.
 const BELOW_HORIZON: f64 = 0.02;
 
 /// Whether the moon's disc may be above the horizon.
@@ -153,7 +153,8 @@ fn moon_shows(scene: &Scene) -> bool {
     scene.moon.matters || scene.moon.apparent.z > horizon - BELOW_HORIZON
 }
 
-/// Direction of the sun as seen from the moon's face: in the plane of the moon and its bright limb, at the phase angle.
+/// Direction of the sun as seen from the moon's face. It lies in the plane of the directions to the moon and to its
+/// bright limb, at the phase angle.
 fn moon_lit_from(moon: &Light) -> DVec3 {
     let cos_phase = (2.0 * moon.lit - 1.0).clamp(-1.0, 1.0);
     let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();

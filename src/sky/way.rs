@@ -2,18 +2,19 @@
 
 use crate::planet::{FIELDS, Planet};
 
-/// Relative change of optical depth above which two planets are far apart: a draft for one then has a smaller error
-/// than the whole tables of the other.
+/// Relative change of optical depth above which two planets are far apart. A draft for one (small tables that are
+/// quickly built) then has a smaller error than the whole tables of the other.
 const FAR: f64 = 0.03;
 /// Change of the ground's albedo above which two planets are far apart.
 const FAR_ALBEDO: f64 = 0.1;
 /// Count of the numbers that the air's light depends on.
 const NUMBERS: usize = 15;
 /// Largest distance of a planet from the way between two others, as a share of the way's length, at which a mix of
-/// their tables may still be used for it. A distance of 1, in units of a far change, is allowed on a way of any length.
+/// their tables may still be used for it. A distance of 1, in far changes (see [`units`]), is allowed on a way of any
+/// length.
 const BESIDE: f64 = 0.5;
 
-/// Length of light's way through the air, in vertical depths, for which a mix of two tables is right.
+/// Length of light's slanted path through the air, in vertical depths, for which a mix of two tables is right.
 /// `changing_air` prints the errors of the mix.
 const SLANT: f64 = 2.0;
 
@@ -50,8 +51,8 @@ pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceO
 /// Weights of the tables at the two ends of a way from one air to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightWay {
-    /// Change of the vertical optical depth over the way, times [`SLANT`]; clamped to ±40, beyond which the weights no
-    /// longer change.
+    /// Change of the vertical optical depth over the way, times [`SLANT`], clamped to ±40. A larger change would alter
+    /// only the weights near the clearer end.
     depth: f64,
 }
 
@@ -89,7 +90,8 @@ pub(super) fn between(start: &Planet, end: &Planet, share: f64) -> Planet {
     planet
 }
 
-/// Whether two planets differ so much that a draft for one has a smaller error than the whole tables of the other.
+/// Whether two planets differ so much that a draft (see [`FAR`]) for one has a smaller error than the whole tables of
+/// the other.
 pub(super) fn is_far(a: &Planet, b: &Planet) -> bool {
     let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     let (difference, unit) = (differences(a, b), units(a, b));

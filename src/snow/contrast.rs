@@ -29,8 +29,8 @@ use crate::{
 /// Number of panels of the sum over distances, which are evenly spaced in their logarithm.
 const PANELS: usize = 24;
 
-/// Returns the variance from pixel to pixel of the share that flakes cover. `pixel_angle` is the angle of a pixel, rad;
-/// `along_m` is the motion of flakes across the line of sight during the exposure, m.
+/// Returns the variance from pixel to pixel of the share of a pixel that flakes cover. `pixel_angle` is the angle of a
+/// pixel, rad; `along_m` is the motion of flakes across the line of sight during the exposure, m.
 pub fn cover_variance(flakes: &Flakes, pixel_angle: f64, along_m: f64) -> f64 {
     let step = libm::log(flakes.reach_m().max(NEAREST_M) / NEAREST_M) / PANELS as f64;
     let at = |panel: usize| {

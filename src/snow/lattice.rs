@@ -4,11 +4,11 @@
 //! A shell is a cube of side L full of flakes, repeated in all directions; each flake is drawn at the copy nearest to
 //! the camera. Places, falls and turns are fractions in 32 bits and wrap as the lattice does
 //! (`src/falling/lattice.rs`): place = random(seed, shell, class, index) + displacement of the air - speed x fall
-//! phase. The fall phase is the distance fallen at a speed of one unit; the last term counts for the height only. The
-//! helix adds a horizontal offset at the angle random + turns x turn phase. The turn phase is the angle turned at a
-//! rate of one unit. Speeds and turns are integer multiples of [`SPEED_UNIT`] and [`TURN_UNIT`], and therefore exact at
-//! any time. Within a class each flake has its own speed and turns, up to an eighth faster or slower: the measured
-//! speeds of flakes of one size scatter by as much about the laws of Locatelli and Hobbs.
+//! phase. The fall phase is the distance fallen at a speed of one unit; the last term of the sum applies to the height
+//! only. The helix adds a horizontal offset at the angle random + turns x turn phase. The turn phase is the angle
+//! turned at a rate of one unit. Speeds and turns are integer multiples of [`SPEED_UNIT`] and [`TURN_UNIT`], and
+//! therefore exact at any time. Within a class each flake has its own speed and turns, up to an eighth faster or
+//! slower: the measured speeds of flakes of one size scatter by as much about the laws of Locatelli and Hobbs.
 //!
 //! Each shell is twice as wide as the one before. If a shell has no room for all its flakes, it draws some that stand
 //! for others. The numbers per class are chosen so that every drawn flake, with the flakes for which it stands, covers
@@ -41,7 +41,7 @@ pub const TURN_UNIT: f64 = 1.0 / 256.0;
 pub const FADE: f64 = 0.85;
 /// Distance below which flakes fade out towards the camera, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
 pub const NEAREST_M: f64 = 0.3;
-/// Largest ratio of the variance of drawn flakes to that of all flakes up to which a shell is drawn.
+/// Largest ratio, at which a shell is still drawn, of the variance of the drawn flakes' cover to that of all flakes.
 const MOST_NOISE: f64 = 3.0;
 /// Offset that gives flakes other random numbers than drops: `SALT` of `shaders/snow/flakes.wgsl`.
 pub(super) const SALT: u32 = 0x5e0_0000;
@@ -195,8 +195,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Creates the moment of `shell` after the air has moved by `displacement_m`, (east, north, up), and flakes have
-    /// fallen for `time_s`.
+    /// Creates the displacement and the turn for `shell` after the air has moved by `displacement_m`, (east, north,
+    /// up), and flakes have fallen for `time_s`.
     pub fn new(shell: usize, displacement_m: DVec3, time_s: f64) -> Self {
         let side = side_m(shell);
         Self {
@@ -224,7 +224,7 @@ pub struct Flake {
     pub diameter_m: f64,
     /// Share of the flake that its shell shows at this distance, 0 to 1.
     pub share: f64,
-    /// Number of flakes that it stands for.
+    /// Number of flakes that the drawn flake represents.
     pub weight: f64,
 }
 
@@ -240,7 +240,7 @@ fn own(random: [u32; 3], class: &[f32; 4]) -> (u32, u32, u32) {
     (scattered(class[1] as u32, random[0]), turns, random[2] << 16)
 }
 
-/// Returns the share of its flakes that `shell` shows at `distance_m`.
+/// Returns the share of each flake of `shell` that is shown at `distance_m`, 0 to 1.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);
@@ -252,8 +252,8 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     inner * outer
 }
 
-/// Returns all flakes as seen by a camera at `position_m` (east, north, up of a point fixed to the world), after the
-/// air has moved by `displacement_m` in `time_s`. Two cameras see the same flake under the same id. F64 twin of
+/// Returns all flakes as seen by a camera at `position_m` (east, north and up from a point fixed to the world), after
+/// the air has moved by `displacement_m` in `time_s`. Two cameras see the same flake under the same id. F64 twin of
 /// `flake_of` in `shaders/snow/flakes.wgsl`.
 pub fn flakes(
     flakes: &Flakes,

@@ -7,8 +7,8 @@
 //! and moves by less than its own width during the exposure shows its shape. Other flakes are discs or streaks, whose
 //! opacity is their share of ice. A flake smaller than a pixel gets fainter instead of smaller. Flakes are lit by the
 //! sky, the ground, the sun or moon and lamps, with the phase function of ice ([`mod@reference`]). They are drawn into
-//! the layer that rain and snow share. The host's depth hides flakes behind objects, and none fall under its shelters
-//! and occluder maps.
+//! the layer that rain and snow share. The host's depth hides flakes behind objects, and none fall under the host's
+//! shelters and occluder maps.
 //!
 //! *Near and far*: the fog's layer contains the extinction of all snow. Within the flakes' reach, the extinction of the
 //! drawn flakes is subtracted from it. So neither the mean nor the visibility depends on how many flakes are drawn.

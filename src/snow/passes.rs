@@ -56,7 +56,7 @@ pub(super) struct SnowPass {
     step: Option<Box<StepPass>>,
     /// Placeholder for a missing depth.
     none: wgpu::TextureView,
-    /// Depth of the bind group of group 0, and the group.
+    /// Depth to which the bind group of group 0 refers, and the bind group.
     bound: Option<(Option<KeptLayer>, wgpu::BindGroup)>,
     /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,

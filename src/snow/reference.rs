@@ -19,9 +19,10 @@ pub fn flake_phase(c: f64) -> f64 {
     (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5)
 }
 
-/// Returns the share of light from above the horizon in the light that a flake scatters along a ray whose sine of
-/// elevation is `z`: the integral of [`flake_phase`] over the upper hemisphere. Its Legendre series is `1/2 + (3/4) g z
-/// - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2; the terms up to P3 are within 0.02 of the integral.
+/// Returns the weight of the sky, against the ground, in the light of a flake that is seen along a ray whose sine of
+/// elevation is `z`: the integral of [`flake_phase`] over the upper hemisphere, divided by 4 pi. Its Legendre series is
+/// `1/2 + (3/4) g z - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2; the terms up to P3 are within 0.02 of the
+/// quotient.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }

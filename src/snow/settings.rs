@@ -8,18 +8,18 @@ use crate::{
 /// Method by which a view draws snow. It does not change the snowfall itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SnowModel {
-    /// Flakes near the camera. Under a budget ([`crate::plan`]) they are left out if the picture changes little without
-    /// them.
+    /// Flakes near the camera. Under a budget ([`crate::plan`]) the flakes are left out if the picture changes little
+    /// without them.
     #[default]
     Automatic,
-    /// No flakes: all snow is extinction. Costs nothing in addition to the fog.
+    /// No flakes: all snow is extinction. This costs nothing in addition to the fog.
     Veil,
     /// Flakes, under any budget.
     Flakes,
 }
 
-/// Settings by which a view draws falling snow. They change only how many flakes are drawn: neither the snowfall itself
-/// nor the place of any flake.
+/// Settings by which a view draws falling snow. They change how many flakes are drawn and how long their streaks are,
+/// but neither the snowfall itself nor the place of any flake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnowSettings {
     /// Method by which snow is drawn.
@@ -28,9 +28,9 @@ pub struct SnowSettings {
     /// number are represented by drawn flakes or left to the veil. `None`, the default: 1 000 000, or 60 000 on a
     /// software driver.
     pub most_flakes: Option<u32>,
-    /// Exposure time of the picture, s, [1e-4, 0.1]. Flakes that move by more than their size in it are streaks.
-    /// Default 1/250: short enough to show the shapes of flakes in a light wind, which an eye sees because it follows
-    /// them.
+    /// Exposure time of the picture, s, [1e-4, 0.1]. Flakes that move by more than their size during the exposure are
+    /// streaks. Default 1/250: short enough to show the shapes of flakes in a light wind. A person sees these shapes
+    /// because the eye follows the flakes.
     pub shutter_s: f64,
 }
 

@@ -58,7 +58,7 @@ pub(super) struct MassExchange {
 pub(super) struct ColumnForcing {
     /// Ice that falls, in units of mass.
     ice: i64,
-    /// Depth of that ice as it lands, in units of depth.
+    /// Depth of the ice that falls, as it lands, in units of depth.
     depth: i64,
     /// Share of the difference to the albedo of new snow that the snowfall removes, 0 to 1.
     renewed: f64,
@@ -103,8 +103,8 @@ fn units(amount: f64) -> i64 {
     (amount * UNITS).round() as i64
 }
 
-/// Returns `number` x `part` / `whole`, rounded down. Its error as a floating-point number is harmless for depths,
-/// which enter no balance.
+/// Returns `number` x `part` / `whole`, rounded down. The rounding error of the floating-point product is harmless for
+/// depths, which enter no balance.
 fn share(number: i64, part: i64, whole: i64) -> i64 {
     (number as f64 * (part as f64 / whole as f64)) as i64
 }
@@ -275,8 +275,8 @@ impl Column {
         lost
     }
 
-    /// Adds snow from another column. `albedo` is that column's, in units; the column's albedo becomes the mean by
-    /// mass.
+    /// Adds snow from another column. `albedo` is the albedo of the other column, in units. The albedo of this column
+    /// becomes the mean by mass.
     pub fn add(&mut self, part: SnowParcel, albedo: i64) {
         let mass = self.mass() + part.mass();
         if mass > 0 && part.mass() > 0 {

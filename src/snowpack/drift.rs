@@ -4,19 +4,20 @@
 //! mean wind count as 0. Otherwise the surface's shape changes the mean wind by the factor 1 + 0.58 s + 2 H / L. s is
 //! the slope along the wind, positive where it faces the wind (Liston and Elder 2006). H is the height of a crest and L
 //! its half-width at half the height; in a hollow H is negative (Jackson and Hunt 1975). Behind an obstacle the wind is
-//! calmed below a line that falls by 1 in [`LEE_RUN`] from its top: the idea of Winstral and Marks (2002), with the
-//! length of drifts behind solid fences (Tabler 2003). In front of an obstacle of height H a line rises to its top with
-//! the same slope. At the depth d below this line the wind is multiplied by 1 - [`CALMED`] (d / H)^4: it loses a tenth
-//! at five heights before a wall and three fifths at one height. The drift there ends up half as high as the wall, as
-//! is found on the windward side of fences (Tabler 1980, J. Glaciol. 26, 405).
+//! calmed below a line that falls by 1 in [`LEE_RUN`] from the obstacle's top: the idea of Winstral and Marks (2002),
+//! with the length of drifts behind solid fences (Tabler 2003). In front of an obstacle of height H a line rises to its
+//! top with the same slope. At the depth d below this line the wind is multiplied by 1 - [`CALMED`] (d / H)^4: it loses
+//! a tenth at five heights before a wall and three fifths at one height. The drift there ends up half as high as the
+//! wall, as is found on the windward side of fences (Tabler 1980, J. Glaciol. 26, 405).
 //!
 //! **Transport.** Along the wind the flux Q approaches the capacity Qc of the wind: dQ/dx = (Qc - Q) / L. L is
 //! [`ERODING_M`] if Q < Qc and there is loose snow, and [`LANDING_M`] if Q > Qc. One sweep down the wind solves this
 //! for a whole step, of any length and with cells of any size. Snow that leaves a cell enters the next ones, and snow
-//! that leaves the last ones is blown out. The country around the field supplies as much as its own snow yields.
-//! Saltating ([`saltation_kg_m_s`]) and suspended snow ([`suspension_kg_m_s`]) are carried separately: suspended snow
-//! grows over [`LIFTING_M`] and lands over [`SINKING_M`], so it reaches farther into a lee. Their capacities are the
-//! fluxes that these functions return.
+//! that leaves the last ones is blown out. The country around the field supplies the full capacity of the mean wind if
+//! that wind can move the country's snow, else nothing. Saltating ([`saltation_kg_m_s`]) and suspended snow
+//! ([`suspension_kg_m_s`]) are carried separately: suspended snow grows over [`LIFTING_M`] and lands over
+//! [`SINKING_M`], so it reaches farther into a lee. The capacities of both are the fluxes that these two functions
+//! return.
 //!
 //! The sweep goes from patch to patch down the wind as it does from cell to cell: the snow that leaves the last cells
 //! of one patch, and the lee's line over them, enter the next. Patches are left out if they have no snow, receive none
@@ -84,7 +85,7 @@ impl Way {
         }
     }
 
-    /// Returns the index of the neighbouring patch along an axis (0: rows, 1: columns), to leeward or to windward;
+    /// Returns the index of the neighbouring patch along an axis (0: east, 1: north), to leeward or to windward;
     /// [`NONE`] without one.
     fn beside(&self, patch: &Patch, axis: usize, leeward: bool) -> u32 {
         patch.near[2 * axis + usize::from(self.back[axis] != leeward)]
@@ -96,7 +97,8 @@ struct Sweep<'a> {
     way: &'a Way,
     /// Passage through a cell along the mean wind.
     mean: Through,
-    /// Mass that a flux of 1 kg/(m s) carries across a cell's side in the step, in units, spread over the cell's area.
+    /// Mass per m^2 of a cell that a flux of 1 kg/(m s) across one of its sides brings in the step, in units of mass
+    /// ([`UNITS`] make 1 kg/m^2).
     per_flux: f64,
     /// Side of a cell, m.
     cell_m: f64,
@@ -111,7 +113,7 @@ struct Sweep<'a> {
 /// Passage of the wind through a cell.
 #[derive(Clone, Copy)]
 struct Through {
-    /// Sum of the absolute components of its unit direction.
+    /// Sum of the absolute components of the wind's unit direction.
     sum: f64,
     /// Share of the flux that leaves the cell across its east or west side.
     across: f64,
@@ -355,8 +357,8 @@ impl DriftSweep {
         }
     }
 
-    /// Finds the fluxes that enter a patch from the patches to windward. Without such a patch it is `inflow`, from the
-    /// country around the field.
+    /// Finds the fluxes that enter a patch from the patches to windward. If there is no patch to windward, the fluxes
+    /// are `inflow`, from the country around the field.
     fn come(&mut self, field: &mut SnowField, patch: usize, way: &Way, inflow: [[i64; 2]; 2]) {
         for (axis, inflow) in inflow.into_iter().enumerate() {
             let before = way.beside(&field.patches[patch], axis, false);

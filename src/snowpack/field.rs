@@ -29,7 +29,7 @@ pub(super) struct Books {
     pub ran_off: i64,
     /// Snow that sublimated into the air.
     pub sublimated: i64,
-    /// Snow that the host took away, also by removed ground and by boxes that were set on it.
+    /// Snow that the host took away, including that on removed ground and on cells on which boxes were set.
     pub taken: i64,
 }
 

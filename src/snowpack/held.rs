@@ -30,7 +30,8 @@ pub enum LyingSnowModel {
     Reported,
     /// Simulated state: snowfall fills it, and it settles, drifts, slides and melts ([`crate::snowpack`]). It begins
     /// with the depth that the weather reports. An update that moves time by more than a day is done in fast-forward
-    /// ([`crate::context::Context::accumulate`]); of more than 30 days only the last 30 are simulated.
+    /// ([`crate::context::Context::accumulate`]). Of an update by more than 30 days only the last 30 days are
+    /// simulated.
     Simulated,
 }
 

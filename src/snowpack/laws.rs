@@ -61,11 +61,11 @@ pub fn albedo_kept(thaws: bool, seconds: f64) -> f64 {
     libm::exp(-seconds / if thaws { THAW_S } else { FROST_S })
 }
 
-/// Returns (m0, m1) of the melting rate m0 + m1 G, mm/h, where G is the sunlight that the snow absorbs, W/m^2. Above
-/// 1 C, m0 = 0.05 T + r and m1 = 0.0094; below, m0 = r and m1 = 0 (Pellicciotti et al. 2005). r is the melt by rain, 0
-/// at or below 0 C: `r = P T / 79.8 + 0.01 U T min(P / 0.5, 1)`. P is the rain, mm/h; T the air temperature, C; U the
-/// wind, m/s. The first term is the rain's own heat, the second that of moist wind in the open: 0.24 mm per day for
-/// each degree and m/s (US Army Corps of Engineers 1956), reduced in rain below 0.5 mm/h.
+/// Returns (m0, m1) of the melting rate m0 + m1 G, mm/h, where G is the sunlight that the snow absorbs, W/m^2. Above 1
+/// C, m0 = 0.05 T + r and m1 = 0.0094; at 1 C and below, m0 = r and m1 = 0 (Pellicciotti et al. 2005). r is the melt by
+/// rain, 0 at or below 0 C: `r = P T / 79.8 + 0.01 U T min(P / 0.5, 1)`. P is the rain, mm/h; T the air temperature, C;
+/// U the wind, m/s. The first term is the rain's own heat, the second that of moist wind in the open: 0.24 mm per day
+/// for each degree and m/s (US Army Corps of Engineers 1956), reduced in rain below 0.5 mm/h.
 pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
     let t = c.air.temperature_c;
     let rain = if rain_mm_h > 0.0 && t > 0.0 {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::{column::Column, drift_state::Edges};
 
-/// Index that stands for no patch.
+/// Index that means no patch.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Rectangle of ground and the snow on it. Cells are in rows from the south, each from the west.

@@ -43,8 +43,8 @@ pub struct SnowAt {
     pub albedo: f64,
     /// Share of the ground that snow covers, 0 to 1.
     pub cover: f64,
-    /// Point of the snow's surface above or below the queried position, in the host's world. Off the host's terrain,
-    /// and more than 3 m above it, the queried position itself.
+    /// Point of the snow's surface above or below the queried position, in the host's world. It is the queried position
+    /// itself if this lies off the host's terrain or more than 3 m above the ground.
     pub surface: DVec3,
     /// Grip of a wheel.
     pub friction: SnowFriction,

@@ -87,8 +87,8 @@ impl Site {
         Self { ground, origin, to_enu, cell_m, boxes: Vec::new(), slant: DVec3::ZERO, air: None, stale: true }
     }
 
-    /// Creates the site of a grid. Snow stays if the nodes are at the same places: those of the grid of `old`, or of a
-    /// loaded state. On another grid it is as deep as on level ground.
+    /// Creates the site of a grid. Snow stays if the nodes are at the same places as those of the grid of `old`, or if
+    /// there is no `old` and the loaded snow has as many nodes. On another grid the snow is as deep as on level ground.
     pub fn of_grid(
         terrain: &Arc<TerrainHeights>,
         old: Option<&Self>,
@@ -219,7 +219,8 @@ impl Site {
         self.position((DVec2::new(f64::from(place[0]), f64::from(place[1])) * self.cell_m).extend(height_m))
     }
 
-    /// Returns the cells around a position and their weights; `None` off the terrain, and on objects that stand on it.
+    /// Returns the cells around a position and their weights; `None` off the terrain, and more than [`ABOVE_M`] above
+    /// the ground, as on an object.
     pub fn about(&self, field: &SnowField, position: DVec3) -> Option<CornerShares> {
         let p = self.local(position);
         let c = p.truncate() / self.cell_m;
@@ -247,8 +248,8 @@ impl Site {
     }
 
     /// Finds the cells that boxes shelter from falling snow, and the cells on which boxes stand. Only boxes that stand
-    /// still count. Flakes move with `air` where the wind varies in space. Returns whether the boxes or the ground have
-    /// changed.
+    /// still are included. Flakes move with `air` where the wind varies in space. Returns whether the boxes or the
+    /// ground have changed.
     pub fn shade(
         &mut self,
         field: &mut SnowField,
@@ -363,7 +364,8 @@ impl Site {
         if bottom > GAP_M || top <= 0.0 {
             return 0.0;
         }
-        // Tested at the height of the box's centre, since it may lean. Cells that the box only touches count.
+        // Tests at the height of the box's centre, since the box may lean. Cells that the box only touches are
+        // included.
         let at = shelter.axes.transpose() * (ground + upward * over - shelter.center_m);
         let upright = (shelter.axes.transpose() * upward).abs();
         let touches = (0..3).all(|i| {
@@ -410,8 +412,8 @@ impl SiteWind<'_> {
     }
 
     /// Returns the wind at 10 m over a cell of the lattice, given by its index east and north and the height of its
-    /// snow's surface, m: east and north, m/s. It is the wind 2 m above the snow (one cell of the wind above it, if
-    /// that is more), extrapolated to 10 m by the logarithmic law.
+    /// snow's surface, m: east and north, m/s. It is the wind 2 m above the snow (or one cell of the wind volume above
+    /// the snow, if that is more), extrapolated to 10 m by the logarithmic law.
     pub fn over(&self, place: [i32; 2], surface_m: f64) -> DVec2 {
         let asked_m = ASKED_M.max(self.volume.cell_m.z);
         let lower = self.lower(asked_m);
@@ -429,7 +431,7 @@ fn slanted(wind: DVec2, fall: f64) -> DVec2 {
 }
 
 /// Returns the direction of flakes in a wind, (east, north, -1): the horizontal distance per metre of fall, rounded to
-/// sixteenths so that small changes of the wind do not change it.
+/// sixteenths so that small changes of the wind do not change the direction.
 fn slant(wind: DVec2, fall: f64) -> DVec3 {
     (slanted(wind, fall) / fall * 16.0).round().extend(-16.0) / 16.0
 }

@@ -137,7 +137,7 @@ impl SoilField {
         (slot != NO_PATCH && self.patches[slot as usize].has_ground(cell)).then_some(SoilCell { slot, cell })
     }
 
-    /// Takes over changes of the undug ground. Returns whether there are any.
+    /// Updates the patches to changes of the undug ground. Returns whether there are any changes.
     pub fn set_ground(&mut self, ground: &dyn UndugGround) -> bool {
         let mut changes = false;
         for slot in 0..self.patches.len() as u32 {

@@ -1,4 +1,4 @@
-//! Pours a heap onto level ground by the rule of the stepped ground and measures how round it is.
+//! Pours a heap onto level ground with the slides of simulated ground, and measures how round the heap is.
 
 use super::{
     field::{SoilCell, SoilField},
@@ -11,8 +11,9 @@ use crate::error::{Error, Result, check_range};
 
 /// Number of parts in which a heap is poured.
 const PARTS: i64 = 200;
-/// Sweeps between two parts, and after the last, for each square of the radius in cells: slides spread like heat, in a
-/// time that grows with the square of the way. After the last, less than a thousandth of the excess is left.
+/// Numbers of sweeps between two parts and after the last part, divided by the square of the radius in cells. Slides
+/// spread like heat, in a time that grows with the square of the distance. After the last sweep, less than a thousandth
+/// of the excess is left.
 const SWEEPS_BETWEEN: f64 = 0.02;
 const SWEEPS_AFTER: f64 = 3.0;
 /// Azimuths at which the heap is measured, degrees.

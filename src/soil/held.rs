@@ -1,10 +1,10 @@
-//! Soil of a context, on the tiles of the host's terrain: advanced, saved, and shown to all others as the heights and
-//! colours of the tiles.
+//! Soil of a context, on the tiles of the host's terrain: advanced, saved, and shown to all other effects as the
+//! heights and colours of the tiles.
 //!
 //! The host's tiles are the undug ground. After each step the change of the soil is added to the heights of the tiles
-//! where it changed, so queries, water, snow and wind see one ground ([`DugGround::changes`] tells the water where).
-//! The ground tells the soil once a minute how wet it is. A step of soil ends the steps of all others that read it
-//! ([`HeldEffect::reads_next_s`]), so the same poses give the same bits at any frame rate.
+//! where the soil changed, so queries, water, snow and wind see one ground ([`DugGround::changes`] tells the water
+//! where). The ground tells the soil once a minute how wet it is. A step of soil ends the steps of all other effects
+//! that read the ground ([`HeldEffect::reads_next_s`]), so the same poses give the same bits at any frame rate.
 
 use std::{collections::BTreeMap, sync::Arc, time::Instant};
 
@@ -27,7 +27,7 @@ const _: () = assert!(SIDE as i32 == DUG_SIDE && WEATHER_STEPS as f64 * SOIL_STE
 
 /// Wetness of the ground, as the weather reports it, at which its pores are full.
 const DAMP: f64 = 0.3;
-/// Distance between changes, in cells, up to which they count as one.
+/// Distance between changes, in cells, up to which they are joined into one.
 const NEAR_CELLS: i32 = 2;
 /// Key of the soil in a saved state.
 const KEY: &str = "soil";
@@ -49,7 +49,8 @@ pub struct SoilChange {
 #[derive(Default)]
 pub(crate) struct HeldSoil {
     pub(super) site: Option<Box<SoilSite>>,
-    /// Identity of the terrain on which it lies, and the host's revision that it knows.
+    /// Identity of the terrain on which the soil lies, and the host's revision of the terrain that the soil has read
+    /// last.
     ground: (u64, u64),
     /// As `ground`, for the heights that were published last.
     shown: (u64, u64),
@@ -142,7 +143,8 @@ fn wet(site: &mut SoilSite, world: &World) {
 }
 
 impl HeldSoil {
-    /// Sets the kinds and layers of the ground, at first undug, in place of the soil before; `None` leaves none.
+    /// Replaces the soil by undug ground with these kinds and layers. `None` removes the soil. Settings equal to the
+    /// present ones change nothing.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without tiles, [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -176,7 +178,7 @@ impl HeldSoil {
         Ok(())
     }
 
-    /// Takes over the host's changes of the tiles. Soil on a lattice that is no longer there is gone.
+    /// Updates the soil to the host's changes of the tiles. If the terrain is another one, the soil is removed.
     fn follow(&mut self, world: &World) {
         let now = world.set.tiles.as_ref().map(|tiles| (tiles.id, tiles.host_revision));
         if self.site.is_none() || now == Some(self.ground) {

@@ -49,18 +49,18 @@ pub struct SoilKind {
     pub cohesion_kpa: f64,
     /// Friction angle of the bank, degrees, \[0, 60\].
     pub friction_deg: f64,
-    /// How the soil yields to wheels and tracks; `None` for soil that carries them without sinking.
+    /// Law by which the soil yields to wheels and tracks; `None` for soil that carries them without sinking.
     pub sinkage: Option<SinkageSet>,
     /// Mean colour of the drawn surface when moist, linear Rec. 709 albedo, each \[0, 1\].
     pub albedo: [f64; 3],
 }
 
 /// Built-in kinds in the order of their numbers. The densities are those of dug soil in the engineers' tables (sand dry
-/// 1602, gravel dry 1522, clay dry 1073, earth moist 1442 and dry 1249, broken limestone 1554, coal 890 kg/m^3) times
-/// 1 + swell, so that the dug soil has them. Angles of repose lie in the middle of the published ranges. Cohesion and
-/// friction of sand, loam, clay and topsoil belong to the sets of their sinkage (Wong 2008, table 2.3). Colours have
-/// the hues and luminances of common Munsell colours of such soils: 10YR 5/4, 2.5Y 5/1, 7.5YR 5/6, 10YR 4/4, 10YR 3/2,
-/// 10YR 7/1 and N 2.
+/// 1602, gravel dry 1522, clay dry 1073, earth moist 1442 and dry 1249, broken limestone 1554, coal 890 kg/m^3),
+/// multiplied by 1 + swell so that the dug soil has the densities of the tables. Angles of repose lie in the middle of
+/// the published ranges. Cohesion and friction of sand, loam, clay and topsoil belong to the sets of their sinkage
+/// (Wong 2008, table 2.3). Colours have the hues and luminances of common Munsell colours of such soils: 10YR 5/4, 2.5Y
+/// 5/1, 7.5YR 5/6, 10YR 4/4, 10YR 3/2, 10YR 7/1 and N 2.
 pub(super) const BUILT_IN: [SoilKind; 7] = [
     kind([1794.0, 0.12, 34.0], [1.04, 28.0], Some(SinkageSet::DRY_SAND), [0.281, 0.177, 0.087]),
     kind([1750.0, 0.15, 37.0], [0.0, 37.0], None, [0.203, 0.193, 0.166]),
@@ -122,7 +122,7 @@ impl SoilKind {
 /// Layer of undisturbed ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilHorizon {
-    /// Depth of its upper side below the undug surface, m, \[0, 1000\].
+    /// Depth of the layer's upper side below the undug surface, m, \[0, 1000\].
     pub top_m: f64,
     /// Kind of soil.
     pub kind: SoilKindId,
@@ -133,8 +133,8 @@ pub struct SoilHorizon {
 pub struct SoilSettings {
     /// The host's own kinds of soil; their numbers follow those of the seven built-in kinds. At most 9.
     pub own_kinds: Vec<SoilKind>,
-    /// Layers of undisturbed ground, 1 to 8: the first begins at depth 0, each other one deeper than the one before.
-    /// Default 0.3 m of topsoil on loam.
+    /// Layers of undisturbed ground, 1 to 8, from the top down: the first begins at depth 0, and each further one below
+    /// the top of the one before. Default 0.3 m of topsoil on loam.
     pub horizons: Vec<SoilHorizon>,
     /// Share of the pores of the bank that water fills without rain and sun, \[0, 1\]. Default 0.3, moist. Bank at 0
     /// (dry sand) and at 1 (below the water table) has no cohesion ([`super::laws::cohesion_share`]).
@@ -169,7 +169,7 @@ impl SoilSettings {
     }
 }
 
-/// Checks the layers: the first begins at the surface, and each other one deeper than the one before.
+/// Checks the layers: the first must begin at the surface, and each further one below the top of the one before.
 fn check_horizons(horizons: &[SoilHorizon], kinds: usize) -> Result<()> {
     if !(1..=MAX_HORIZONS).contains(&horizons.len()) {
         return Err(Error::range("horizons.len", &format!("in [1, {MAX_HORIZONS}]"), horizons.len()));

@@ -1,4 +1,5 @@
-//! Kinds and layers of a site in units of cells: how much mass a depth holds, and how steep it lies.
+//! Kinds and layers of a site in units of cells: how much mass a depth of soil holds, and at which slope the soil
+//! rests.
 
 use super::{
     kind::{MAX_SOIL_KINDS, MOIST, SoilHorizon, SoilKind},
@@ -11,7 +12,7 @@ pub(super) const DEPTH_UNITS: f64 = 1_048_576.0;
 pub(super) const MASS_UNITS: f64 = 1e9;
 /// Most cells between the crest of a wall and its toe.
 const MOST_WALL_CELLS: usize = 256;
-/// Share by which banks may be steeper than the slopes at which they rest for ever, so that rounding breaks none.
+/// Factor by which banks may be steeper than the slopes at which they rest for ever, so that rounding breaks none.
 const STEEPER: f64 = 1.02;
 
 /// Returns a length in whole units of depth.
@@ -68,7 +69,7 @@ pub(super) struct SoilMaterial {
     pub grade: f64,
     /// Drop over one cell up to which the bank rests however high it is, in units of depth.
     pub bank_grade: f64,
-    /// Highest walls by the distance of the toe in cells, in units of depth.
+    /// Heights of the highest walls, in units of depth, by the distance in cells from the crest to the toe.
     pub walls: Vec<f64>,
 }
 

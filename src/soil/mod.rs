@@ -6,11 +6,11 @@
 //! and add the two parts to what is there, so dug + brought = lying + held + taken holds exactly ([`SoilBooks`]).
 //! Volume is not kept: bank swells as it is dug, and wheels compact it.
 //!
-//! **Tools** (`tool.rs`, `work.rs`). A bucket or blade is its cutting edge, the opposite edge of its opening, the
-//! direction out of the opening, and a volume. Between two poses the edge sweeps a ribbon (`ribbon.rs`), and each cell
-//! loses the share of its area that the ribbon covers, down to the height of the edge. The soil fills the bucket up to
-//! its rated heap (SAE J296), or is pushed ahead. What a tilted bucket cannot hold pours from the lowest edge of its
-//! opening. Wheels and tracks sink by Bekker's law. `laws/` has all laws in f64, each with its source.
+//! **Tools** (`tool.rs`, `work.rs`). A bucket or blade is described by its cutting edge, the opposite edge of its
+//! opening, the direction out of the opening, and a volume. Between two poses the edge sweeps a ribbon (`ribbon.rs`),
+//! and each cell loses the share of its area that the ribbon covers, down to the height of the edge. The soil fills the
+//! bucket up to its rated heap (SAE J296), or is pushed ahead. What a tilted bucket cannot hold pours from the lowest
+//! edge of its opening. Wheels and tracks sink by Bekker's law. `laws/` has all laws in f64, each with its source.
 //!
 //! **Slides** (`field.rs`, `src/slides.rs`). Loose soil lies up to its angle of repose. Bank stands as a wall up to
 //! the height of Culmann's law (`walls.rs`). A higher one breaks, and what lies above the slope of repose slides.

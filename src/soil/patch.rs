@@ -11,7 +11,7 @@ pub(super) const SIDE: usize = 16;
 pub(super) const CELLS: usize = SIDE * SIDE;
 /// Number of cells along a side of a patch with its margin.
 pub(super) const WIDE: usize = SIDE + 2;
-/// Number that stands for no patch.
+/// Value of a slot that means no patch.
 pub(super) const NO_PATCH: u32 = u32::MAX;
 
 /// Bank of a cell that wheels have pressed.
@@ -36,8 +36,8 @@ pub(super) struct BankWater {
 
 /// Heights of the undug ground.
 pub trait UndugGround {
-    /// Returns the height of a cell of the lattice, counted east and north, m within 1e5; `None` where there is no
-    /// ground.
+    /// Returns the height of a cell of the lattice, m, \[-1e5, 1e5\]; `None` where there is no ground. `cell` is
+    /// counted east and north.
     fn height_m(&self, cell: [i32; 2]) -> Option<f64>;
 }
 
@@ -58,7 +58,7 @@ pub(super) struct SoilPatch {
     pub masses: Vec<(u8, Vec<i64>)>,
     /// Whether the bank of each cell has lost its hold and slides.
     pub broken: Vec<bool>,
-    /// Heights of the surface, in units; follow from the values above.
+    /// Heights of the surface, in units. They follow from the fields above.
     pub surface: Vec<f64>,
     /// Drop over one cell at which the surface of each cell rests; infinite where nothing can move.
     pub grade: Vec<f64>,
@@ -129,7 +129,7 @@ impl SoilPatch {
         }
     }
 
-    /// Takes over the undug heights. Returns whether any has changed.
+    /// Reads the undug heights again. Returns whether any of them has changed.
     pub fn set_ground(&mut self, ground: &dyn UndugGround, materials: &SoilMaterials) -> bool {
         let heights = undug_units(self.key, ground);
         if heights.iter().map(|v| v.to_bits()).eq(self.ground.iter().map(|v| v.to_bits())) {
@@ -260,7 +260,7 @@ fn undug_units(key: [i32; 2], ground: &dyn UndugGround) -> Vec<f64> {
     (0..WIDE * WIDE).map(height).collect()
 }
 
-/// Index in the arrays with a margin of a cell of a patch.
+/// Index of a cell of a patch in the arrays with a margin.
 pub(super) fn wide(cell: usize) -> usize {
     (cell / SIDE + 1) * WIDE + cell % SIDE + 1
 }

@@ -22,8 +22,8 @@ pub struct SoilBlade {
 }
 
 impl SoilSite {
-    /// Returns the force on the edge of a tool that cuts as deep as it did in the last step, in the soil that it met
-    /// there, with the cohesion that its water leaves.
+    /// Returns the force on the edge of a tool, for the depth of the cut and the kind of soil of the tool's last step.
+    /// The cohesion is that which the water in the soil leaves.
     ///
     /// # Errors
     /// [`crate::error::Status::InvalidArgument`] for an unknown tool, or naming a field of `blade`.

@@ -62,7 +62,7 @@ struct SavedKind {
     strength: [f64; 2],
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sinkage: Option<[f64; 3]>,
-    /// States of older formats have none: those kinds have the default colour.
+    /// Colour; absent in states of older formats, whose kinds get the colour of loam.
     #[serde(default = "default_albedo")]
     albedo: [f64; 3],
 }
@@ -94,7 +94,7 @@ struct SavedTool {
 struct SavedPatch {
     key: [i32; 2],
     revision: u64,
-    /// Whether it is awake, has changed since the last sweep, and has unchecked walls.
+    /// Whether the patch is awake, has changed since the last sweep, and has unchecked walls.
     flags: [bool; 3],
     /// Saturation, and wet share of the surface.
     water: [f64; 2],
@@ -154,7 +154,8 @@ fn text(numbers: impl Iterator<Item = i64>) -> String {
     words(numbers.map(|number| number as u64))
 }
 
-/// Returns the numbers of a text, none of them negative or more than `most`.
+/// Returns the `count` numbers of a text; `None` if the text does not have `count` numbers, or if one is outside \[0,
+/// `most`\].
 fn numbers(text: &str, count: usize, most: i64) -> Option<Vec<i64>> {
     let found: Vec<i64> = values(text, count)?.into_iter().map(|number| number as i64).collect();
     found.iter().all(|number| (0..=most).contains(number)).then_some(found)

@@ -13,10 +13,10 @@ use crate::{light::tone::srgb_encode, terrain::DugColor};
 
 /// Depth of loose soil, and of a cut, that hides everything below it, m: about that of turf.
 const COVERS_M: f64 = 0.03;
-/// Steps of [`CODES`].
+/// Number of steps of the table [`CODES`].
 const STEPS: usize = 1024;
-/// Codes of sRGB by the square root of the linear value, in [`STEPS`] steps, within 0.2 of a code: many cells change in
-/// a step of digging.
+/// Codes of sRGB by the square root of the linear value, in [`STEPS`] steps, within 0.2 of a code. It is a table
+/// because many cells change in a step of digging.
 static CODES: LazyLock<[u8; STEPS + 1]> =
     LazyLock::new(|| std::array::from_fn(|i| (255.0 * srgb_encode((i as f64 / STEPS as f64).powi(2))).round() as u8));
 

@@ -69,7 +69,7 @@ impl SoilBooks {
 /// Ground at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilPoint {
-    /// Height of the surface of the nearest cell above the lattice's origin, m.
+    /// Height of the nearest cell's surface above the lattice's origin, m.
     pub surface_m: f64,
     /// Difference to the undug height, m; negative in a pit.
     pub change_m: f64,
@@ -77,7 +77,7 @@ pub struct SoilPoint {
     pub loose_m: f64,
     /// Density of the loose soil, kg/m^3; 0 without any.
     pub loose_kg_m3: f64,
-    /// Kind on the surface: that of most of the loose soil, or of the bank.
+    /// Kind on the surface: that of most of the loose soil, or that of the bank without loose soil.
     pub kind: SoilKindId,
     /// Revision of the site (in a context: of the terrain) at the last change near this place; 0 where nothing was dug.
     pub revision: u64,
@@ -104,14 +104,15 @@ pub struct SoilToolReport {
     pub kinds_kg: [f64; MAX_SOIL_KINDS],
     /// Mean depth of the cut in the last step, m.
     pub cut_depth_m: f64,
-    /// Kind that most of the soil cut in the last step is of.
+    /// Kind of most of the soil that was cut in the last step.
     pub cut_kind: SoilKindId,
     /// Deepest sinkage of a wheel or track in the last step, m.
     pub sinkage_m: f64,
     /// Whether the sinkage was limited to half the radius (or half the shorter side of a track's contact), or comes
     /// from a set that fits a small range only.
     pub is_sinkage_beyond_range: bool,
-    /// Whether the edge met frozen ground in the last step, which it cannot cut. It passes above the rest.
+    /// Whether the edge met frozen bank in the last step. It cannot cut frozen bank and takes only the loose soil on
+    /// it.
     pub is_stopped_by_frost: bool,
     /// Share of the pores of the soil held that water fills: the mean of the bank from which it came; 0 when empty.
     pub saturation: f64,
@@ -154,12 +155,12 @@ impl SoilSite {
         &self.desc
     }
 
-    /// Moves the time of ground that nothing has worked yet.
+    /// Sets the time of ground that no tool has worked yet to the last whole step at or before `time_s`.
     pub(super) fn begin_at(&mut self, time_s: f64) {
         self.steps = steps_until(time_s);
     }
 
-    /// Takes over changes of the undug ground.
+    /// Updates the site to changes of the undug ground.
     pub(super) fn follow_ground(&mut self, ground: &dyn UndugGround) {
         if self.field.set_ground(ground) {
             self.field.revision += 1;

@@ -23,8 +23,8 @@ pub enum SoilToolShape {
     Bucket {
         /// Volume when struck level with its opening, m^3, \[0.001, 1000\].
         struck_m3: f64,
-        /// Rise of its rated heap per unit of length: 1 for excavators by SAE J296, 0.5 by CECE and for loaders,
-        /// \[0, 1\].
+        /// Rise of the rated heap per unit of length: 1 for excavators by SAE J296, 0.5 by CECE and for loaders, \[0,
+        /// 1\].
         heap_rise: f64,
     },
     /// Blade of a dozer or grader: cuts with its edge, and pushes the soil ahead.
@@ -33,23 +33,23 @@ pub enum SoilToolShape {
     Bed {
         /// Volume when struck level with its sides, m^3, \[0.001, 1000\].
         struck_m3: f64,
-        /// Rise of its rated heap per unit of length, \[0, 1\].
+        /// Rise of the rated heap per unit of length, \[0, 1\].
         heap_rise: f64,
     },
-    /// Wheel: its edge is the line of contact, across its track.
+    /// Wheel: its edge is the line of contact, across the direction of travel.
     Wheel {
         /// Diameter, m, \[0.1, 10\].
         diameter_m: f64,
     },
-    /// Crawler track: its edge is the line under its middle, across its track.
+    /// Crawler track: its edge is the line under its middle, across the direction of travel.
     Track {
         /// Length of contact with the ground, m, \[0.1, 20\].
         contact_m: f64,
     },
 }
 
-/// Pose of a tool at a time. Places are east, north and up of the lattice's origin, m; in calls of a context, in the
-/// host's world. They lie within 1e7 m of the origin.
+/// Pose of a tool at a time. Places are in metres east, north and up from the lattice's origin, or in calls of a
+/// context in the host's world. They lie within 1e7 m of the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolPose {
     /// Simulation time, s, \[-1e10, 1e10\].
@@ -162,7 +162,7 @@ impl SoilToolPose {
         Ok(())
     }
 
-    /// Checks the pose as the one after another.
+    /// Checks the pose as the one that follows the pose `last`.
     pub(super) fn validate_after(&self, last: &Self) -> Result<()> {
         if self.time_s <= last.time_s {
             let rest =
@@ -185,7 +185,7 @@ impl SoilToolPose {
         Ok(())
     }
 
-    /// Pose between this one and a later one.
+    /// Pose at a time between this one and a later one.
     pub(super) fn toward(&self, later: &Self, time_s: f64) -> Self {
         let t = ((time_s - self.time_s) / (later.time_s - self.time_s)).clamp(0.0, 1.0);
         let point = |a: DVec3, b: DVec3| a + (b - a) * t;
@@ -204,9 +204,9 @@ impl SoilToolPose {
     }
 
     /// Returns the volume that the tool holds at its tilt, m^3; 0 for one that holds nothing. Soil lies up to the slope
-    /// `grade` from the lower edge. While the opening is flatter than that, a heap lies on it, at most the rated one.
-    /// On a steeper one, a bed is empty, because its tail is open; a bucket keeps what lies behind its lip, with a
-    /// section that counts as a rectangle below the opening.
+    /// `grade` from the lower edge. While the opening is flatter than this slope, a heap lies on it, at most the rated
+    /// one. If the opening is steeper, a bed is empty, because its tail is open, and a bucket keeps what lies behind
+    /// its lip. The bucket's section below the opening is taken as a rectangle.
     pub(super) fn held_m3(&self, shape: &SoilToolShape, grade: f64) -> f64 {
         let Some(hold) = shape.hold() else { return 0.0 };
         let [across, between] = self.sides_m();

@@ -1,10 +1,10 @@
 //! Walls of bank: which ones are higher than their soil can stand, and what falls with them.
 //!
-//! A wall between two cells fails where the bank's top lies higher above a cell than the law's highest face with its
-//! toe there ([`super::laws::WallLaw::height_over_m`]), with the cohesion that its water leaves, and the face is
-//! steeper than the bank's friction angle and the angle of repose. What lies above the slope of repose through the toe
-//! then counts as broken: it slides like loose soil (`src/slides.rs`), swells as it moves, and comes to rest at its
-//! angle of repose.
+//! A wall between a crest and a toe fails under two conditions. The bank's top lies higher above the toe than the
+//! highest face that the law allows over their distance ([`super::laws::WallLaw::height_over_m`]), with the cohesion
+//! that the bank's water leaves. The face is also steeper than the bank's friction angle and the angle of repose. What
+//! lies above the slope of repose through the toe then counts as broken: it slides like loose soil (`src/slides.rs`),
+//! swells as it moves, and comes to rest at its angle of repose.
 
 use super::{
     field::{SoilCell, SoilField},

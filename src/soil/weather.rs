@@ -8,7 +8,7 @@ use super::{
 
 /// Steps between two times at which the weather acts, a minute.
 pub(super) const WEATHER_STEPS: i64 = 60 * 64;
-/// Crust of frozen ground that a tool breaks, m.
+/// Thickest crust of frozen ground that a tool breaks, m.
 const THIN_FROST_M: f64 = 0.05;
 
 impl SoilSite {
@@ -38,7 +38,7 @@ impl SoilSite {
         self.field.frozen = if depth_m > THIN_FROST_M { depth_units(depth_m) } else { 0 };
     }
 
-    /// Takes over how wet the surface is: that of level ground, and that of each patch.
+    /// Sets the wet share of the surface: `level` for ground that was not dug, and `patch` by key for each patch.
     pub(super) fn wet(&mut self, level: f64, patch: impl Fn([i32; 2]) -> f64) {
         self.field.water.soaked = level;
         self.field.patches.iter_mut().for_each(|dug| dug.water.soaked = patch(dug.key));

@@ -1,4 +1,5 @@
-//! Work of tools on the ground: an edge cuts or presses what it passes, buckets fill, blades push, full ones spill.
+//! Work of tools on the ground: an edge cuts or presses what it passes, buckets fill, blades push, and full buckets
+//! spill.
 
 use std::collections::VecDeque;
 
@@ -32,9 +33,9 @@ const COMPACTED: f64 = 0.9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PassedCell {
     pub place: [i32; 2],
-    /// Share of its area.
+    /// Share of the cell's area that the edge has passed.
     pub share: f64,
-    /// Height of that part times its share, in units.
+    /// Height of the passed part times its share, in units.
     pub raised: f64,
 }
 
@@ -45,11 +46,11 @@ pub(super) struct ToolWork {
     pub cut_m3: f64,
     /// Area that the edge passed in the ground, m^2.
     pub area_m2: f64,
-    /// Kind that most of the cut soil is of.
+    /// Kind of most of the cut soil.
     pub kind: usize,
     /// Deepest sinkage of a wheel or track, m.
     pub sinkage_m: f64,
-    /// Whether a sinkage was limited, or its set is a fit of a small range.
+    /// Whether a sinkage was limited, or comes from a set that fits only a small range.
     pub is_clamped: bool,
     /// Whether frozen ground stopped the edge.
     pub is_frozen: bool,
@@ -74,7 +75,7 @@ pub(super) struct SoilTool {
     pub work: ToolWork,
 }
 
-/// Site as tools find it.
+/// Field of soil and undug ground on which a tool works.
 pub(super) struct WorkedGround<'a> {
     pub field: &'a mut SoilField,
     pub ground: &'a dyn UndugGround,
@@ -156,7 +157,7 @@ impl SoilTool {
         })
     }
 
-    /// Forgets cells that were passed as a whole or lie behind.
+    /// Forgets cells that were passed as a whole or lie more than [`MEMORY_CELLS`] from the edge.
     fn forget(&mut self, edge: [DVec3; 2]) {
         let low = edge[0].min(edge[1]).truncate() - MEMORY_CELLS;
         let high = edge[0].max(edge[1]).truncate() + MEMORY_CELLS;
@@ -209,7 +210,7 @@ impl SoilTool {
             if parcel != SoilParcel::default() {
                 let along = (part.centre - end[0].truncate()).dot(across) / across.length_squared().max(1e-12);
                 let rest = place.scatter(parcel, end[0].truncate() + across * along.clamp(0.0, 1.0) + ahead);
-                // No ground ahead: it stays where it was.
+                // Without ground ahead, the soil stays where it was.
                 place.field.put(cell, &rest);
             }
         });
@@ -297,7 +298,8 @@ impl SoilTool {
             return;
         }
         let cell_m = field.materials.cell_m;
-        // Behind the edge by half a cell, so that a cell counts as in front until the edge has passed all of it.
+        // Moves the line to half a cell behind the edge, so that a cell counts as in front until the edge has passed
+        // all of it.
         let ahead = self.pose.ahead();
         let behind = ahead * (0.5 * (ahead.x.abs() + ahead.y.abs()));
         let ends = self.pose.edge.map(|point| point.truncate() / cell_m - behind);

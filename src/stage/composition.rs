@@ -74,9 +74,9 @@ pub(crate) enum Texture {
     /// Slopes, heights, classes and snow of the host's terrain, one texel for each cell
     /// (`shaders/ground/binding.wgsl`).
     Terrain = 2,
-    /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last one stands behind the sky's own light; its
-    /// texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two layers of clouds may come before it:
-    /// exposed light with transmittance, and distances.
+    /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last array layer stands behind the sky's own light;
+    /// its texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two array layers of clouds may have lower
+    /// indices: exposed light with transmittance, and distances.
     Behind = 3,
 }
 
@@ -89,8 +89,8 @@ pub(crate) enum Block {
     OnSurfaces = 1,
 }
 
-/// Returns the name of a shader that applies the veil. Where the constants need none, it is without the code for a veil
-/// that differs from place to place.
+/// Returns the name of a shader that applies the veil. If no constant needs a veil that differs from place to place,
+/// the name is that of the variant without its code.
 pub(crate) fn veiled(shader: &str, constants: &[Constant]) -> String {
     let by_place = constants.iter().any(|(name, value)| *name == "BY_PLACE" && *value > 0.0);
     format!("{shader}{}", if by_place { "" } else { ":plain" })
@@ -220,7 +220,7 @@ impl<'a> Contribution<'a> {
         self.push(Scope::Between, name, whole, least);
     }
 
-    /// Adds a constant as [`Self::between`] does, and gives it to the veil for hosts' shaders too.
+    /// Adds a constant as [`Self::between`] does, and passes the constant to the veil for hosts' shaders too.
     pub fn between_and_veil(&mut self, name: &'static str, whole: f64, least: f64) {
         self.push(Scope::BetweenAndVeil, name, whole, least);
     }
@@ -396,8 +396,8 @@ impl Composition {
         &self.whole
     }
 
-    /// Constants of the pipeline that leaves out the parts whose drawn share is 0 now. That is cheaper than a branch on
-    /// a software driver, which executes both sides.
+    /// Constants of the pipeline that leaves out the parts whose drawn share is 0 now. On a software driver this
+    /// pipeline is cheaper than a branch, because such a driver executes both sides of a branch.
     pub fn least(&self) -> &Pipeline {
         &self.least
     }

@@ -7,8 +7,8 @@ use super::stages::Stages;
 ///
 /// The call that has the number's stage draws it; other calls of the frame draw nothing. The colours are display
 /// colours: linear in float and sRGB formats and where the host's colour is display-linear, otherwise encoded by the
-/// sRGB curve. In multisampled images the first sample of a pixel stands for all. Masked pixels keep the host's colour.
-/// If nothing in the frame has this number, the picture is black.
+/// sRGB curve. In multisampled images the first sample of a pixel gives the colour of the whole pixel. Masked pixels
+/// keep the host's colour. If nothing in the frame has this number, the picture is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
     /// The normal picture.

@@ -32,8 +32,8 @@ impl OpaqueTarget {
         }
     }
 
-    /// Returns the depth test: nearer fragments pass and are written; at equal depth the host's stays. The stencil is
-    /// kept.
+    /// Returns the depth test: nearer fragments pass and are written. At equal depth the host's pixel stays. The
+    /// stencil is kept.
     pub fn depth_test(&self) -> wgpu::DepthStencilState {
         let nearer = if self.reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less };
         pass::depth_test(self.depth, nearer, true)

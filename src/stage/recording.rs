@@ -146,9 +146,9 @@ pub struct Report {
 /// Drops and hailstones drawn around the camera, and those left out for lack of room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainReport {
-    /// Number of drops and hailstones around the camera; those in the picture were drawn.
+    /// Number of drops and hailstones around the camera, of which those in the picture were drawn.
     pub drops: u32,
-    /// Number of real drops for which each drop stood: 1 unless more fell than
+    /// Number of real drops that each drawn drop represents: 1 unless more real drops fell than
     /// [`crate::rain::RainSettings::most_drops`]; 0 without drops.
     pub drop_weight: f64,
     /// Contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of the rain that was drawn; 0 where nothing fell.
@@ -162,7 +162,7 @@ pub struct RainReport {
 /// Flakes drawn around the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnowReport {
-    /// Number of flakes around the camera; those in the picture were drawn. 0 if none were.
+    /// Number of flakes around the camera, of which those in the picture were drawn. 0 if no flakes were drawn.
     pub flakes: u32,
     /// Distance up to which flakes were drawn, m. Beyond it snow only adds to the extinction.
     pub flakes_to_m: f64,

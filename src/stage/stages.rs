@@ -45,8 +45,8 @@ impl Stages {
         Self(self.0 | other.0)
     }
 
-    /// Splits this set into its five stages that draw over the whole picture, in order. A stage that is not in the set
-    /// gives an empty one.
+    /// Splits this set into its five stages that draw over the whole picture, in order. For a stage that is not in this
+    /// set the result is the empty set.
     pub(crate) fn each(self) -> [Self; 5] {
         [Self::BACKGROUND, Self::SURFACE, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }

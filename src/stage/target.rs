@@ -128,7 +128,8 @@ pub(crate) fn check_normals(texture: &wgpu::Texture, color: &wgpu::Texture) -> R
     check_of_one_sample("normals", texture, color)
 }
 
-/// Checks that a texture that is read together with `color` has the same size, one sample, and the usage for it.
+/// Checks that a texture that is read together with `color` has the size of `color`, one sample, and the usage for
+/// being read.
 fn check_of_one_sample(name: &str, texture: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     if (texture.width(), texture.height(), texture.sample_count()) != (color.width(), color.height(), 1) {
         return Err(Error::range(
@@ -180,7 +181,7 @@ pub(crate) enum Sampling {
     Single,
     /// Several samples; each is drawn with its own depth.
     Multi,
-    /// One sample in colour, as after a resolve, and several in depth, of which the first counts.
+    /// One sample in colour, as after a resolve, and several in depth, of which the first is used.
     Resolved,
 }
 
@@ -246,7 +247,7 @@ pub(crate) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     !tone || frame.color.is_some_and(|c| is_float(c.format()))
 }
 
-/// Rounding of a depth format: absolute, and relative to the value. The rasteriser's own rounding counts as two steps
+/// Rounding of a depth format: absolute, and relative to the value. The rasteriser's own rounding is taken as two steps
 /// of an `f32`.
 pub(crate) fn rounding(depth: &wgpu::Texture) -> [f64; 2] {
     use wgpu::TextureFormat as F;

@@ -19,13 +19,13 @@ const DUST_LENGTH_KPC: f64 = 2.3;
 /// Scale height h of the stars' light, kpc: between that of young (0.1) and of old stars (0.3). The light follows
 /// sech^2(z / (2 h)), which far from the plane falls by a factor of e over each h.
 const STARS_HEIGHT_KPC: f64 = 0.13;
-/// Scale height of the dust, kpc, in the same law.
+/// Scale height of the dust, kpc, in the law of [`STARS_HEIGHT_KPC`].
 const DUST_HEIGHT_KPC: f64 = 0.08;
 /// Absorption in the plane near the sun, optical depth a kiloparsec; it is 0.8 magnitudes.
 const DUST_PER_KPC: f64 = 0.8 / 1.0857;
 /// Length over which a line of sight is integrated, kpc.
 const REACH_KPC: f64 = 15.0;
-/// Number of steps of that integral.
+/// Number of steps of the integral along a line of sight.
 const STEPS: u32 = 64;
 
 /// Rotation from the equator and equinox of J2000.0 to galactic axes: x to the galactic centre, z to the north galactic
@@ -45,7 +45,7 @@ pub fn equator_to_galactic() -> DMat3 {
 ///
 /// Integrates `j(R, z) exp(-depth)` along the line of sight. The light `j` and the dust are each exp(-R/length)
 /// sech^2(z / (2 height)). The model is symmetric in longitude and latitude. It has no bulge, and no star clouds or
-/// dark clouds, which change the light by half. Those come from the measured light ([`super::starlight`]).
+/// dark clouds, which change the light by half. These features come from the measured light ([`super::starlight`]).
 pub fn disc_s10(galactic: DVec3) -> f64 {
     let at_sun = COLUMN_LV_PC2 / (4.0 * STARS_HEIGHT_KPC * 1e3);
     let squared_sech = |x: f64| x.cosh().powi(-2);

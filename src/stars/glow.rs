@@ -144,8 +144,9 @@ pub(super) fn zodiacal_toward(e: DVec3) -> f64 {
 
 impl NightSky {
     /// Creates the glow over a place `altitude_m` above the sea, where the air has the optical depths `zenith_depth`
-    /// straight up. Below the sea the altitude counts as 0. `airglow` is the strength of the airglow: 1 at the minimum
-    /// of solar activity, 1.7 at the maximum, when the sky is brighter by 0.4 magnitudes (Benn and Ellison 1998).
+    /// straight up. Below the sea the altitude is taken as 0. `airglow` is the strength of the airglow: 1 at the
+    /// minimum of solar activity, 1.7 at the maximum, when the sky is brighter by 0.4 magnitudes (Benn and Ellison
+    /// 1998).
     pub fn new(heavens: &Heavens, altitude_m: f64, zenith_depth: [f64; 3], airglow: f64) -> Self {
         Self::under(&heavens.to_world, heavens.sun, altitude_m, zenith_depth, airglow)
     }
@@ -172,8 +173,8 @@ impl NightSky {
 
     /// Airglow, zodiacal light and the Milky Way's unresolved stars above the air, S10, in a direction (east, north,
     /// up; unit). The airglow is what an eye below its layer would see without air between. For an eye that rises
-    /// through the layer it fades, because no layer is left in front of the stars. The layer seen from above is left
-    /// out.
+    /// through the layer the airglow fades, because no layer is left in front of the stars. The layer seen from above
+    /// is left out.
     pub fn s10(&self, direction: DVec3) -> [f64; 3] {
         let zodiacal = zodiacal_toward(self.to_sun_ecliptic * direction);
         let layer = van_rhijn(direction.z.max(0.0), self.altitude_m.min(AIRGLOW_HEIGHT_M));

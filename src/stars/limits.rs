@@ -15,8 +15,8 @@ const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 ///
 /// `I = C (1 + (K B)^(1/2))^2`, with log C = -9.80 and log K = -1.90 for rods, -8.35 and -5.90 for cones,
 ///
-/// with I in foot-candles and B in nanolamberts. The lower of the two thresholds counts. Backgrounds below 0 count as
-/// 0. A good observer sees stars half a magnitude fainter.
+/// with I in foot-candles and B in nanolamberts. The lower of the two thresholds applies. Backgrounds below 0 are
+/// taken as 0. A good observer sees stars half a magnitude fainter.
 pub fn threshold_lux(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(0.0) / CD_M2_PER_NANOLAMBERT;
     let eye = |log_c: f64, log_k: f64| 10f64.powf(log_c) * (1.0 + (10f64.powf(log_k) * b).sqrt()).powi(2);

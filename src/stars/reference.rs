@@ -29,7 +29,7 @@ pub fn weight(offset: DVec2) -> f64 {
 /// A star as projected onto the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Position from the target's first corner, pixels.
+    /// Position from the outer corner of the target's first pixel (row 0, column 0), pixels.
     pub pixel: DVec2,
     /// Radiance of a pixel that receives all of the star's light, in the target's units, a channel: illuminance divided
     /// by the pixel's solid angle.

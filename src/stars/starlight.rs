@@ -115,13 +115,13 @@ const RED_S10: [[u16; 25]; 36] = [
 struct Measured {
     /// Unit vector in galactic axes.
     direction: DVec3,
-    /// Relative solid angle that the direction stands for.
+    /// Relative solid angle that the direction represents.
     area: f64,
     /// Logarithm of the ratio of measured to modelled light.
     ratio: f64,
 }
 
-/// Relative solid angle that a direction in a column stands for.
+/// Relative solid angle that a direction in a column of the tables represents.
 fn area(column: usize) -> f64 {
     let height = DECLINATIONS_DEG[(column + 1).min(24)] - DECLINATIONS_DEG[column.saturating_sub(1)];
     height * DECLINATIONS_DEG[column].to_radians().cos()

@@ -1,5 +1,5 @@
 //! Uniform blocks of the shelters, occluder maps and lamps around a camera: one bind group, of index 2, for all
-//! shaders. They are uploaded once a frame; nothing is uploaded while there are none.
+//! shaders. The blocks are uploaded once a frame. Nothing is uploaded while there are no shelters, maps or lamps.
 
 use glam::{DMat3, DVec3};
 
@@ -60,7 +60,7 @@ pub(crate) struct HasSurroundings {
     pub lamps: bool,
 }
 
-/// Speed and range of the drops and flakes around a camera that shelters may affect.
+/// Fall speed and largest distance of the drops and flakes around a camera, from which the shelters near it are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShelterReach {
     /// Fall speed of the slowest particles, m/s.
@@ -111,7 +111,7 @@ impl HostSurroundings<'_> {
     }
 }
 
-/// Creates the bind group layout of group 2 of drops and composition.
+/// Creates the layout of bind group 2, for the shaders of drops and of the composition.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let slots = [

@@ -1,10 +1,10 @@
-//! Occluder maps: up to four depth textures of the host with the surfaces that keep rain off, each seen from any
-//! direction.
+//! Occluder maps: up to four depth textures of the host with the surfaces that keep rain off. The host may draw each
+//! map from any direction.
 //!
 //! A drop is removed if its slanted path, traced back, crosses a surface in a map:
-//! `shaders/surroundings/occluders.wgsl`. A map does not contain what its surfaces hide. If it is taken along the
-//! drops' direction of fall (`fall_velocity_m_s` of [`crate::context::RainAt`]), it hides nothing that drops could
-//! meet, whatever the wind.
+//! `shaders/surroundings/occluders.wgsl`. A map does not contain surfaces that lie behind others. If it is taken along
+//! the drops' direction of fall (`fall_velocity_m_s` of [`crate::context::RainAt`]), which depends on the wind, drops
+//! meet none of the hidden surfaces.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -18,18 +18,18 @@ pub const MAX_OCCLUDER_MAPS: usize = 4;
 /// Least and largest number of texels of a map along either side.
 pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
 
-/// Depth texture of surfaces that keep rain off, and the view from which the host drew it.
+/// Depth texture of surfaces that keep rain off, and the camera with which the host drew it.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
     /// Depth texture: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
     /// TEXTURE_BINDING, from 8 to 4096 texels along either side. Its content is copied when the map is set; the host
     /// may draw into it again after that.
     pub depth: &'a wgpu::Texture,
-    /// View of the world that the texture shows.
+    /// Camera with which the texture was drawn, and the time and velocity of its content.
     pub taken: Taken,
 }
 
-/// View and time in which a map was taken.
+/// Camera with which the host drew a map, and the time and velocity of the map's content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taken {
     /// Matrix from the host's world to clip space: parallel rays or perspective, from any direction.
@@ -40,17 +40,18 @@ pub struct Taken {
     pub clip: ClipSpace,
     /// Whether row 0 of the texture lies at clip y = -1, as OpenGL draws.
     pub first_row_at_minus_y: bool,
-    /// Simulation time for which its content is right, s.
+    /// Simulation time for which the map's content is right, s, \[-1e10, 1e10\].
     pub time_s: f64,
-    /// Velocity of its content in the host's world, m/s, of a magnitude of at most 2000. With it, the map of a moving
-    /// truck need not be drawn anew every frame. It is 0 for content that stands still.
+    /// Velocity of the map's content in the host's world, m/s, of a magnitude of at most 2000; 0 for content that
+    /// stands still. With a velocity, the map of a moving truck need not be drawn anew every frame.
     pub velocity_m_s: DVec3,
 }
 
-/// View of a map, checked, from which the shaders' uniform is computed.
+/// Checked camera, time and velocity of a map, from which the shaders' uniform is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occluder {
-    /// Rows from the world relative to `origin_m` to clip x, y and w, and to the distance from the map's plane, m.
+    /// Rows from the world relative to `origin_m` to clip x, y and w, and to the distance along the camera's axis, m:
+    /// from `origin_m` for parallel rays, from the camera's position in perspective.
     rows: [DVec4; 4],
     /// Middle of the map's near plane, in the host's world, m.
     origin_m: DVec3,
@@ -64,7 +65,7 @@ pub(crate) struct Occluder {
     velocity_m_s: DVec3,
 }
 
-/// Part `Occluder` of the block in `shaders/surroundings/occluders.wgsl`, which describes the fields.
+/// Struct `Occluder` of the block in `shaders/surroundings/occluders.wgsl`, which describes the fields.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct OccluderUniform {
@@ -77,8 +78,8 @@ pub(crate) struct OccluderUniform {
 }
 
 impl Taken {
-    /// Creates a view with parallel rays and reversed depth, for hosts without matrices of their own. It looks from
-    /// `eye` along `forward` over `depth_m`; `half_m` is half its width and half its height.
+    /// Creates a camera with parallel rays and reversed depth, for hosts without matrices of their own. It looks from
+    /// `eye` along `forward`, over the distance `depth_m`. `half_m` is half the picture's width and half its height, m.
     pub fn parallel(eye: DVec3, forward: DVec3, half_m: [f64; 2], depth_m: f64) -> Self {
         let f = forward.normalize();
         let right = f.cross(f.any_orthonormal_vector()).normalize();
@@ -96,8 +97,8 @@ impl Taken {
         }
     }
 
-    /// Checks that the matrix can be inverted and that its near plane lies in the world, and the ranges of the other
-    /// fields.
+    /// Checks the ranges of all fields, that the matrix can be inverted, and that the middle of its near plane is
+    /// within 1e12 m of the world's origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -149,8 +150,8 @@ impl Taken {
 
 impl Occluder {
     /// Returns the map as shaders read it, at a time, for a camera at `eye` in the host's world, m. `to_enu` is the
-    /// rotation from the host's axes to the camera's east, north, up. `part` is the origin and the size of the map in
-    /// the table, texels.
+    /// rotation from the host's axes to the camera's east, north, up. `part` is the origin and the size, texels, of the
+    /// map in the table, the texture that holds all maps.
     pub fn uniform(&self, eye: DVec3, to_enu: DMat3, time_s: f64, part: [[u32; 2]; 2]) -> OccluderUniform {
         let [low, size] = part.map(|p| p.map(f64::from));
         let moved = eye - self.origin_m - self.velocity_m_s * (time_s - self.time_s);

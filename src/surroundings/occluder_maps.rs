@@ -1,6 +1,6 @@
-//! Occluder maps on the GPU: one table, a texture, for all maps. Its upper part has for each texel of each map the
-//! range of distances that the surface in it spans, m. The rows below have the ranges of cells of 8 x 8 and 64 x 64
-//! texels.
+//! Occluder maps on the GPU: one texture for all maps, called the table. Its first rows have, for each texel of each
+//! map, the range of distances, m, that the surface in the texel spans. The rows after them have the ranges of cells of
+//! 8 x 8 and 64 x 64 texels.
 
 use std::sync::Arc;
 
@@ -18,14 +18,14 @@ use crate::{
 
 /// Format of the ranges. A texel holds the bits of two floats, because not all drivers can render to 32-bit floats.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Value of a texel without a surface, which no path crosses: the bits of 1e12 and of -1e12.
+/// Value of a texel without a surface: the bits of 1e12 and of -1e12, a range that no path crosses.
 const NOTHING: wgpu::Color = wgpu::Color { r: 0x5368_d4a5_u32 as f64, g: 0xd368_d4a5_u32 as f64, b: 0.0, a: 0.0 };
 
 /// Uniform block of the pass that computes one map's texels: `MapUniform` of `shaders/surroundings/occluder_map.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct MapUniform {
-    /// Rays and depth of the view in which the host drew the map.
+    /// Rays and depth of the camera with which the host drew the map.
     depth: DepthUniform,
     /// Origin of the map in the table, texels.
     origin: [f32; 2],
@@ -51,7 +51,7 @@ struct OccluderTable {
     cells: [wgpu::Texture; 2],
 }
 
-/// Map in the table.
+/// Map with its place in the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Placed {
     /// Map as the host set it.
@@ -220,7 +220,7 @@ impl OccluderMaps {
         Ok(())
     }
 
-    /// Computes the ranges of a map's texels.
+    /// Computes the ranges of the texels of all maps.
     fn draw_texels(
         &self,
         device: &Device,

@@ -1,9 +1,9 @@
 //! Shelters, which keep rain off: the host's boxes (roofs, bridges, cabs, trucks) and convex shapes cut from them,
 //! standing or moving.
 //!
-//! A drop is removed if its slanted path, traced back relative to the box, meets the box. Whatever the wind, it is then
-//! dry in the lee of a box and inside it, and wet to windward. Each drop is tested exactly against each box, and
-//! against the planes that cut the box.
+//! A drop is removed if its slanted path, traced back relative to the box, meets the box. The lee and the inside of a
+//! box are therefore dry and the ground to windward is wet, whatever the wind. Each drop is tested exactly against each
+//! box, and against the planes that cut the box.
 
 use glam::{DMat3, DVec3};
 
@@ -30,8 +30,8 @@ impl Planes {
     /// Empty list of planes: the box stays whole.
     pub const NONE: Self = Self { all: [[0.0; 4]; MAX_PLANES], count: 0 };
 
-    /// Creates planes from normals and distances. Each is a unit vector in the box's axes that points out of the shape,
-    /// and the plane's distance from the box's middle along it, m, within 1e6.
+    /// Creates planes from normals and distances. A normal is a unit vector in the box's axes that points out of the
+    /// shape. The distance is that of the plane from the box's middle along the normal, m, within 1e6.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_PLANES`].
@@ -136,14 +136,15 @@ impl Shelter {
         if corners == 0 { -1.0 } else { within(sum / f64::from(corners)) }
     }
 
-    /// Returns whether the box stands still, at up to 0.1 m/s: one that moves does not keep the ground dry.
+    /// Returns whether the box stands still, which means a speed of at most 0.1 m/s. A box that moves does not keep the
+    /// ground dry.
     pub(crate) fn stands(&self) -> bool {
         self.velocity_m_s.length() <= 0.1
     }
 
     /// Returns whether the box can keep rain off a drop within `reach_m` of a camera. Other boxes need not be tested.
     /// `wind` is the air's velocity, (east, north, up), m/s; drops fall at `slowest_m_s` or faster. The answer may be
-    /// true for a box that keeps no rain off, but not the reverse.
+    /// true for a box that keeps no rain off, but is never false for a box that does.
     pub(crate) fn matters(&self, eye: DVec3, to_enu: DMat3, wind: DVec3, slowest_m_s: f64, reach_m: f64) -> bool {
         let center = to_enu * (self.center_m - eye);
         let radius = self.half_size_m.length();
@@ -159,7 +160,8 @@ impl Shelter {
 
     /// Returns the box as shaders test it, for a camera at `eye` in the host's world, m. `to_enu` is the rotation from
     /// the host's axes to the camera's east, north, up. Three rows map camera-relative east, north, up, m, into the
-    /// box's own space, where it spans -1 to 1. The fourth has its velocity, m/s, and 1 if it moves.
+    /// box's own space, where the box spans -1 to 1 along each axis. The fourth row has the box's velocity, m/s, and 1
+    /// if the box moves.
     pub(crate) fn rows(&self, eye: DVec3, to_enu: DMat3) -> [[f32; 4]; 4] {
         let axes = to_enu * self.axes;
         let center = to_enu * (self.center_m - eye);
@@ -184,8 +186,8 @@ impl Shelter {
     }
 }
 
-/// Returns the share of the way from `a` to `b` (host's world) at which it meets the shelter's shape; `None` if it does
-/// not.
+/// Returns the share of the way from `a` to `b` (host's world) at which the way meets the shelter's shape; `None` if it
+/// does not.
 pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     let own = |v: DVec3| shelter.axes.transpose() * v;
     let (o, d) = (own(a - shelter.center_m), own(b - a));

@@ -20,10 +20,10 @@ pub(crate) struct SnowHere {
     pub albedo: f64,
 }
 
-/// Effect of snow on the water below it.
+/// Influence of lying snow on the water on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meltwater {
-    /// Share of the ground under snow, which takes up the rain, 0 to 1.
+    /// Share of the ground that lies under snow, 0 to 1. The snow takes up the rain that falls there.
     pub covered: f64,
     /// Run-off from the snow, mm/h, averaged over all of the ground.
     pub runoff_mm_h: f64,
@@ -61,7 +61,7 @@ pub(crate) struct LyingSnow {
 }
 
 impl LyingSnow {
-    /// Records the water that leaves the snow during `seconds` from the time `from_s` on.
+    /// Records the water that leaves the snow from the time `from_s` to `from_s + seconds`, s.
     pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
         let first = (from_s / MELT_SLOT_S).floor() as i64;
         let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;
@@ -77,8 +77,8 @@ impl LyingSnow {
         }
     }
 
-    /// Returns the water that left the snow in the slot before that of `time_s`: the last slot that is complete at that
-    /// time, however far the snow has been simulated since.
+    /// Returns the water of the last recorded slot that is complete at `time_s`, however far the snow has been
+    /// simulated since. `None` if there is no such slot.
     pub fn meltwater(&self, time_s: f64) -> Option<Meltwater> {
         let wanted = (time_s / MELT_SLOT_S).floor() as i64 - 1;
         self.melt.iter().rev().find(|(slot, _)| *slot <= wanted).map(|(_, water)| *water)

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// Heights on a grid that is level and aligned to north at its origin; bilinear between nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TerrainHeights {
-    /// Position of the south-western node in the host's world. `heights_m` count from its height.
+    /// Position of the south-western node in the host's world. `heights_m` are relative to its height.
     pub origin: DVec3,
     /// Rotation from the host's axes at the origin to east, north, up.
     pub to_enu: DMat3,
@@ -30,7 +30,7 @@ impl TerrainHeights {
         Self { origin, to_enu, cell_m, nodes, heights_m, hash }
     }
 
-    /// Returns whether its nodes lie at the same places as those of `other`.
+    /// Returns whether the nodes lie at the same places as those of `other`.
     pub fn has_nodes_of(&self, other: &Self) -> bool {
         (self.origin, self.cell_m, self.nodes) == (other.origin, other.cell_m, other.nodes)
     }

@@ -1,5 +1,5 @@
-//! Wind that varies in space, for shaders: a texture that all views of a context share, and each camera's mapping into
-//! it. Shaders read it by `shaders/surroundings/wind.wgsl`.
+//! Wind that varies in space, for shaders: a texture that all views of a context share, and the mapping of each camera
+//! into the texture. Shaders read the texture with `shaders/surroundings/wind.wgsl`.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -72,7 +72,8 @@ struct WindState {
 }
 
 impl WindTexture {
-    /// Returns the texture with the values of `volume`. Without a volume it has one texel, which no shader reads.
+    /// Returns the texture with the values of `volume`. Without a volume it returns the last texture, or one of a
+    /// single texel if there is none yet; no shader reads either.
     pub fn view(&self, device: &Device, volume: Option<&WindVolume>) -> WindView {
         let state = &mut *self.held.lock().unwrap_or_else(PoisonError::into_inner);
         let nodes = volume.map_or([1; 3], |v| v.nodes);

@@ -19,7 +19,8 @@ const MOST_M: f32 = 1e5;
 /// Lattice of a terrain, level and aligned to true north at its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDesc {
-    /// Position of the south-western cell of tile (0, 0) in the host's world, m; all heights count from its height.
+    /// Position of the south-western cell of tile (0, 0) in the host's world, m; all heights are relative to its
+    /// height.
     pub origin: DVec3,
     /// Distance between neighbouring cells, m, \[0.01, 10 000\]. Default 1.
     pub cell_m: f64,
@@ -57,7 +58,7 @@ impl TerrainDesc {
     }
 }
 
-/// Key of a tile in the lattice: its number of tiles east and north of the origin, each within 1 000 000. Keys are
+/// Key of a tile in the lattice: how many tiles east and north of the origin it lies, each within 1 000 000. Keys are
 /// ordered by rows from the south.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct TileKey {
@@ -159,7 +160,7 @@ pub struct TerrainCells<'a> {
     /// Materials of the cells, `None` for a hole. If empty, they stay in an update, and all are unspecified in a new
     /// tile.
     pub classes: Rows<'a, Option<SurfaceClass>>,
-    /// Value that stands among the heights for cells without data, such as -9999, -32768, or that of the host's source.
+    /// Value among the heights that marks cells without data, such as -9999, -32768, or the value in the host's source.
     /// These cells become holes, and so do cells whose height is NaN. The value must be finite, and it must not be a
     /// height in use: neither in a cell to which `classes` gives a class other than unspecified, nor in a cell with
     /// ground in the same tile outside the rectangle. Default `None`: every number is a height.
@@ -177,7 +178,7 @@ impl TerrainCells<'_> {
         self.no_data_m.is_some_and(|none| height_m == none || height_m.is_nan())
     }
 
-    /// Checks that the values fit the tile. `is_hole` is whether a cell of the tile is a hole so far.
+    /// Checks that the values fit the tile. `is_hole` returns whether a cell of the tile is a hole before the change.
     pub(crate) fn check(&self, tile_cells: u32, is_hole: impl Fn(usize) -> bool) -> Result<()> {
         self.key.validate("terrain_cells.tile")?;
         let size = self.size_in(tile_cells);

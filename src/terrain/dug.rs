@@ -1,6 +1,6 @@
 //! A cell that was dug or covered: its height, and the soil that shows in it.
 
-/// Soil that shows in a cell, for whoever draws the ground.
+/// Soil that shows in a cell, for drawing the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct DugColor {
     /// Linear Rec. 709 albedo times the share of the cell that the soil covers, in codes of sRGB. Products of colour

@@ -1,10 +1,10 @@
 //! The host's terrain as data: heights and surface classes on square cells, kept in tiles.
 //!
 //! A **lattice** of equal square cells is level and aligned to true north at its origin. It is cut into equal square
-//! **tiles**. The key of a tile is its number of tiles east and north of the origin. All tiles share one lattice, so
-//! neighbouring tiles share no row of cells and need no stitching. The cell east of a tile's last column is the first
-//! column of the next tile; water and interpolated heights continue across the border. Cells are counted from the
-//! origin in whole numbers, so rounding is the same near the origin and far from it.
+//! **tiles**. The key of a tile says how many tiles east and north of the origin it lies. All tiles share one lattice,
+//! so neighbouring tiles share no row of cells and need no stitching. The cell east of a tile's last column is the
+//! first column of its eastern neighbour. Water and interpolated heights continue across the border. Cells are counted
+//! from the origin in whole numbers, so rounding is the same near the origin and far from it.
 //!
 //! A cell has a height and a class, or it is a **hole**, where there is no ground. The host adds and removes tiles and
 //! changes rectangles of cells. The cost of a change depends only on the number of cells that it changes, not on the

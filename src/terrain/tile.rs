@@ -8,12 +8,12 @@ use crate::chance::mixed;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tile {
     pub key: TileKey,
-    /// Heights above the terrain's origin, m, by rows from the south-west; holes have a height too. They are the host's
-    /// with the change of the soil.
+    /// Heights above the terrain's origin, m, by rows from the south-west; holes have a height too. These are the
+    /// host's heights with the change by the soil.
     pub heights_m: Vec<f32>,
-    /// Heights that the host gave. Empty where soil has changed none: they are `heights_m` then.
+    /// Heights that the host gave. Empty if soil has changed no height: `heights_m` are then the host's.
     undug_m: Vec<f32>,
-    /// Soil that shows in each cell. Empty where none does.
+    /// Soil that shows in each cell. Empty if soil shows in no cell.
     dug_colors: Vec<DugColor>,
     /// Class numbers of the cells, or [`HOLE`]. Empty if the host has given no class for any cell.
     classes: Vec<u8>,

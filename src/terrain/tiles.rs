@@ -78,7 +78,7 @@ pub(crate) struct Terrain {
     pub surface_soil: DugColor,
     /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
-    /// Last changes of its cells.
+    /// Last changes of the terrain's cells.
     pub recent: RecentChanges,
 }
 
@@ -170,7 +170,7 @@ impl Terrain {
         [low[0] + (cell & mask) as i32, low[1] + (cell >> self.bits) as i32]
     }
 
-    /// Position of the first cell of a tile, at height 0, in the host's world.
+    /// Position of the south-western cell of a tile, at height 0, in the host's world.
     pub fn origin_of(&self, key: TileKey) -> DVec3 {
         let low = self.rect(key).low;
         let plan = DVec3::new(f64::from(low[0]), f64::from(low[1]), 0.0) * self.desc.cell_m;
@@ -234,7 +234,7 @@ impl Terrain {
         cells.check(self.desc.tile_cells, |cell| tile.is_some_and(|tile| !tile.has_ground(cell)))
     }
 
-    /// Refuses a no-data value that is the height of a cell outside the rectangle.
+    /// Refuses a no-data value that is the height of a cell with ground in the same tile outside the rectangle.
     fn check_no_data(&self, cells: &TerrainCells<'_>, tile: &Tile) -> Result<()> {
         if cells.no_data_m.is_none() {
             return Ok(());
@@ -319,7 +319,7 @@ impl Terrain {
         changed
     }
 
-    /// Notes that the heights of a tile include the change of the soil up to its revision.
+    /// Notes that the heights of a tile include the change by the soil up to revision `soil_revision` of the soil.
     pub fn note_dug(&mut self, slot: u32, soil_revision: u64) {
         Arc::make_mut(&mut self.tiles[slot as usize]).soil_revision = soil_revision;
     }
@@ -428,7 +428,7 @@ impl Terrain {
 
     /// The facet of the ground at a position in cells east and north of the origin. Each square of four neighbouring
     /// cells is split along the diagonal from its south-western to its north-eastern cell. `None` where a corner of the
-    /// triangle has no ground; corners without weight do not count.
+    /// triangle has no ground; a corner with weight 0 may lack ground.
     pub fn facet_at(&self, cells: DVec2) -> Option<Facet> {
         if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
             return None;
@@ -456,8 +456,8 @@ impl Terrain {
         Some(self.facet_at(cells)?.height_m)
     }
 
-    /// Returns the height at a position in metres, for what flows over the ground. Outside the rectangle of all tiles
-    /// it is the height at the rectangle's border.
+    /// Returns the height at a position in metres east and north of the origin, m, for flow over the ground. Outside
+    /// the rectangle of all tiles it is the height at the rectangle's border. `None` where there is no ground.
     pub fn height_near(&self, place_m: DVec2) -> Option<f64> {
         let all = self.bounds?;
         let end = |v: [i32; 2], off: i32| DVec2::new(f64::from(v[0] - off), f64::from(v[1] - off));

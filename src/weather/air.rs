@@ -26,7 +26,7 @@ pub fn density_ratio(pressure_hpa: f64, temperature_c: f64) -> f64 {
 }
 
 /// Returns the scale height of air of this temperature (C), m: R T / g. With [`density_ratio`] at the same level, the
-/// column above it depends on the pressure alone, as in hydrostatic equilibrium.
+/// mass of the air above that level depends on the pressure alone, as in hydrostatic equilibrium.
 pub fn scale_height_m(temperature_c: f64) -> f64 {
     SCALE_HEIGHT_M_PER_K * (temperature_c + 273.15)
 }

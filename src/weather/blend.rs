@@ -1,8 +1,8 @@
 //! Blending of two `Conditions`: the weather during a change.
 //!
-//! Each quantity is blended in the variable whose equal steps the eye sees as equal. Each layer's geometry is weighted
-//! by the amount of the layer, so that a layer that fades in has its final geometry as soon as it is visible. Every
-//! field is continuous in time, even in layers that come and go.
+//! Extinctions are blended so that visibility changes by equal factors in equal steps; most other quantities are
+//! blended linearly. Each layer's geometry is weighted by the amount of the layer, so that a layer that fades in has
+//! its final geometry as soon as it is visible. Every field is continuous in time, even in layers that come and go.
 
 use super::conditions::{
     AerosolLayer, Air, CloudLightOverride, CloudSlab, Conditions, GroundLayer, SeaState, SurfaceCover, WindProfile,
@@ -11,32 +11,35 @@ use super::conditions::{
 use super::mix::mix;
 use super::precipitation::Falling;
 
-/// Weight of an absent layer's geometry relative to that of a full layer. The geometry changes only while the layer has
-/// about this amount, which cannot be seen. With 0 it would jump when the layer begins.
+/// Share of the larger amount that [`share`] adds to both amounts, so that the geometry of an absent layer keeps a
+/// small weight. While a layer fades in, its geometry changes mostly at about this share of its full amount, too little
+/// to be seen. With 0 the geometry would jump when the layer begins.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Returns the weight of `b` where amounts of `a` and `b` fade into each other: (t qb) / ((1 - t) qa + t qb). Each
-/// amount counts with [`LEAST_SHARE`] of the larger one added.
+/// Returns the weight of the second layer's geometry in a blend of two layers with the amounts `qa` and `qb`: (t qb) /
+/// ((1 - t) qa + t qb). Before that, [`LEAST_SHARE`] of the larger amount is added to both.
 fn share(qa: f64, qb: f64, t: f64) -> f64 {
     let least = LEAST_SHARE * qa.max(qb);
     let (a, b) = ((1.0 - t) * (qa + least), t * (qb + least));
     if a + b > 0.0 { b / (a + b) } else { t }
 }
 
-/// Lower limit of an extinction in [`geometric_weight`], 1/m: clearer than air at any height that has weather. A
-/// geometric mean needs values above 0.
+/// Lower limit of an extinction in [`geometric_weight`], 1/m. At any height that has weather the extinction of the air
+/// is above this limit. A geometric mean needs values above 0.
 const CLEAREST_PER_M: f64 = 1e-9;
 
-/// Returns the weight for which mix(a, b, w) = a^(1-t) b^t, both positive. Visibility then changes by equal factors in
-/// equal steps of t, which is how differences of visibility are perceived (Weber and Fechner).
+/// Returns the weight w for which mix(a, b, w) = a^(1-t) b^t. Visibility then changes by equal factors in equal steps
+/// of t, which is how differences of visibility are perceived (Weber and Fechner). `a` and `b` are raised to at least
+/// [`CLEAREST_PER_M`].
 pub(super) fn geometric_weight(a: f64, b: f64, t: f64) -> f64 {
     let log_ratio = libm::log(b.max(CLEAREST_PER_M) / a.max(CLEAREST_PER_M));
     let whole = libm::expm1(log_ratio);
-    // Below 1e-9 the limit of the quotient is t itself; computed, it would be a quotient of two rounding errors.
+    // At a ratio of 1 the quotient would be 0 / 0. Below a logarithm of 1e-9 it differs from t by less than 1e-9.
     if log_ratio.abs() < 1e-9 || !whole.is_finite() { t } else { libm::expm1(t * log_ratio) / whole }
 }
 
-/// Returns the sum of the extinctions of air, aerosol, fog and precipitation. Fog counts wherever its layer lies.
+/// Returns the sum of the extinctions of air, aerosol, fog and precipitation. The extinction inside the fog's layer
+/// counts in full, even if the layer is shallow, patchy or above the station.
 fn burden_per_m(c: &Conditions) -> f64 {
     c.air.rayleigh_extinction_per_m
         + c.aerosol.extinction_per_m
@@ -45,13 +48,14 @@ fn burden_per_m(c: &Conditions) -> f64 {
 }
 
 impl Conditions {
-    /// Returns the weather between `self` (at `t` = 0) and `other` (at 1); `t` outside is clamped, NaN counts as 0.
+    /// Returns the weather between `self` (at `t` = 0) and `other` (at `t` = 1). Outside 0 to 1 `t` is clamped, and NaN
+    /// counts as 0.
     ///
     /// All extinctions share one weight, chosen so that the visibility changes by equal factors in equal steps of `t`.
-    /// Cloud layers blend slot by slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the light
-    /// that a cloud stops. While one overcast replaces another, the share of clear sky never exceeds that at the
-    /// clearer end. Wind blends as a vector, so a turn by more than 90 degrees passes through a lull. The geometry and
-    /// optics of a layer are weighted by its amount at each end. Everything else is linear.
+    /// Cloud layers blend slot by slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the share
+    /// of the light that a cloud stops. While one overcast replaces another, the share of clear sky never exceeds that
+    /// at the clearer end. Wind blends as a vector, so a turn by more than 90 degrees passes through a lull. The
+    /// geometry and optics of a layer are weighted by its amount at each end. Everything else is linear.
     pub fn lerp(&self, other: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *other;
@@ -78,9 +82,10 @@ impl Conditions {
     }
 }
 
-/// Returns the share of clear sky at `t` between two weathers. It is `independent`, the share that independently placed
-/// layers leave clear, less an excess. At each end the excess is what independent layers would leave clear beyond the
-/// actual share; in between it is interpolated. The result is clamped to the values at the ends.
+/// Returns the share of clear sky at `t` between two weathers: `independent` minus an excess. `independent` is the
+/// share that the blended layers would leave clear if they were placed independently. The excess of a weather is the
+/// share that its layers would leave clear if placed independently, minus the actual share. The excess is interpolated
+/// between the two weathers. The result is clamped to the range between their actual shares.
 pub(super) fn clear_between_ends([a, b]: [&Conditions; 2], independent: f64, t: f64) -> f64 {
     let less = |c: &Conditions| clear_between(&c.clouds) - c.clear_sky();
     let ends = [a.clear_sky(), b.clear_sky()];
@@ -138,7 +143,7 @@ impl GroundLayer {
 impl Falling {
     pub(super) fn blend(&self, other: &Self, t: f64, w: f64) -> Self {
         let snow_mm_h = mix(self.snow_mm_h, other.snow_mm_h, t);
-        // Kinds of snow that comes or goes are weighted by their amounts.
+        // The shares of grains and crystals are weighted by the amount of snow at each end.
         let kind = |share: fn(&Self) -> f64| {
             let amount = mix(self.snow_mm_h * share(self), other.snow_mm_h * share(other), t);
             if snow_mm_h > 0.0 { (amount / snow_mm_h).clamp(0.0, 1.0) } else { share(other) }

@@ -3,13 +3,14 @@
 //! # Model
 //! The part of a layer above a place dims the light there; the part below reflects light up again. For each part above,
 //! the model needs the share of the sky that its clouds cover, and their optical depth ([`super::cloud_part`]). Layers,
-//! and the two parts of a layer around a place inside it, are combined by adding (van de Hulst 1980), each as a mixture
-//! of cover and holes. Fluxes are two-stream fluxes; light that droplets scatter nearly straight on stays in the beam
-//! (Joseph, Wiscombe and Weinman 1976). A layer divided at any height therefore transmits as much as the whole.
+//! and the two parts of a layer around a place inside it, are combined by the adding method (van de Hulst 1980), each
+//! as a mixture of cover and holes. Fluxes are two-stream fluxes; light that droplets scatter nearly straight on stays
+//! in the beam (Joseph, Wiscombe and Weinman 1976). A layer divided at any height therefore transmits as much as the
+//! whole.
 //!
 //! # Error
-//! Error of the direct light, against the mean over places of the drawn clouds:
-//! `cargo test --lib clouds::light::mean_light -- --nocapture`.
+//! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error of the direct light against the mean
+//! over places of the drawn clouds.
 
 use super::cloud_part::{LOWEST, SlabPart};
 use super::conditions::{CloudSlab, Conditions};
@@ -19,22 +20,23 @@ use super::conditions::{CloudSlab, Conditions};
 const HIDING: f64 = 0.25;
 /// Weight of the value for a clear sky in [`over_layers`], as a share of the sky.
 const LEAST_COVER: f64 = 1e-6;
-/// Reflectance of open land below clouds, for light that is reflected to and fro between them.
+/// Reflectance of open land below clouds, for light that is reflected to and fro between land and clouds.
 pub(crate) const LAND_ALBEDO: f64 = 0.2;
 /// Greatest height above a cloud's base at which its precipitation begins, m.
 const MOST_GROWTH_M: f64 = 500.0;
-/// Depth over which precipitation sets in, m: half of it above the height where it begins, half below. Its extinction
-/// sets in around the cloud's base instead ([`Conditions::below_cloud`]).
+/// Depth over which precipitation sets in, m. Half of this depth lies above the height where the precipitation begins,
+/// half below. The extinction sets in over the same depth around the cloud's base ([`Conditions::below_cloud`]).
 pub(crate) const ONSET_M: f64 = 100.0;
 
-/// Returns the share of the precipitation that has set in at an altitude. It sets in around the altitude `begins_m`,
-/// over the depth [`ONSET_M`].
+/// Returns the share of the precipitation that has set in at an altitude. The precipitation sets in around the altitude
+/// `begins_m`, over the depth [`ONSET_M`].
 fn onset(begins_m: f64, altitude_m: f64) -> f64 {
     ((begins_m + 0.5 * ONSET_M - altitude_m) / ONSET_M).clamp(0.0, 1.0)
 }
 
-/// Returns the mean of `f` over `layers` (cover, layer), weighted by the share of the sky in which a layer is the first
-/// one met in this order; `clear` without layers. Continuous when a layer comes or goes.
+/// Returns the mean of `f` over `layers` (cover, layer), weighted by the share of the sky in which each layer is the
+/// first one met, in the order of `layers`. Without layers it is `clear`. The result is continuous when a layer comes
+/// or goes.
 fn over_layers<'a>(
     layers: impl Iterator<Item = (f64, &'a CloudSlab)>,
     clear: f64,
@@ -48,7 +50,7 @@ fn over_layers<'a>(
     sum / met
 }
 
-/// Light that clouds leave, each field as a share of the light above them.
+/// Light that arrives through the clouds, each field as a share of the light above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLight {
     /// Share of the sun's beam that arrives as a beam: a mean over places, in which holes count by their probability.
@@ -72,12 +74,12 @@ impl Conditions {
         self
     }
 
-    /// Returns the light that the clouds leave of sun and sky: horizontal irradiance = sun (direct + diffuse) + sky
-    /// light x sky.
+    /// Returns the shares of sunlight and sky light that arrive through the clouds. The horizontal irradiance is sun
+    /// (direct + diffuse) + sky light x sky.
     ///
     /// `cos_sun_zenith`: cosine of the sun's zenith angle; values below 0.03 count as 0.03. `ground_albedo`: clamped to
-    /// 0 to 1; 0.2 for most land. Layers are combined from the top by adding (van de Hulst 1980), each as a mixture of
-    /// cover and holes. The host's [`super::CloudLightOverride`] is blended in last.
+    /// 0 to 1; 0.2 for most land. Layers are combined from the top by the adding method (van de Hulst 1980), each as a
+    /// mixture of cover and holes. The host's [`super::CloudLightOverride`] is blended in last.
     pub fn cloud_light(&self, cos_sun_zenith: f64, ground_albedo: f64) -> CloudLight {
         self.cloud_light_at(cos_sun_zenith, ground_albedo, f64::NEG_INFINITY)
     }
@@ -96,10 +98,10 @@ impl Conditions {
         over_layers(layers, altitude_m, |s| s.top_m() + station_m).max(altitude_m)
     }
 
-    /// Returns the altitude at which precipitation begins. It lies within the layers that are met first from below (a
-    /// mean), at least 100 m above the station; 2 km above the station if there is no cloud. Precipitation grows on its
-    /// way down through the lower half of its cloud, so that it also falls on a hill inside a low deck; in a thicker
-    /// cloud, through the lowest 500 m.
+    /// Returns the altitude at which precipitation begins: a mean over the layers that are met first from below, and 2
+    /// km above the station if there is no cloud. Precipitation grows on its way down through the lower half of its
+    /// cloud, at most through the lowest 500 m, so that it also falls on a hill inside a low deck. A base below 100 m
+    /// above the station counts as 100 m.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
         self.over_first_clouds(begins_m)
@@ -130,8 +132,8 @@ impl Conditions {
         self.air.station_altitude_m + over_layers(layers, 2000.0, height_m)
     }
 
-    /// Returns the share of the sky over a place that opaque cloud hides. A thin layer, or the part of one above the
-    /// place, counts by the light that it takes.
+    /// Returns the share of the sky over a place that opaque cloud hides. A layer counts only with its part above the
+    /// place, and a thin part only with its opacity.
     pub(crate) fn opaque_cover(&self, altitude_m: f64) -> f64 {
         let hidden = |part: SlabPart<'_>| -part.cover * libm::expm1(-HIDING * part.depth);
         let clear = self.layers_above(altitude_m).map(hidden).fold(1.0, |clear, hidden| clear * (1.0 - hidden));
@@ -172,7 +174,7 @@ impl Conditions {
         self.cloud_light.weight * over_layers(self.cloud_slabs().map(|s| (s.cover, s)), 1.0, below)
     }
 
-    /// Returns the light that comes down at an altitude, and the share of it that is reflected up.
+    /// Returns the light that comes down at an altitude, and the shares of light that everything below reflects up.
     fn fluxes_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> (Fluxes, FromBelow) {
         let mu = cos_sun_zenith.clamp(LOWEST, 1.0);
         let height_m = altitude_m - self.air.station_altitude_m;
@@ -217,8 +219,8 @@ struct FromAbove {
     clear: f64,
     /// Share of the beam that met no cloud.
     slanted: f64,
-    /// Light that met no cloud, but would have met one if the place were below all layers. It is a sum of each layer's
-    /// contribution: the difference of two nearly equal products would be rounding error, light where there is none.
+    /// Light that met no cloud, but would have met one if the place were below all layers. It is summed layer by layer.
+    /// As the difference of two nearly equal products it would have a rounding error: light where there is none.
     open: f64,
     /// Share of the beam that comes down scattered.
     diffuse: f64,

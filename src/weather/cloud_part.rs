@@ -15,7 +15,8 @@ use super::mix::mix;
 
 use crate::numerics::smoothstep;
 
-/// Sine of the lowest sun whose beam is traced through clouds; light from lower is treated as coming from there.
+/// Sine of the lowest elevation of the sun at which its beam is traced through clouds. The light of a lower sun is
+/// treated as coming from this elevation.
 pub(super) const LOWEST: f64 = 0.03;
 /// Upper limit of the spread of depths in broken clouds: that of the deepest clouds to which the law was fitted.
 const MOST_SPREAD: f64 = 2.6;
@@ -25,11 +26,11 @@ const CLOSES: [f64; 2] = [0.99, 1.0];
 /// Part of a layer that lies on one side of a height.
 pub(super) struct SlabPart<'a> {
     pub slab: &'a CloudSlab,
-    /// Share of the sky that its clouds cover, 0 to 1.
+    /// Share of the sky that the part's clouds cover, 0 to 1.
     pub cover: f64,
-    /// Their vertical optical depth, averaged over the covered area.
+    /// Vertical optical depth of the part's clouds, averaged over the covered area.
     pub depth: f64,
-    /// Share of the layer's thickness that they span.
+    /// Share of the layer's thickness that the part spans.
     share: f64,
 }
 
@@ -49,11 +50,12 @@ impl CloudSlab {
         if self.scale_m.is_finite() { smoothstep(CLOSES[0], CLOSES[1], self.cover) } else { 1.0 }
     }
 
-    /// Shares of its cover and of its optical depth above a height, which counts from 0 at the base to 1 at the top.
+    /// Returns the shares of the layer's cover and of its optical depth above a height. The height counts from 0 at the
+    /// base to 1 at the top.
     ///
-    /// Laws fitted to means over the drawn clouds (`clouds::field`). The higher above the base, the fewer broken clouds
-    /// reach there; a cumulonimbus has its anvil on top; a closed layer ends below its top, and more unevenly for
-    /// sheets than for cumulus.
+    /// The laws are fitted to means over the drawn clouds (`clouds::field`). The higher above the base, the fewer
+    /// broken clouds reach there. A cumulonimbus has its anvil on top. A closed layer ends below its top, more unevenly
+    /// in sheets than in cumulus.
     fn shares_above(&self, height: f64) -> [f64; 2] {
         if height <= 0.0 || height >= 1.0 {
             return [1.0 - height; 2];
@@ -69,8 +71,8 @@ impl CloudSlab {
         mix2(broken, even, self.closed())
     }
 
-    /// Returns the shares of [`Self::shares_above`] for broken clouds. A dome rises by the excess of the field over its
-    /// threshold, and the field has a normal distribution.
+    /// Returns the shares of [`Self::shares_above`] for broken clouds. A dome rises by the excess of the drawn clouds'
+    /// field (`clouds::field`) over its threshold, and the field has a normal distribution.
     fn broken_above(&self, height: f64, heaped: f64) -> [f64; 2] {
         let tall = (2.0 * self.convection - 1.0).max(0.0);
         let left = (1.0 - height / (1.0 - 0.15 * heaped * (1.0 - tall))).max(0.0);
@@ -87,7 +89,7 @@ impl CloudSlab {
         ((height_m - self.base_m) / self.thickness_m.max(1e-3)).clamp(0.0, 1.0)
     }
 
-    /// Shares of its cover and of its optical depth above a height over the station.
+    /// Returns the shares of the layer's cover and of its optical depth above a height over the station, m.
     pub(super) fn shares_above_m(&self, height_m: f64) -> [f64; 2] {
         self.shares_above(self.height(height_m))
     }
@@ -112,7 +114,7 @@ impl CloudSlab {
 }
 
 impl SlabPart<'_> {
-    /// Returns the share of a beam that meets its clouds; `mu` is the sine of the beam's elevation.
+    /// Returns the share of a beam that meets the part's clouds; `mu` is the sine of the beam's elevation.
     ///
     /// For gaps between randomly placed clouds, (1 - cover) is raised to a power that grows with the tangent of the
     /// zenith angle times the ratio of the clouds' height to their spacing (Kauth and Penquite 1967). The vertically
@@ -133,7 +135,8 @@ impl SlabPart<'_> {
         -libm::expm1(power * libm::log1p(-self.cover))
     }
 
-    /// Returns the share of the beam that passes unscattered through the clouds that it meets.
+    /// Returns the share that passes the clouds unscattered, of the beam that meets them. `hit` is the share of the
+    /// whole beam that meets them.
     ///
     /// Depths of broken clouds have a gamma distribution (Barker 1996).
     fn through(&self, hit: f64, mu: f64) -> f64 {
@@ -164,7 +167,7 @@ impl SlabPart<'_> {
         }
     }
 
-    /// Returns the share of diffuse light that it reflects.
+    /// Returns the share of diffuse light that the part reflects.
     pub(super) fn back(&self) -> f64 {
         self.cover * slab_diffuse_reflectance(self.depth, self.slab.asymmetry)
     }
@@ -172,10 +175,10 @@ impl SlabPart<'_> {
 
 /// Shares into which a part of a layer splits a beam.
 pub(super) struct Met {
-    /// Share that meets its clouds.
+    /// Share that meets the part's clouds.
     pub hit: f64,
-    /// Share that meets its clouds and passes unscattered; `beam_through` also contains light scattered nearly straight
-    /// on.
+    /// Share that meets the part's clouds and passes unscattered; `beam_through` also contains light scattered nearly
+    /// straight on.
     pub through: f64,
     pub beam_through: f64,
     /// Share that is reflected up.
@@ -204,7 +207,8 @@ pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> 
     ((gamma1 * tau + (gamma3 - gamma1 * mu) * beam) / (1.0 + gamma1 * tau)).clamp(0.0, 1.0)
 }
 
-/// Returns the reflectance of the same slab for diffuse light: gamma1 tau / (1 + gamma1 tau) (Meador and Weaver 1980).
+/// Returns the reflectance of a slab without absorption for diffuse light: gamma1 tau / (1 + gamma1 tau) (Meador and
+/// Weaver 1980), with gamma1 and tau as in [`slab_reflectance`].
 pub fn slab_diffuse_reflectance(optical_depth: f64, asymmetry: f64) -> f64 {
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);
     let x = 0.75 * (1.0 - asymmetry / (1.0 + asymmetry)) * tau;

@@ -20,9 +20,8 @@ struct Substance {
 /// Returns the composition of a kind of cloud. Water and droplets of stratus and cumulus are those of Diem (1948) and
 /// aufm Kampe and Weickmann (1957) as commonly tabulated (stratus 0.2 g/m^3, 7 um; fair-weather cumulus 0.5, 4).
 /// Towering cumulus fills half of its layer with the 2.5 g/m^3 of its core; a cumulonimbus is diluted by entrainment.
-/// Ice follows Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO cloud atlas). Cells of
-/// stratocumulus are some three to five times as wide as deep, elements of altocumulus 1 to 5 degrees wide (WMO cloud
-/// atlas).
+/// Water and crystal radii of ice clouds follow Heymsfield (2003). Thicknesses are typical of temperate latitudes (WMO
+/// cloud atlas). Cells of stratocumulus are some three to five times as wide as deep.
 fn substance(kind: CloudKind) -> Substance {
     let s = |[thickness_m, water_g_m3, droplet_radius_um]: [f64; 3],
              convection,
@@ -62,7 +61,7 @@ const MIDDLE_FROM_M: f64 = 2000.0;
 const HIGH_FROM_M: f64 = 6000.0;
 
 /// Chooses the kind of a layer of unknown kind: by level, by cover (more than half is a sheet), and by its
-/// precipitation (`raining`: more than drizzle, which falls from stratus).
+/// precipitation. `raining` is whether more than drizzle falls from the layer: drizzle does not change the kind.
 fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
     let sheet = layer.cover > 0.5;
     match (layer.base_m, sheet) {
@@ -88,8 +87,8 @@ pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: 
 
 /// Returns the water that a cloud must hold to give a rate of rain, kg/m^2: the rate divided by the rate at which cloud
 /// water turns into rain (Kessler 1969). This is 1e-3 1/s by coalescence of droplets, plus 2.2 q^0.875 1/s by falling
-/// rain that collects droplets. The rain water in the air q (kg/kg, density 1.2 kg/m^3) follows from the rate by
-/// Marshall and Palmer's 0.072 R^0.88 g/m^3.
+/// rain that collects droplets. q is the rain water in the air, kg/kg, for a density of the air of 1.2 kg/m^3. It
+/// follows from the rate R by Marshall and Palmer's 0.072 R^0.88 g/m^3.
 pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -148,9 +147,10 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
 /// Converts a weather's layers to slabs, each in a slot of its level, so that a blend pairs low with low and high with
 /// high.
 ///
-/// Rain needs cloud. The layer from which it falls holds at least [`water_path_for_rate_kg_m2`], and if the host named
-/// no cloud at all, an overcast at 600 m is added: nimbostratus, in showers towering cumulus, in drizzle stratocumulus
-/// (`rain_needs_cloud` false switches both off). Ice crystals fall from a clear sky.
+/// Precipitation, snow included, needs cloud; only ice crystals fall from a clear sky. The layer from which
+/// precipitation falls holds at least [`water_path_for_rate_kg_m2`], and if the host named no cloud at all, an overcast
+/// at 600 m is added: nimbostratus, in showers towering cumulus, in drizzle stratocumulus (`rain_needs_cloud` false
+/// switches both off).
 pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
@@ -177,7 +177,7 @@ pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: boo
 const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
 
 /// Puts slabs, lowest first, into the slots of their level; if a level has more slabs than slots, the other levels give
-/// up slots. The slots are then in the order of heights, in which light passes them ([`Conditions::cloud_light`]).
+/// up slots. The slabs then ascend from slot to slot, and [`Conditions::cloud_light`] goes through them from the top.
 fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
     let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);

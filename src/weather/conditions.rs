@@ -24,7 +24,7 @@ pub struct Conditions {
     pub air: Air,
     /// Dry or swollen particles in the mixed layer; the sky's Mie medium.
     pub aerosol: AerosolLayer,
-    /// Droplets or lifted snow in a layer at the ground; drawn by the fog.
+    /// Droplets, or lifted snow or dust, in a layer at the ground; drawn by the fog effect.
     pub fog: GroundLayer,
     /// Precipitation.
     pub precipitation: Falling,
@@ -108,7 +108,7 @@ pub struct GroundLayer {
     pub top_m: f64,
     /// Depth of the soft upper edge, m.
     pub softness_m: f64,
-    /// Share of the ground that it covers, 0 to 1.
+    /// Share of the ground that the layer covers, 0 to 1.
     pub coverage: f64,
     /// Size of a patch if `coverage` is below 1, or of a gust's patch if `lifted` is not 0, m.
     pub patch_size_m: f64,
@@ -145,10 +145,10 @@ pub struct CloudSlab {
     /// How much the layer is stretched into fibres, 0 to 1: cirrus.
     #[serde(default)]
     pub fibre: f64,
-    /// Wind that carries it, m/s towards east and north.
+    /// Wind that carries the layer, m/s towards east and north.
     #[serde(default)]
     pub wind_m_s: [f64; 2],
-    /// Time in which its clouds form and dissolve, s.
+    /// Time in which the layer's clouds form and dissolve, s.
     #[serde(default = "common_life")]
     pub life_s: f64,
 }
@@ -191,8 +191,8 @@ pub struct WindProfile {
     pub roughness_length_m: f64,
     /// Roughness length of the sea, m (Charnock 1955).
     pub sea_roughness_length_m: f64,
-    /// Upward velocity from 100 m above ground on, m/s; below, it decreases linearly to 0 at the ground. 0 outside
-    /// weather regions.
+    /// Upward velocity at 100 m above ground and higher, m/s. Below 100 m it decreases linearly to 0 at the ground. It
+    /// is 0 outside weather regions.
     #[serde(default, skip_serializing_if = "is_none")]
     pub up_m_s: f64,
 }
@@ -202,17 +202,17 @@ pub struct WindProfile {
 pub struct SeaState {
     /// Significant height of the wind sea, m.
     pub significant_wave_height_m: f64,
-    /// Share of this height that a host or a report gave, 0 to 1. The rest is that of a sea which the wind has fully
-    /// developed.
+    /// Share of `significant_wave_height_m` that a host or a report gave, 0 to 1. The rest is the height of a sea that
+    /// the wind has fully developed.
     #[serde(default, skip_serializing_if = "is_none")]
     pub given_share: f64,
     /// Significant height of the swell, m; 0 without swell.
     pub swell_height_m: f64,
     /// Peak period of the swell, s.
     pub swell_period_s: f64,
-    /// East component of the unit vector in which the swell travels.
+    /// East component of the unit vector along which the swell travels.
     pub swell_east: f64,
-    /// North component of the unit vector in which the swell travels.
+    /// North component of the unit vector along which the swell travels.
     pub swell_north: f64,
     /// Water temperature, degrees Celsius.
     pub temperature_c: f64,
@@ -235,13 +235,13 @@ fn whole() -> f64 {
     1.0
 }
 
-/// Whether a value is 0, which saved states leave out.
+/// Whether a value is 0. Saved states leave out such values.
 fn is_none(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// Returns the share of the sky that independently placed layers leave clear (random overlap): the product of 1 -
-/// cover.
+/// Returns the share of the sky that independently placed layers leave clear (random overlap): the product of (1 -
+/// cover) over all layers.
 pub(super) fn clear_between(clouds: &[CloudSlab; MAX_CLOUD_LAYERS]) -> f64 {
     clouds.iter().fold(1.0, |clear, slab| clear * (1.0 - slab.cover))
 }

@@ -1,5 +1,5 @@
-//! Derivation of conditions from a weather: every coupling between parts of the weather is a published law that the
-//! host can override.
+//! Derivation of conditions from a weather: every coupling between parts of the weather is a published law. The host
+//! can replace some of the laws by values ([`Overrides`]).
 
 use super::conditions::{CloudLightOverride, Conditions, clear_between};
 use super::model::Weather;

@@ -39,7 +39,7 @@ impl Conditions {
         let station_m = self.air.station_altitude_m;
         let altitude_m = altitude_m.max(station_m - 1000.0);
         let station_k = self.air.temperature_c + ZERO_C_K;
-        // The coldest weather stays above absolute zero up to any tropopause.
+        // The limit of 100 K keeps the temperature above absolute zero in any weather.
         let kelvin = |a: f64| (station_k - LAPSE_K_PER_M * (a.min(TROPOPAUSE_M) - station_m)).max(100.0);
         let (here_k, bend_m) = (kelvin(altitude_m), altitude_m.min(TROPOPAUSE_M.max(station_m)));
         let bend_k = kelvin(bend_m);

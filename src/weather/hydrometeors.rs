@@ -31,8 +31,8 @@ pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     )
 }
 
-/// Returns the exponential of a polynomial in the logarithm of the rate, from `least_mm_h` on; below, it continues with
-/// its slope there.
+/// Returns the exponential of a polynomial in the logarithm of the rate, from `least_mm_h` on. Below `least_mm_h` it
+/// continues with the slope that the polynomial has there.
 fn fitted<const N: usize>(c: [f64; N], least_mm_h: f64, rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -95,8 +95,8 @@ pub fn ice_pellet_extinction_per_m(rate_mm_h: f64) -> f64 {
 }
 
 /// Returns the extinction of hail, 1/m, for stones by Cheng and English (1983; [`crate::rain::ice`]). A quintic in ln R
-/// from 0.1 mm/h on, within 2 % of the integral. Beyond the rate at which their law gives the largest stones it is
-/// proportional to the rate.
+/// from 0.1 mm/h on, within 2 % of the integral. Beyond 37 mm/h, the rate at which their law gives the largest stones,
+/// the extinction is proportional to the rate.
 pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
     const MOST_MM_H: f64 = 37.0;
     let c = [

@@ -70,15 +70,15 @@ kinds! {
     FogKind, "fog.kind" {
         /// No fog; the aerosol accounts for the visibility.
         None = 0, "none";
-        /// Mist (METAR BR): droplets, 1 to 5 km.
+        /// Mist (METAR BR): droplets, with a visibility of 1 to 5 km.
         Mist = 1, "mist";
-        /// Shallow fog (METAR MIFG): below 2 m, clear above.
+        /// Shallow fog (METAR MIFG): lower than 2 m, with clear air above.
         Shallow = 2, "shallow";
         /// Patches of fog (METAR BCFG).
         Patches = 3, "patches";
         /// Part of the aerodrome in fog (METAR PRFG).
         Partial = 4, "partial";
-        /// Fog (METAR FG): below 1 km.
+        /// Fog (METAR FG): visibility below 1 km.
         Fog = 5, "fog";
         /// Freezing fog (METAR FZFG): supercooled droplets.
         Freezing = 6, "freezing";
@@ -86,7 +86,7 @@ kinds! {
 }
 
 kinds! {
-    /// Cloud genera, and the two kinds that METAR names.
+    /// Cloud genera, and towering cumulus, which METAR names.
     CloudKind, "clouds[].kind" {
         /// Unknown kind: `derive` chooses one by height, cover and precipitation.
         Unknown = 0, "unknown";
@@ -188,16 +188,17 @@ kinds! {
 }
 
 kinds! {
-    /// Rule by which the cloud groups of a report count. National practices differ, and the report does not say which
-    /// one it follows.
+    /// Meaning of the amounts in the cloud groups of a report. National practices differ, and a report does not say
+    /// which one it follows.
     CloudAmountRule, "cloud_amounts" {
         /// By the station's location indicator: [`CloudAmountRule::Sums`] in the United States and Canada, else
         /// [`CloudAmountRule::Layers`].
         ByStation = 0, "by_station";
-        /// Each group counts the sky that its layer and all lower layers hide together (Federal Meteorological Handbook
-        /// No. 1, 9.4.2 b and 9.5.2).
+        /// Each amount is the sky that the group's layer and all lower layers hide together (Federal Meteorological
+        /// Handbook No. 1, 9.4.2 b and 9.5.2).
         Sums = 1, "sums";
-        /// Each group counts its own layer as if there were no other cloud (WMO-No. 306, FM 15, 15.9.1.2).
+        /// Each amount is the sky that the group's layer alone hides, as if there were no other cloud (WMO-No. 306, FM
+        /// 15, 15.9.1.2).
         Layers = 2, "layers";
     }
 }

@@ -14,13 +14,14 @@ pub const LIFTING_M_S: f64 = 7.0;
 pub(crate) const DUST_ABSORPTION_EXPONENT: f64 = 2.7;
 
 /// Returns the amount of loose grains that a wind carries, up to a constant factor: u^3 (1 - (ut / u)^2), and 0 below
-/// the threshold (Owen 1964).
+/// the threshold (Owen 1964). u is the speed at 10 m, and ut = [`LIFTING_M_S`].
 pub fn carried(speed_m_s: f64) -> f64 {
     speed_m_s * (speed_m_s * speed_m_s - LIFTING_M_S * LIFTING_M_S).max(0.0)
 }
 
-/// Mean amounts carried by gusts, m^3/s^3. Below the first the wind lifts nothing; matter in the air was then lifted
-/// earlier and is evenly mixed. From the second on, the unevenness of the gusts counts fully.
+/// Mean amounts carried by gusts ([`carried`]), m^3/s^3, between which the unevenness sets in. Up to the first amount
+/// the wind lifts nothing. Matter in the air was then lifted earlier and is evenly mixed. From the second amount on,
+/// the unevenness of the gusts counts fully.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
 /// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\]: 0 where
@@ -45,7 +46,8 @@ pub fn unevenness(wind: &WindProfile) -> f64 {
 const BLOWN_RADIUS_M: f64 = 7e-5;
 /// Depths of low drifting snow and of high blowing snow, m.
 const BLOWN_TOP_M: [f64; 2] = [1.5, 50.0];
-/// Excess of the wind over the threshold at which the layer has risen from the first depth to the second, m/s.
+/// Difference, m/s, between the wind speed at which the layer reaches the second depth of [`BLOWN_TOP_M`] and the
+/// threshold of lifting.
 const BLOWN_RISE_M_S: f64 = 5.0;
 
 /// Returns the friction velocity over drifting snow, m/s, for a wind at 10 m (Pomeroy and Gray 1990).
@@ -54,15 +56,16 @@ pub fn drift_friction_velocity_m_s(wind_m_s: f64) -> f64 {
 }
 
 /// Returns the density of snow in the air at a height above loose snow, kg/m^3: 0.8 exp(-1.55 (4.784 u*^-0.544 -
-/// z^-0.544)) (Pomeroy and Male 1992).
+/// z^-0.544)) (Pomeroy and Male 1992), with the friction velocity u*, m/s, and the height z, m.
 pub fn blown_kg_m3(wind_m_s: f64, height_m: f64) -> f64 {
     let u = drift_friction_velocity_m_s(wind_m_s);
     0.8 * libm::exp(-1.55 * (4.784 * libm::pow(u, -0.544) - libm::pow(height_m, -0.544)))
 }
 
 /// Adds the layer of snow that the wind lifts, unless the weather already has a layer at the ground. Loose snow covers
-/// the share `covered` of the ground and moves above this threshold. The extinction is that of spheres with an
-/// efficiency of 2: 3 eta / (2 rho r).
+/// the share `covered` of the ground and moves in wind above `threshold_m_s`. The extinction is that of spheres with an
+/// efficiency of 2: 3 eta / (2 rho r), with the density eta of the snow in the air, the density rho of ice and the
+/// radius r.
 pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
     let wind = c.wind.speed_m_s();
     if c.fog.extinction_per_m > 0.0 || wind <= threshold_m_s || covered <= 0.0 {

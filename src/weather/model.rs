@@ -63,7 +63,7 @@ pub struct Aerosol {
     pub asymmetry: Option<f64>,
     /// Height over which the density of the particles falls by a factor e, m. Range [10, 20 000]; default by kind.
     /// Raised to at least the station's altitude divided by 4.6 (435 m at 2000 m): the sky's tables count densities
-    /// from sea level, and hold there at most a hundred times the density at the station.
+    /// from sea level, and the density there can be at most a hundred times that at the station.
     pub scale_height_m: Option<f64>,
 }
 
@@ -76,16 +76,17 @@ pub struct Fog {
     pub top_m: Option<f64>,
     /// Share of the ground under fog. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial fog.
     pub coverage: Option<f64>,
-    /// Visibility inside a layer that `visibility_m` does not describe, m: shallow fog; patches or partial fog with a
-    /// `visibility_m` of at least 1 km; drifting snow or dust without fog. Range [1, 10 000]; default 200 in fog, 500
-    /// in drifting snow or dust. Without effect on other layers, inside which `visibility_m` holds.
+    /// Visibility, m, inside a layer that `visibility_m` does not describe. Such layers are shallow fog, patches or
+    /// partial fog with a `visibility_m` of at least 1 km, and drifting snow or dust without fog. Range [1, 10 000];
+    /// default 200 in fog, 500 in drifting snow or dust. Without effect on other layers, inside which `visibility_m`
+    /// holds.
     pub visibility_inside_m: Option<f64>,
 }
 
 /// One layer of cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLayer {
-    /// Share of the sky that it covers. Range [0, 1]. [`cover_from_oktas`] converts eighths.
+    /// Share of the sky that the layer covers. Range [0, 1]. [`cover_from_oktas`] converts eighths.
     pub cover: f64,
     /// Base above the station, m. Range [0, 20 000].
     pub base_m: f64,
@@ -102,8 +103,8 @@ pub struct CloudLayer {
     pub wind: Option<LayerWind>,
     /// Distance from cloud to cloud, m. Range [50, 200 000]; default by kind and thickness.
     pub spacing_m: Option<f64>,
-    /// Time in which its clouds form and dissolve, s. Range [60, 1e6]; default 1200: a fair-weather cumulus lives some
-    /// 20 minutes (Stull 1988, chapter 13).
+    /// Time in which the layer's clouds form and dissolve, s. Range [60, 1e6]; default 1200: a fair-weather cumulus
+    /// lives some 20 minutes (Stull 1988, chapter 13).
     pub life_s: Option<f64>,
 }
 
@@ -112,7 +113,7 @@ pub struct CloudLayer {
 pub struct LayerWind {
     /// Speed, m/s. Range [0, 150].
     pub speed_m_s: f64,
-    /// Direction from which it blows, degrees clockwise from true north. Range [0, 360].
+    /// Direction from which the wind blows, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
 }
 
@@ -123,13 +124,13 @@ pub struct Precipitation {
     pub kind: PrecipitationKind,
     /// Rate, mm/h of liquid water. Range [0, 500]; must be 0 if `kind` is none.
     pub rate_mm_h: f64,
-    /// Share of it that is liquid. Range [0, 1]; default by kind.
+    /// Share of the precipitation that is liquid. Range [0, 1]; default by kind.
     pub liquid_fraction: Option<f64>,
-    /// Whether it falls from convective cloud (SH): fewer and larger drops, with a sharp onset and end.
+    /// Whether the precipitation falls from convective cloud (SH): fewer and larger drops, with a sharp onset and end.
     pub showers: bool,
     /// Whether there is thunder (TS).
     pub thunderstorm: bool,
-    /// Whether hail falls with it (GR, GS beside rain).
+    /// Whether hail falls with the precipitation (GR, GS beside rain).
     pub hail: bool,
 }
 
@@ -138,7 +139,7 @@ pub struct Precipitation {
 pub struct Wind {
     /// Mean speed, m/s. Range [0, 120], default 0.
     pub speed_m_s: f64,
-    /// Direction from which it blows, degrees clockwise from true north. Range [0, 360], default 0.
+    /// Direction from which the wind blows, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
     /// Highest 3-second gust, m/s. Range [speed, 150]; default from the turbulence.
     pub gust_m_s: Option<f64>,
@@ -170,7 +171,7 @@ pub struct Swell {
     pub height_m: f64,
     /// Peak period, s. Range [1, 30].
     pub period_s: f64,
-    /// Direction from which it comes, degrees clockwise from true north. Range [0, 360].
+    /// Direction from which the swell comes, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
 }
 

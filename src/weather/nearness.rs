@@ -5,7 +5,7 @@ use super::{
     precipitation::Falling,
 };
 
-/// Value that a picture shows, and the value below which only the difference counts, in the same unit.
+/// Value that a picture shows, and the least value to which a difference is compared, in the same unit.
 type SeenValue = [f64; 2];
 
 /// Least value for quantities between 0 and 1: where others may change by 5 %, these may change by 0.02.

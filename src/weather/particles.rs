@@ -17,10 +17,10 @@ struct Properties {
     growth_exponent: f64,
 }
 
-/// OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550 nm; exponents 500 to 800 nm). Smoke
-/// after Dubovik et al. (2002), ash after Ball et al. (2015). Absorption exponents after Russell et al. (2010): soot 1,
-/// smoke 1.8, dust 2.7. Growth exponents after Haenel (1976) and Titos et al. (2016). Scale heights are typical of a
-/// mixed layer.
+/// Returns the properties of a kind: OPAC's aerosol types (Hess, Koepke and Schult 1998, table 4: humidity 80 %, 550
+/// nm; exponents 500 to 800 nm). Smoke after Dubovik et al. (2002), ash after Ball et al. (2015). Absorption exponents
+/// after Russell et al. (2010): soot 1, smoke 1.8, dust 2.7. Growth exponents after Haenel (1976) and Titos et al.
+/// (2016). Scale heights are typical of a mixed layer.
 fn properties(kind: AerosolKind) -> Properties {
     let p = |ssa, g, angstrom, absorption, height, growth| Properties {
         single_scattering_albedo: ssa,
@@ -76,9 +76,9 @@ fn effective_kind(w: &Weather) -> AerosolKind {
     }
 }
 
-/// Maximum altitude of a station, in scale heights of its particles. The sky's tables count their density from sea
-/// level, and hold at most e^4.6, a hundred times the density at the station. The haze of a high plateau is a layer on
-/// the plateau, and does not continue down to sea level.
+/// Maximum altitude of a station, in scale heights of its particles. The sky's tables count the density of the
+/// particles from sea level. The density there can be at most e^4.6, a hundred times that at the station. The haze of a
+/// high plateau is a layer on the plateau, and does not continue down to sea level.
 const DEEPEST_SCALES: f64 = 4.6;
 
 /// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude divided by
@@ -131,7 +131,8 @@ pub(super) struct ExtinctionShares {
     pub ground_counts: bool,
 }
 
-/// Returns the visibility of the air above a fog, m. Extinction beyond that belongs to the ground layer.
+/// Returns the visibility of the air above a fog, m. Extinction beyond that of this visibility belongs to the ground
+/// layer.
 fn visibility_above_m(w: &Weather, o: &Overrides) -> f64 {
     let fog = matches!(w.fog.kind, FogKind::Fog | FogKind::Freezing) || w.lofted.kind == LoftedKind::BlowingSnow;
     o.visibility_above_fog_m.unwrap_or(if fog { 10_000.0 } else { 5_000.0 })
@@ -154,9 +155,9 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
 /// solution holds at any depth.
 const SKY_DEPTH: f64 = 1.0;
 
-/// Returns the optical depth of particles in the sky's tables if their total is `depth`: all of it up to [`SKY_DEPTH`];
-/// beyond, less and less, as 1 / depth. With more, the sky's tables would light the air below thick dust as if there
-/// were no dust above it.
+/// Returns the optical depth of particles in the sky's tables if their total is `depth`: all of it up to [`SKY_DEPTH`],
+/// and beyond that a depth that decreases as 1 / `depth`. If it did not decrease, the sky's tables would light the air
+/// below thick dust as if there were no dust above it.
 fn sky_depth(depth: f64) -> f64 {
     if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
 }
@@ -202,9 +203,9 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 ///
 /// Shallow fog ends at 2 m by definition (WMO-No. 306, MI); patches and partial fog end at 20 m. In an obscured sky,
 /// fog is deeper than the vertical visibility: its depth is taken as twice that, 150 to 600 m. Otherwise the sky shows
-/// through, and the fog is about one visibility deep, 20 to 150 m. Mist reaches the lowest cloud up to 600 m, at least
-/// 60 m, and 300 m without such a cloud. Snow blows up to some tens of metres (Budd, Dingle and Radok 1966) and drifts
-/// below eye height; spray reaches 10 m.
+/// through, and the fog is about one visibility deep, 20 to 150 m. Mist reaches up to the lowest cloud if its base is
+/// at most 600 m high, but at least 60 m; without such a cloud it reaches 300 m. Snow blows up to some tens of metres
+/// (Budd, Dingle and Radok 1966) and drifts below eye height; spray reaches 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -223,8 +224,8 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
 
 /// Returns the layer at the ground. Droplets of 10 um scatter without colour or absorption (albedo 1, asymmetry 0.85:
 /// Hess et al. 1998, fog). Lifted snow has an asymmetry of 0.89, and dust its own properties. If dry particles are too
-/// thick for the sky's tables, the layer holds the remainder. It thins out up to twice the scale height of `aerosol`,
-/// so that its vertical optical depth is that of an exponential layer with this scale height.
+/// thick for the sky's tables, the layer holds the remainder. Such a layer thins out up to twice the scale height of
+/// `aerosol`, so that its vertical optical depth is that of an exponential layer with this scale height.
 pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
         return GroundLayer::NONE;

@@ -71,7 +71,8 @@ impl Conditions {
     }
 
     /// Blends single parts of the weather towards those of `other`: a share of 0 leaves a part as it is, a share of 1
-    /// replaces it. All extinctions blend linearly, and their total follows; that of clear air stays.
+    /// replaces it. The extinctions of particles, low layer and precipitation blend linearly, and the total follows.
+    /// The extinction of clear air stays.
     pub(crate) fn blend_parts(&mut self, other: &Self, shares: impl IntoIterator<Item = (WeatherParts, f64)>) {
         let mut fog_per_m = self.counted_fog_per_m();
         for (part, t) in shares {
@@ -84,7 +85,7 @@ impl Conditions {
         self.extinction_per_m = clear + fog_per_m + self.precipitation.extinction_per_m();
     }
 
-    /// Blends one part without the total extinction.
+    /// Blends one part, but does not update the total extinction.
     fn blend_part(&mut self, part: WeatherParts, other: &Self, t: f64) {
         match part {
             WeatherParts::HAZE => self.aerosol = whole_or(t, other.aerosol, || self.aerosol.blend(&other.aerosol, t)),

@@ -31,7 +31,7 @@ pub struct Falling {
     pub hail_mm_h: f64,
     /// Share of the rain and drizzle that freezes where it lands, 0 to 1.
     pub freezing: f64,
-    /// How convective it is, 0 (steady) to 1 (showers).
+    /// How convective the precipitation is, 0 (steady) to 1 (showers).
     pub showers: f64,
     /// Presence of thunder, 0 to 1.
     pub thunder: f64,

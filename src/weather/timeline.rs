@@ -19,7 +19,7 @@ const VERSION: u32 = 1;
 /// Maximum number of changes that are under way or still to come.
 const MAX_CHANGES: usize = 1024;
 
-/// One change: to `to`, from `start_s` on, over `transition_s`.
+/// Change of the weather to `to`, which begins at `start_s` and takes `transition_s`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Change {
@@ -46,8 +46,8 @@ impl Change {
 /// Conditions as a function of simulation time. Two timelines with the same input give the same bits on every machine
 /// (only + - * / and `libm` are used).
 ///
-/// A change that begins while another is under way is blended over it: the older one continues below while the newer
-/// one takes over, so neither the weather nor its rate of change jumps.
+/// A change that begins while another is under way is blended over it: the older one continues while the share of the
+/// newer one grows, so neither the weather nor its rate of change jumps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Timeline {
@@ -132,7 +132,8 @@ impl Timeline {
         within.any(|c| is_such(&c.to)) || is_such(&self.at(a))
     }
 
-    /// Advances the present to `now_s` and forgets changes that ended before it. Earlier times have no effect.
+    /// Advances the present to `now_s` and forgets changes that ended before it. A time before the present has no
+    /// effect.
     pub fn advance(&mut self, now_s: f64) {
         self.advance_keeping(now_s, now_s);
     }

@@ -19,7 +19,7 @@ pub(crate) struct WindOver<'a> {
     pub timeline: &'a Timeline,
     /// Drift of the air at the end of the last change that the timeline has forgotten.
     pub kept: Drift,
-    /// Drifts of the cloud layers at that time.
+    /// Drifts of the cloud layers at the end of the last change that the timeline has forgotten.
     pub kept_layers: &'a LayerDrifts,
     /// Revision of the timeline: no two contexts share one, and every change of the timeline makes a new one.
     pub revision: u64,
@@ -41,7 +41,7 @@ impl<'a> WindOver<'a> {
         self.carrying_as(time_s, self.at(time_s))
     }
 
-    /// Returns [`Self::carrying_until`] for a known wind at that time.
+    /// Returns the wind that carries the air, from time 0 to a time at which the wind is `now`.
     pub fn carrying_as(self, time_s: f64, now: Blowing) -> Carrying<'a> {
         Carrying { over: self, time_s, now }
     }
@@ -54,7 +54,7 @@ pub(crate) struct Carrying<'a> {
     over: WindOver<'a>,
     /// End of the carrying, s of simulation time.
     time_s: f64,
-    /// Wind at that end.
+    /// Wind at the end of the carrying.
     now: Blowing,
 }
 
@@ -64,13 +64,13 @@ impl Carrying<'_> {
         self.now.drift.displacement_m.extend(0.0)
     }
 
-    /// Returns the velocity at 10 m with gusts, of which the displacement is the integral, m/s.
+    /// Returns the velocity at 10 m with gusts, m/s. The displacement is its integral.
     pub fn velocity_m_s(&self) -> DVec3 {
         self.now.velocity_m_s().extend(0.0)
     }
 
-    /// Returns how far the wind has carried the air since a time, m. Before the first time that the timeline knows, it
-    /// uses the wind of that time.
+    /// Returns how far the wind has carried the air since a time, m. Before the first time that the timeline knows, the
+    /// wind of that first time is used.
     pub fn since(&self, from_s: f64, remembered: &Remembered) -> DVec3 {
         let known_s = from_s.max(self.over.timeline.known_from_s()).min(self.time_s);
         let first = remembered.at(&self.over, known_s);

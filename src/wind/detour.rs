@@ -7,9 +7,9 @@
 //!
 //! L = integral of (e - w) exp(-s / life) ds,
 //!
-//! and the patches at the place are those that free air would have carried L farther. Eddies stir patches: what
-//! happened to the air more than a patch's life ago no longer shows, and no lag grows longer than that life. With an
-//! infinite life L would be the drift of Darwin (1953).
+//! where `life` is the distance that free air travels in a patch's life. The patches at the place are those that free
+//! air would have carried L farther. Eddies stir patches: what happened to the air more than a patch's life ago no
+//! longer shows, and no lag grows longer than `life`. With an infinite life L would be the drift of Darwin (1953).
 
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ pub(crate) struct DetourMap {
     half_height_m: f64,
 }
 
-/// A map as it lies around a camera.
+/// Map of the lags, relative to a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detour {
     /// Map of the lags.
@@ -84,7 +84,8 @@ impl LevelWind<'_> {
         Some(found.truncate().truncate() + self.weathers_m_s * (1.0 - found.w))
     }
 
-    /// Returns the mean wind on those sides of an area's inner part through which it enters; `size` is the area's, m.
+    /// Returns the mean wind on the sides of an area's inner part through which the wind enters. `size` is the size of
+    /// the whole area, m.
     fn entering(&self, size: DVec2) -> DVec2 {
         let along = |i: usize| (i as f64 + 0.5) / DETOUR_SIDE as f64;
         let sides = [
@@ -136,7 +137,7 @@ impl DetourMap {
             followed(&low, (entering, size), place(at), life_m) * smooth(share)
         };
         let lags_m = places().map(|at| lag(at).as_vec2().to_array()).collect();
-        // Variation over the area of the wind at a height.
+        // Relative variation of the wind over the area, at a height.
         let varies = |height_m: f64| {
             let level = level(height_m);
             let free = level.entering(size);

@@ -91,7 +91,7 @@ impl Drift {
     pub const ZERO: Self = Self { time_s: 0.0, path_m: 0.0, displacement_m: DVec2::ZERO };
 
     /// Returns the drift at the end of the last change that the timeline will have forgotten once it has advanced to
-    /// `now_s`, which must be kept with the timeline. Call it before the timeline advances.
+    /// `now_s`. Call it before the timeline advances, and keep the drift with the timeline.
     pub fn kept(self, wind: &Wind, timeline: &Timeline, now_s: f64) -> Self {
         timeline.ends_before(now_s).map_or(self, |end_s| wind.blowing(timeline, self, end_s).drift)
     }

@@ -59,7 +59,8 @@ pub(super) struct Stir {
 }
 
 impl Stir {
-    /// Creates the turbulence of a wind whose mean blows towards `direction` (of length 1, 0 in a calm).
+    /// Creates the turbulence of a wind whose mean blows towards `direction` (of length 1, 0 in a calm). `wander` is
+    /// the largest angle by which the wander turns the wind, rad.
     pub fn new(direction: DVec2, turbulence_intensity: f64, wander: f64) -> Self {
         let mut turning = [DVec2::ZERO; 2 * ORDERS + 1];
         if wander > 0.0 {
@@ -96,8 +97,8 @@ pub(super) struct GustStretch {
     pub to: Stir,
 }
 
-/// Returns the share of the variance in waves longer than L / x: the integral of Kaimal's 4 / (1 + 6 x)^(5/3) from 0 to
-/// x.
+/// Returns the share of the variance in waves longer than L / x, where L is the integral scale: the integral of
+/// Kaimal's 4 / (1 + 6 x)^(5/3) from 0 to x.
 fn share_below(x: f64) -> f64 {
     1.0 - libm::pow(1.0 + 6.0 * x, -2.0 / 3.0)
 }
@@ -160,7 +161,8 @@ impl Gusts {
     /// Returns the velocities and displacements that the turbulence adds over the first `y_m` of a stretch.
     pub fn over(&self, stretch: &GustStretch, y_m: f64) -> Stirred {
         let (from, rise, there) = (&stretch.from, &stretch.rise_per_m(), &stretch.stir_after(y_m));
-        // In standard deviations: the value now, its integral, and the integral of it times the path.
+        // In standard deviations: the value after `y_m`, the integral of the value, and that of the value times the
+        // path.
         let [along, across] = [&self.along, &self.across].map(|tones| {
             tones.iter().fold([0.0; 3], |sums, t| {
                 let start = turn(t.wavenumber * stretch.start_m + t.phase) * t.amplitude;

@@ -5,10 +5,10 @@ use glam::{DVec2, DVec3};
 use super::drift::Blowing;
 use crate::weather::WindProfile;
 
-/// Height above ground from which on the vertical wind has its full speed, m: the top of the surface layer.
+/// Least height above ground at which the vertical wind has its full speed, m: the top of the surface layer.
 const UP_WHOLE_M: f64 = 100.0;
 
-/// Returns the share of the vertical wind at a height above ground: none at the ground, all from 100 m on.
+/// Returns the share of the vertical wind at a height above ground: none at the ground, all of it at 100 m and above.
 pub(crate) fn up_share(height_m: f64) -> f64 {
     (height_m / UP_WHOLE_M).clamp(0.0, 1.0)
 }
@@ -16,7 +16,7 @@ pub(crate) fn up_share(height_m: f64) -> f64 {
 /// Wind at a height above ground, m/s (east, north, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindAt {
-    /// Velocity with gusts at this moment.
+    /// Velocity with gusts at this time.
     pub velocity_m_s: DVec3,
     /// Mean velocity over ten minutes.
     pub mean_m_s: DVec3,
@@ -25,7 +25,7 @@ pub struct WindAt {
 }
 
 impl Blowing {
-    /// Returns the velocity at 10 m with wander and gusts, m/s, of which the displacement is the integral.
+    /// Returns the velocity at 10 m with wander and gusts, m/s. The displacement is its integral.
     pub fn velocity_m_s(&self) -> DVec2 {
         self.mean_m_s + self.turned_m_s + self.gust_m_s
     }

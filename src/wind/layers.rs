@@ -19,7 +19,7 @@ pub(crate) struct LayerDrift {
     /// Integral since time 0 of the wind (east, north) divided by the distance from cloud to cloud, in the pattern
     /// before it is stretched ([`stretch`]).
     pub way: DVec2,
-    /// Number of lifetimes of its clouds that have passed since time 0.
+    /// Number of lifetimes of the layer's clouds that have passed since time 0.
     pub lives: f64,
 }
 
@@ -47,8 +47,8 @@ const DRAWN_OUT: f64 = 0.85;
 /// Wind added to a layer's own to get the direction of its fibres, m/s (east, north): there is shear even in a calm.
 const SHEAR_M_S: DVec2 = DVec2::new(2.0, 0.0);
 
-/// Returns the unit vector along which a layer's fibres are stretched (east, north). It is shorter than 1 where the
-/// direction is hardly defined.
+/// Returns the direction along which a layer's fibres are stretched (east, north), as a vector of length 1. The vector
+/// is shorter where the direction is hardly defined.
 pub(crate) fn stretch_toward(slab: &CloudSlab) -> DVec2 {
     let along = DVec2::from_array(slab.wind_m_s) + SHEAR_M_S;
     along / (along.length_squared() + 0.1).sqrt()
@@ -99,7 +99,7 @@ impl LayerDrifts {
     /// Drifts at time 0.
     pub const ZERO: Self = Self { time_s: 0.0, slots: [LayerDrift { way: DVec2::ZERO, lives: 0.0 }; MAX_CLOUD_LAYERS] };
 
-    /// Returns the drifts at `to_s`, after these changes.
+    /// Returns the drifts at `to_s`, under `changes`.
     fn onward(&self, changes: LayerChanges<'_>, to_s: f64) -> Self {
         let one = |slot: usize| self.slots[slot].after(&changes.integral(slot, self.time_s, to_s), 1.0);
         Self { time_s: to_s, slots: std::array::from_fn(one) }

@@ -7,7 +7,7 @@ use crate::{
     weather::Conditions,
 };
 
-/// Ozone column that a planet file's ozone layer stands for, Dobson units.
+/// Ozone column that a planet file's ozone layer represents, Dobson units.
 const PLANET_OZONE_DU: f64 = 300.0;
 /// Scale height of the standard atmosphere's air near the ground, m (15 C, R T / (M g)).
 const STANDARD_SCALE_HEIGHT_M: f64 = 8434.5;

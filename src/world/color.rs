@@ -8,10 +8,10 @@ use crate::{
     },
 };
 
-/// Returns, for each of the planet's wavelengths, the linear Rec. 709 colour, lux, of the sunlight above the air that
-/// this wavelength stands for. With a transfer factor for each wavelength, the colour of the transferred light is the
-/// sum of these colours times their factors ([`Conversion::fitted`]). Where two wavelengths are too close to tell
-/// colours apart, each wavelength is one channel.
+/// Returns, for each of the planet's wavelengths, the linear Rec. 709 colour, lux, of the part of the sunlight above
+/// the air that this wavelength represents. With a transfer factor for each wavelength, the colour of the transferred
+/// light is the sum of these colours times their factors ([`Conversion::fitted`]). Where two wavelengths are too close
+/// to tell colours apart, each wavelength is one channel.
 ///
 /// The colours are adapted (von Kries) so that unscattered sunlight is white, as for daylight film and eyes. Without
 /// this, sunlight would look yellow on a D65 display.

@@ -14,8 +14,8 @@ use crate::{
 /// Function by which an effect changes the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
-/// Function that returns the cloud over rain areas above a place, given in the planet's and in the host's coordinates,
-/// at a time in seconds.
+/// Function that returns the cloud over rain areas above a place at a time in seconds. The place is given in the
+/// planet's and in the host's coordinates.
 pub(crate) type CloudOverAreas =
     fn(&WeatherOver<'_>, &Conditions, (&LocalFrame, DVec3), f64) -> Result<Option<CloudSlab>>;
 

@@ -25,7 +25,7 @@ pub(crate) trait HeldEffect: std::any::Any {
     }
 
     /// Advances the state to `budget.until_s`, or until the time limit is reached, by at least one step. Steps end at
-    /// whole multiples of their length since time 0. Returns [`Status::Pending`] if the time limit ended it.
+    /// whole multiples of their length since time 0. Returns [`Status::Pending`] if the time limit stopped the steps.
     fn advance(&mut self, _world: &World, _budget: UpdateBudget) -> Result<Status> {
         Ok(Status::Ok)
     }
@@ -34,7 +34,7 @@ pub(crate) trait HeldEffect: std::any::Any {
     /// after the steps that the change had to wait for.
     fn settle(&mut self, _world: &World) {}
 
-    /// Writes those parts of the state into the world that others read. Called when the state may have changed.
+    /// Writes into the world the parts of the state that other effects read. Called when the state may have changed.
     fn publish(&mut self, _world: &mut World) {}
 
     /// Whether the published values change between the state's time and the present. Effects later in the list must
@@ -68,7 +68,7 @@ pub(crate) trait HeldEffect: std::any::Any {
     }
 
     /// Saves an effect whose state depends on things in the world. `for_hash`: the state is hashed and never loaded, so
-    /// hashes may stand for large parts of it.
+    /// hashes may replace large parts of it.
     fn save_in(&self, _world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
         self.save(state)
     }

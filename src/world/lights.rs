@@ -21,7 +21,8 @@ const SUN_LUX: f64 = 133_334.0;
 /// luminance is kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 
-/// Elevation of the sun above which moonlight is ignored, degrees: it adds less than a hundredth to such a twilight.
+/// Elevation of the sun above which moonlight is ignored, degrees: it adds less than a hundredth to the twilight of a
+/// higher sun.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
 /// Reflectance of snow of which only the depth is known.

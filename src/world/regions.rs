@@ -35,7 +35,7 @@ impl World {
         Ok(())
     }
 
-    /// Checks a rain area's fields, its place and its own time.
+    /// Checks a rain area's fields, its place and its time `at_s`.
     fn check_region(&self, area: &RainArea) -> Result<()> {
         area.validate()?;
         self.frame.place_at("rain_area.center_m", DVec3::from(area.center_m))?;
@@ -64,8 +64,8 @@ impl World {
             })
     }
 
-    /// Stores the displacement of the air at the own time of each rain area that the wind moves, if that time is not
-    /// after `now_s`. The timeline may then forget it.
+    /// Stores, for each rain area that the wind moves, the displacement of the air at the area's time `at_s`, if that
+    /// time is not after `now_s`. The timeline may then forget that time.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.

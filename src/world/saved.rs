@@ -36,8 +36,8 @@ pub(crate) struct SavedWorld {
     /// Drift of the air at the end of the last forgotten change: time, s; length of its path, m; displacement east and
     /// north, m.
     drifted: [f64; 4],
-    /// Drifts of the cloud layers at that time, by their slots: way east and north, in units of the distance between
-    /// clouds, and number of lives of clouds since time 0. Empty at time 0.
+    /// Drifts of the cloud layers at the time of `drifted`, one for each slot of a layer: way east and north, in units
+    /// of the distance between clouds, and number of lives of clouds since time 0. Empty at time 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
     /// Values that the context's description fixed.

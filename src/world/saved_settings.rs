@@ -20,7 +20,8 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSettings {
     exposure: Exposure,
-    /// Absent in states saved before it could be set. Such a state loads only into a context with the same tone curve.
+    /// Absent in states saved before tone curves could be set. Such a state loads only into a context with the same
+    /// tone curve.
     #[serde(default)]
     pub tone_curve: Option<ToneCurve>,
     /// Absent in states saved before planets could be set.

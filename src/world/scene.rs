@@ -23,13 +23,13 @@ use crate::{
 };
 
 /// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun is too high for either to
-/// matter: they are then less than 1e-4 of the sky's own light. With a lower sun,
+/// matter: they are then less than 1e-4 of the sunlight that the sky scatters. With a lower sun,
 /// [`Couplings::night_lux`](super::Couplings::night_lux) gives the brightness.
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
 /// Elevations of the sun, degrees, between which the computed light of the night replaces these two constants.
 const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
-/// Night light that the table below contains, lux.
+/// Night light that [`TWILIGHT_LN_LUX`] contains, lux.
 const TABLE_NIGHT_LUX: f64 = 6.4e-4;
 /// Clear-sky illuminance on level ground in twilight: sun's elevation in degrees, ln(lux) (Explanatory Supplement to
 /// the Astronomical Almanac 1992, table 8.1; the value at -18 contains the night's light).
@@ -107,8 +107,7 @@ pub(crate) fn night_share(sun: &Light) -> f64 {
     1.0 - smoothstep(NIGHT_BEGINS_DEG.1, NIGHT_BEGINS_DEG.0, elevation)
 }
 
-/// Returns the relative air mass at a true elevation (Kasten & Young 1989), continued below the horizon by the square
-/// of the tangent.
+/// Returns the relative air mass at a true elevation (Kasten & Young 1989), at most 50. Below -0.8 degrees it stays 50.
 fn air_mass(elevation_deg: f64) -> f64 {
     let h = elevation_deg.max(-0.8);
     1.0 / (libm::sin(h.to_radians()) + 0.505_72 * libm::pow(h + 6.079_95, -1.6364)).max(0.02)
@@ -153,8 +152,9 @@ fn clear_light(
     (color_of(color, direct).map(|v| v.max(0.0)), map(dusk, color_of(color, day), |n, d| n + (d.max(0.0) - n) * t))
 }
 
-/// Returns the light above all clouds at a height over a scene's place, lux per channel: direct light on a surface
-/// facing the sun or moon (whichever is brighter there), and the sky's light on level ground, with the night's light.
+/// Returns the light above all clouds at `altitude_m` over a scene's place, lux per channel: direct light on a surface
+/// facing the sun or moon, and the sky's light on level ground, with the night's light. The direct light is that of
+/// [`Scene::brighter`], which is decided at the scene's own place.
 pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [f64; 3]) {
     let one = |light: &Light| {
         let elevation = libm::asin(light.direction.z.clamp(-1.0, 1.0)).to_degrees();
@@ -177,8 +177,8 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
-/// Returns the share that the clouds leave of the light that the air below them scatters: their mean total
-/// transmittance.
+/// Returns the clouds' mean total transmittance: the share that they leave of the light scattered in the air below
+/// them.
 fn medium_share(left: &CloudLight) -> f64 {
     (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
@@ -203,7 +203,7 @@ impl World {
     }
 
     /// Returns the weather with the clouds that the host's map has over a place, if there is a map; and with the clouds
-    /// of rain areas as well, if any stand over it. `map_m`: the place on the ground's map.
+    /// of rain areas as well, if any stand over it. `map_m`: the place, m east and north of the world's origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.
@@ -294,8 +294,8 @@ impl World {
         Ok((scene, wind))
     }
 
-    /// Returns the sunlight on level ground at the world's origin, in whole W/m^2: rounding differences between
-    /// machines in the drawn light must not change a state.
+    /// Returns the light of sun, moon and sky on level ground at the world's origin, in whole W/m^2. Rounding
+    /// differences between machines in the drawn light must not change a state.
     pub fn sunlight_w_m2(&self, time_s: f64) -> Result<f64> {
         let frame = &self.frame;
         let origin = if frame.kind == WorldKind::Ecef { frame.position_of(&frame.origin) } else { DVec3::ZERO };
@@ -306,7 +306,8 @@ impl World {
         Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
-    /// Returns the place on the map of a position, m east and north of the world's origin, in its local frame.
+    /// Returns the place on the map of a position, m east and north of the world's origin. `local` is the local frame
+    /// of the position.
     pub fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
         let o = &self.frame.origin;
@@ -358,7 +359,8 @@ impl World {
         Ok((map(UNSEEN_NIGHT_CD_M2, lux.map(|e| e / PI), between), map(day, lux, between)))
     }
 
-    /// Returns the light on the ground, and whether the moon gives more direct light than the sun without clouds.
+    /// Returns the light on the ground, and whether, without clouds, the moon would give more direct light than the
+    /// sun.
     fn ground_light(
         &self,
         (planet, place): (&Planet, &Place),

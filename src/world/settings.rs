@@ -42,7 +42,8 @@ impl GivenDirection {
 pub(crate) struct NightSettings {
     /// Strength of the airglow; 1 near the minimum of the sun's activity.
     pub airglow: f64,
-    /// Rotation from the equator and equinox of J2000.0 to (east, north, up), in place of the planet's own rotation.
+    /// Matrix of the rotation from the equator and equinox of J2000.0 to (east, north, up). `None` computes the matrix
+    /// for the Earth.
     pub celestial_to_world: Option<DMat3>,
 }
 
@@ -52,12 +53,12 @@ impl Default for NightSettings {
     }
 }
 
-/// The host's settings that affect simulated steps. Steps that an update leaves for a later call use the settings at
-/// the time of the update.
+/// The host's settings that affect simulated steps. If an update leaves steps for a later call, these steps use the
+/// settings that the host had set when that update was called.
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub shelters: Vec<Shelter>,
-    /// The host's terrain. The effect that holds it saves it.
+    /// The host's terrain as one grid. It is saved with the effect that keeps the grid, not with these settings.
     pub terrain: Option<Arc<TerrainHeights>>,
     /// The host's terrain in tiles, whose heights the host keeps; never together with `terrain`.
     pub tiles: Option<Arc<Terrain>>,
@@ -73,10 +74,10 @@ pub(crate) struct Settings {
     pub given_moon: Option<GivenDirection>,
     /// Universal time at simulation time 0.
     pub utc_at_zero: Utc,
-    /// Whether the host's fog law replaces the weather's low layer, which then dims no light.
+    /// Whether the host's fog law replaces the weather's low layer. The weather's low layer then dims no light.
     pub undimmed: bool,
     pub planet: Planet,
-    /// Colours of light at the planet's wavelengths. They are fitted once, which takes some milliseconds.
+    /// Colours of light at the planet's wavelengths. They are fitted whenever a planet is set, in some milliseconds.
     pub(super) color: [[f64; 3]; 3],
 }
 

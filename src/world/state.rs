@@ -42,7 +42,7 @@ pub(crate) struct World {
     pub(super) wind: Wind,
     /// Drift of the air at the end of the last change that the timeline has forgotten.
     pub drifted: Drift,
-    /// Drifts of the cloud layers at that time.
+    /// Drifts of the cloud layers at the time of `drifted`.
     pub(super) layers_drifted: LayerDrifts,
     pub set: Settings,
     pub night: NightSettings,
@@ -252,8 +252,8 @@ impl World {
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// Returns the extinction of the precipitation of the weather `c` outside all regions; none if the host's fog law
-    /// replaces it.
+    /// Returns the precipitation of `c`, the weather outside all regions, as a layer with its extinction. The layer is
+    /// empty if the host's fog law replaces the weather's low layer.
     pub fn falling(&self, c: &Conditions) -> FallingLayer {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }

@@ -75,7 +75,7 @@ impl World {
         map.map(|map| map.about(eye))
     }
 
-    /// Returns the wind with gusts at a place and time; heights count from the station's altitude.
+    /// Returns the wind with gusts at a place and time; heights are measured from the station's altitude.
     ///
     /// # Errors
     /// As [`World::conditions_at`].

@@ -145,8 +145,8 @@ fn panic_error(payload: Box<dyn Any + Send>) -> Error {
     Error::new(Status::Internal, format!("a fault inside Welkin{place}: {text}; its device answers no further calls"))
 }
 
-/// Keeps the standard hook from printing panics inside Welkin's calls to stderr; they become messages. Panics elsewhere
-/// in the process (a Rust host's own code) still go to the previous hook.
+/// Keeps the standard hook from printing to stderr the panics that happen inside Welkin's calls. These panics become
+/// messages. Panics elsewhere in the process (a Rust host's own code) still go to the previous hook.
 fn hush_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

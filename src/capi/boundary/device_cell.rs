@@ -63,7 +63,7 @@ impl DeviceCell {
         Ok(made)
     }
 
-    /// Poisons the device: every later call except destroy is refused.
+    /// Poisons the device: every later call on it is refused, except those that destroy.
     pub(in crate::capi) fn poison(&self) {
         self.poisoned.store(true, Ordering::Release);
     }
@@ -99,8 +99,8 @@ impl DeviceCell {
         std::mem::replace(&mut *self.host.write().unwrap_or_else(PoisonError::into_inner), Host::Own)
     }
 
-    /// Drops GPU objects. If the host's context can no longer be entered, it abandons them: they ended with the
-    /// context, and a driver may crash at a call without one.
+    /// Drops GPU objects. If they need the host's context and it cannot be entered here (from another thread, or
+    /// because it is gone), they are abandoned, because a driver may crash at a call without a context.
     fn release<T>(&self, objects: T) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {
@@ -119,8 +119,8 @@ impl DeviceCell {
         std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Releases the objects that wait for the host's context, before code that enters the context by
-    /// [`Device::enter`] instead of [`DeviceCell::enter`].
+    /// Releases the objects that wait for the host's context, if the context can be entered now. Call it before code
+    /// that enters the context by [`Device::enter`], which releases none, instead of [`DeviceCell::enter`].
     pub(in crate::capi) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         if waits && let Ok(_entered) = self.gpu.enter_to_release() {

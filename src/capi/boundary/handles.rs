@@ -9,7 +9,7 @@ use std::{
 use super::device_cell::DeviceCell;
 use crate::error::{Error, Result, Status};
 
-/// Object that a C handle type stands for.
+/// Object behind a C handle type.
 pub(in crate::capi) trait HandleObject: Any + Send + Sync {
     /// Opaque type in the header.
     type C;
@@ -26,7 +26,7 @@ struct HandleSlot {
     generation: u32,
     kind: u8,
     name: &'static str,
-    /// Number of live objects whose parent this is.
+    /// Number of live objects whose parent is the object of this slot.
     children: u32,
     /// Slot of the parent.
     parent: Option<usize>,
@@ -42,8 +42,8 @@ struct HandleTable {
 
 static TABLE: RwLock<HandleTable> = RwLock::new(HandleTable { slots: Vec::new(), free: Vec::new() });
 
-/// Bit layout of a handle, from the lowest: one set bit (so it is never NULL and never an aligned address), slot,
-/// generation, kind. A slot whose generations are used up is never used again, so no handle is ever issued twice.
+/// Bit layout of a handle, from the lowest bit up: one set bit (so it is never NULL and never an aligned address),
+/// slot, generation, kind. A slot whose generations are used up is never used again, so no handle is ever issued twice.
 const SLOT_BITS: u32 = if usize::BITS == 64 { 24 } else { 15 };
 const GENERATION_BITS: u32 = if usize::BITS == 64 { 31 } else { 12 };
 const GENERATION_SHIFT: u32 = 1 + SLOT_BITS;
@@ -54,7 +54,7 @@ fn encode(kind: u8, generation: u32, slot: usize) -> usize {
     (usize::from(kind) << KIND_SHIFT) | ((generation as usize) << GENERATION_SHIFT) | (slot << 1) | 1
 }
 
-/// Returns a number with this many lowest bits set.
+/// Returns a number whose lowest `bits` bits are set.
 fn mask(bits: u32) -> usize {
     (1 << bits) - 1
 }
@@ -87,7 +87,7 @@ fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> R
     }
 }
 
-/// Enters a new object. `parent` counts it as a child until it is destroyed.
+/// Enters a new object into the table. Until its removal, it is one of the children of `parent`.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent was destroyed meanwhile.

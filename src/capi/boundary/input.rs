@@ -232,7 +232,7 @@ impl<T: Copy> Room<T> {
     /// Checks that the buffer holds `count` elements.
     ///
     /// # Errors
-    /// If it does not.
+    /// If it holds fewer.
     pub(in crate::capi) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
         if count <= self.capacity {
             return Ok(());
@@ -266,7 +266,8 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
 /// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
 ///
 /// # Errors
-/// If there are too many, or the stride does not fit; the first wrong field; or the error of `take`.
+/// If there are more structs than the limit, if the stride does not fit, for the first wrong field, or with the error
+/// of `take`.
 pub(in crate::capi) unsafe fn each<T: Layout>(
     list: &List<'_>,
     p: *const T,

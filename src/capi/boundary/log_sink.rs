@@ -1,4 +1,4 @@
-//! The host's log callback. The crate and wgpu log through the crate `log`. In the shared and the static library, only
+//! The host's log callback. Welkin and wgpu log through the crate `log`. In the shared and the static library, only
 //! Welkin can set the logger of `log`, and it does so when a host first asks for messages. In a Rust program the logger
 //! belongs to the program. If the program has set one, `wk_set_log_callback` fails with `WK_ERROR_IN_USE`.
 
@@ -54,7 +54,8 @@ impl log::Log for LogSink {
     fn flush(&self) {}
 }
 
-/// Installs, replaces or (with `None`) removes the receiver. When this returns, the old one is no longer called.
+/// Installs, replaces or (with `None`) removes the receiver. When the function returns, the old receiver is no longer
+/// called.
 pub(in crate::capi) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
     static INSTALLED: OnceLock<bool> = OnceLock::new();
     let receiver = callback.map(|callback| Receiver { callback, user });

@@ -24,7 +24,8 @@ pub const WK_ERROR_NO_ADAPTER: wk_status = -5;
 pub const WK_ERROR_DEVICE_LOST: wk_status = -6;
 /// Memory ran out, on the host or on the GPU.
 pub const WK_ERROR_OUT_OF_MEMORY: wk_status = -7;
-/// An earlier call on this device ended in a fault inside Welkin. Only destroy works on it and its children.
+/// An earlier call on this device ended in a fault inside Welkin. Only the calls that destroy the device and its
+/// children still work.
 pub const WK_ERROR_POISONED: wk_status = -8;
 /// The native queue or OpenGL context already belongs to another wk_device.
 pub const WK_ERROR_ALREADY_WRAPPED: wk_status = -9;
@@ -216,6 +217,6 @@ pub const WK_LOG_LEVEL_INFO: wk_log_level = 3;
 /// For developers of Welkin.
 pub const WK_LOG_LEVEL_DEBUG: wk_log_level = 4;
 
-/// Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls it from any thread that is in a Welkin
-/// call. It must not call Welkin and must not unwind.
+/// Receives a message: NUL-terminated UTF-8, valid during the call. Welkin calls the function from any thread that is
+/// in a Welkin call. The function must not call Welkin and must not unwind.
 pub type wk_log_fn = Option<unsafe extern "C" fn(user: *mut c_void, level: wk_log_level, message: *const c_char)>;

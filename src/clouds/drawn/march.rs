@@ -39,7 +39,8 @@ const STEP_RISE: f64 = 0.04;
 const LEAST: f64 = 0.001;
 /// Longest path that a ray is followed through a layer, from its entry, m.
 const FARTHEST_M: f64 = 60e3;
-/// Length at the end of that path over which clouds fade out, m. Without it a cloud would end in a flat face.
+/// Length, m, over which clouds fade out at the end of the path [`FARTHEST_M`]. Without it a cloud would end in a flat
+/// face.
 const FADES_M: f64 = 15e3;
 /// Ends of the intervals of the path to the sun, in distances from cloud to cloud.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
@@ -146,7 +147,7 @@ struct AtPlace<'a> {
     position_m: DVec3,
     /// Height in the layer, 0 at its base to 1 at its top.
     height: f64,
-    /// Excess of the map's number over the threshold, with fraying and before the dome.
+    /// Excess of the map's number over the threshold, with fraying, before the dome is subtracted.
     excess: f64,
 }
 
@@ -327,8 +328,8 @@ impl<'a> CloudRays<'a> {
 }
 
 /// Returns the distance along a ray from a place outside clouds within which there is no cloud, m: `cloud_skip` of the
-/// shader. The threshold stays the same within `steady_m` and changes by at most `slope_per_m` beyond. `over` is the
-/// excess at the place before dome and fraying, `frays` the amount that the solid noise adds to it.
+/// shader. The threshold stays the same within `steady_m`, and beyond it changes by at most `slope_per_m` per metre.
+/// `over` is the excess at the place before dome and fraying, `frays` the amount that the solid noise adds to it.
 pub(crate) fn skip(
     (s, [steady_m, slope_per_m]): (&Shape, [f64; 2]),
     [over, frays]: [f64; 2],
@@ -397,8 +398,8 @@ impl AtPlace<'_> {
     }
 }
 
-/// Returns the length of cloud at full extinction along an interval of a ray in columns of this excess, m:
-/// `cloud_stretch` of the shader. The interval begins at `height` and rises by `rise` per metre.
+/// Returns the length of cloud at full extinction along an interval of a ray, m: `cloud_stretch` of the shader. All
+/// places of the interval have this excess. The interval begins at `height` and rises by `rise` per metre.
 fn stretch(s: &Shape, excess: f64, [height, rise]: [f64; 2], length: f64) -> f64 {
     let to = height + rise * length;
     let (low, high) = (height.min(to).clamp(0.0, 1.0), height.max(to).clamp(0.0, 1.0));

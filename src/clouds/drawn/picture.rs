@@ -1,18 +1,17 @@
-//! Textures of a picture's clouds: the pixels that a frame marches, and the whole picture that is resolved from them
-//! and from the last one.
+//! Textures of a picture's clouds: the pixels that a frame marches, and the whole picture that is resolved from these
+//! pixels and from the last whole picture.
 
 use crate::gpu::{Device, Layer, bind, flat_texture};
 
 /// Format of radiance and transmittance.
 pub(crate) const SEEN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// Format of the marched pixels' reach: log2 of the nearest and farthest distance of the visible cloud, m, times its
-/// cover.
+/// Format of the range of distances of the visible cloud in the marched pixels: log2 of the nearest and of the farthest
+/// distance, m, each times 1 - transmittance.
 pub(crate) const PAIR: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 /// Format of the depth that marks the pixels on which the host drew.
 pub(crate) const KINDS: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Layers of the whole picture: radiance and transmittance of the clouds; their reach, which is the range of distances
-/// of the visible cloud; and the stars and glow behind the sky's own light. The panorama has its place below the
-/// picture.
+/// Layers of the whole picture: radiance and transmittance of the clouds; range of distances of the visible cloud; and
+/// the stars and glow behind the sky's own light. The panorama has its place in the rows below the picture.
 pub(crate) const LAYERS: u32 = 3;
 /// Index of the layer of stars and glow, which stand behind the sky's own light.
 pub(crate) const BEHIND: u32 = 2;
@@ -55,7 +54,7 @@ pub(crate) struct Whole {
     pub texture: wgpu::Texture,
     /// All layers, as the composition reads them.
     pub layers: wgpu::TextureView,
-    /// Layers to draw into: radiance and transmittance, and reach.
+    /// Layers to draw into: radiance and transmittance, and range of distances.
     pub written: [wgpu::TextureView; 2],
 }
 
@@ -71,12 +70,13 @@ impl Whole {
 
 /// Textures of a picture.
 pub(crate) struct Picture {
-    /// Size in pixels, and side of the squares of which one pixel is marched in a frame.
+    /// Size in pixels, and side of the squares in each of which a frame marches one pixel.
     pub of: ((u32, u32), u32),
-    /// Radiance and transmittance of the marched pixels, and their reach.
+    /// Radiance and transmittance of the marched pixels, and their range of distances.
     pub marched: [wgpu::TextureView; 2],
-    /// Values for each square of pixels: smallest and largest radiance and transmittance of the squares around it, and
-    /// its offset in the last picture with the smoothness of the clouds there (`shaders/clouds/follow.wgsl`).
+    /// Values for each square of pixels (`shaders/clouds/follow.wgsl`), one texture each: smallest radiance and
+    /// transmittance of the squares around it; largest ones; offset to its position in the last picture, with the
+    /// weight of the marched picture against the last one.
     pub followed: [wgpu::TextureView; 3],
     /// Whole pictures of this frame and of the last, which swap roles.
     pub whole: [Whole; 2],
@@ -87,7 +87,7 @@ pub(crate) struct Picture {
     /// Bind groups of the passes after the march: of the reprojection, and of the resolving into each of `whole`.
     pub groups: Option<[wgpu::BindGroup; 3]>,
     /// Marched pixels of a picture's first frame, in place of `marched`, and the bind group that resolves from them.
-    /// Its squares have [`BEGUN_SIDE`] pixels on a side.
+    /// The squares of this frame have [`BEGUN_SIDE`] pixels on a side.
     pub begun: Option<([wgpu::TextureView; 2], wgpu::BindGroup)>,
 }
 

@@ -227,7 +227,7 @@ pub(crate) struct PassTargets<'a> {
     pub colors: &'a [&'a wgpu::TextureView],
     /// Depth that selects the pixels of each draw of the pass.
     pub kinds: Option<&'a wgpu::TextureView>,
-    /// Part that is drawn, and the rest keeps its content; `None` clears the targets and draws all of them.
+    /// Part of the targets that is drawn; the rest keeps its content. `None` clears the targets and draws all of them.
     pub part: Option<TargetPart>,
 }
 

@@ -1,5 +1,5 @@
 //! Measures the drawn clouds alone: `probe slab`. Light and march are those of the picture
-//! (`shaders/clouds/light.wgsl`, `march.wgsl`); the cloud is a box of even droplets.
+//! (`shaders/clouds/light.wgsl`, `march.wgsl`); the cloud is a uniform box of droplets.
 
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ const THICKNESS_M: f64 = 10.0;
 /// Width of a slab in thicknesses, so large that no light comes from the sides.
 const WIDE: f64 = 1e6;
 
-/// A box of even cloud under a sun.
+/// A box of uniform cloud under a sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenCloud {
     /// Optical depths from side to side (x, y) and from top to base. x and y are infinite for a slab.

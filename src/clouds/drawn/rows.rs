@@ -1,5 +1,5 @@
-//! Choice of the rows that a frame refreshes in a map of clouds around the camera (shadow map, panorama): as many as
-//! have become old, or all if the whole map is out of date.
+//! Choice of the rows that a frame refreshes in a map of clouds around the camera (shadow map, panorama): some rows
+//! once enough have become old, or all rows if the whole map is out of date.
 
 /// Progress of a map's refresh.
 #[derive(Default)]
@@ -9,8 +9,8 @@ pub(crate) struct MapRows {
     /// Rows refreshed since the map's inputs last changed. Once this is the number of all rows, there is nothing left
     /// to do.
     made: u32,
-    /// Number of rows that have become old, estimated from the changes of the inputs. No row is refreshed until this
-    /// number reaches the number of rows that one frame refreshes.
+    /// Number of rows that have become old, estimated from the changes of the inputs. While the inputs change, a map
+    /// that holds and is not coarse waits until this number reaches the number of rows that one frame refreshes.
     owed: f64,
     /// Whether the last frame refreshed some rows.
     made_some: bool,
@@ -27,7 +27,8 @@ pub(crate) struct Turn {
     pub aged: f64,
     /// Whether another map is refreshed in this frame, so that this one waits if it can.
     pub waits: bool,
-    /// Whether the map is still coarse; its rows do not wait then.
+    /// Whether the map is still coarse. However few of its rows are old, every frame then refreshes some, unless the
+    /// map waits for another one.
     pub is_coarse: bool,
 }
 

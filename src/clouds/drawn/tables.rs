@@ -68,8 +68,8 @@ fn write_halves(
 }
 
 /// Creates the texture of the map. It has two layers, one for each sheet that
-/// [`crate::clouds::field::extinction::Field`] reads. A texel has the even and the cellular noise of its sheet, all
-/// that one look-up needs.
+/// [`crate::clouds::field::extinction::Field`] reads. A texel has the gradient noise and the cellular noise of its
+/// sheet, all that one look-up needs.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     let levels = map.levels();
     let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
@@ -99,8 +99,8 @@ pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
     })
 }
 
-/// Tables of light scattered more than once in two media, by depth above, depth below and leak. The tables stand side
-/// by side, and the media one below the other.
+/// Tables of light scattered more than once in two media, by depth above, depth below and leak rate. The tables stand
+/// side by side, and the media one below the other.
 pub(crate) struct LightTables {
     /// Texture with all tables.
     texture: wgpu::Texture,

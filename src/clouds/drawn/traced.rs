@@ -3,13 +3,14 @@
 //!
 //! # Model
 //! Free paths are sampled by null collisions in f64, without steps or scaled depths. The sun is a beam. At each
-//! scattering its light is sampled through the cloud in its direction. Photons that leave through the top meet the
-//! radiance above, those that leave through the base the radiance below. These are the inputs of the drawn light.
-//! Nothing is absorbed. The layer is level and infinite.
+//! scattering, sunlight is sampled along the path through the cloud towards the sun. Photons that leave through the top
+//! meet the radiance above, and photons that leave through the base meet the radiance below. The drawn light has the
+//! same inputs. Nothing is absorbed. The layer is level and infinite.
 //!
 //! The only error is the photons' noise; each answer includes its standard error. After a scattering through a wide
 //! angle, the narrow lobe of the phase function is widened where the sun is sampled. Otherwise a few rare photons would
-//! contribute most of the radiance. The widening changes the reflectance of even slabs by less than the test's noise.
+//! contribute most of the radiance. The widening changes the reflectance of uniform slabs by less than the test's
+//! noise.
 
 use std::sync::Arc;
 
@@ -35,7 +36,7 @@ use crate::{
     weather::{CloudKind, CloudSlab},
 };
 
-/// Share of the cloud-free distance that the march finds ([`skip`]) by which a photon advances.
+/// Share of the cloud-free distance from [`skip`] by which a photon advances.
 const SKIPPED: f64 = 0.5;
 /// Distance within which the threshold stays the same, m, and its slope beyond: the field has no local cover.
 const UNMAPPED: [f64; 2] = [f64::INFINITY, 0.0];
@@ -164,7 +165,7 @@ struct Photon<'a> {
 }
 
 impl Photon<'_> {
-    /// Returns the extinction at a place, 1/m, and a distance along a direction in which there is no cloud, m.
+    /// Returns the extinction at a place, 1/m, and a distance along a direction within which there is no cloud, m.
     fn look(&self, position: DVec3, direction: DVec3) -> [f64; 2] {
         let s = &self.field.shape;
         let height = (position.z - s.base_m) / s.thickness_m;
@@ -243,7 +244,8 @@ pub struct Case {
     pub pitch_deg: [f64; 2],
 }
 
-/// Cumulus by day and with a low sun, stratocumulus from above under both, and cirrus.
+/// Cumulus from below and from above, and stratocumulus from above, each with a high and a low sun; and cirrus from
+/// below.
 pub const CASES: [Case; 7] = {
     const fn case(name: &'static str, kind: CloudKind, numbers: [f64; 4], pitch_deg: [f64; 2]) -> Case {
         let [cover, base_m, height_m, sun_deg] = numbers;

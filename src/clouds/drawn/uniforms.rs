@@ -121,8 +121,8 @@ pub(crate) struct PictureUniform {
     pub side: u32,
     /// Index of the pixel in the square that this frame marches.
     pub place: u32,
-    /// Matrix from a place relative to the camera (east, north, up), m, to the last frame's clip space, before clouds
-    /// and camera moved.
+    /// Matrix from a place relative to the last frame's camera (east, north, up), m, to that frame's clip space. From a
+    /// place relative to this frame's camera, `moved` is subtracted first.
     pub before: [[f32; 4]; 4],
     /// Movement of a cloud relative to the camera since the last frame, m.
     pub moved: [f32; 3],
@@ -146,13 +146,13 @@ pub(crate) struct ShadowUniform {
     pub eye: f32,
     /// Mean share of the direct light over all places.
     pub mean: f32,
-    /// Weight of the map against that mean, 0 to 1.
+    /// Weight of the map against `mean`, 0 to 1.
     pub map_weight: f32,
-    /// Height above the plane from which on the mean holds, m.
+    /// Height above the plane, m, at and above which the mean share holds.
     pub top: f32,
     /// Extinction of the air at the camera's height, 1/m.
     pub haze: f32,
-    /// Scale height of that extinction, m.
+    /// Scale height of the extinction `haze`, m.
     pub haze_height: f32,
     /// Padding.
     pub pad: [f32; 3],

@@ -42,9 +42,10 @@ const LEAST_SPACING_M: f64 = 600.0;
 const DEEPEST: f64 = 2.0;
 /// Least thickness of a cell, m, unless its kind of cloud is thinner.
 const MOST_FLAT_M: f64 = 800.0;
-/// Height above the lowest top of an area's rain up to which a layer's base may lie for the rain to come from it, m.
+/// Largest height, m, of a layer's base above the lowest top of an area's rain at which the rain may come from that
+/// layer.
 const SAME_BASE_M: f64 = 300.0;
-/// Rate above which showers fall from cumulonimbus, mm/h.
+/// Rain rate above which showers fall from cumulonimbus, mm/h.
 const HEAVY_MM_H: f64 = 10.0;
 /// Least rate for which a cell is made, mm/h.
 const LEAST_MM_H: f64 = 0.05;
@@ -98,7 +99,7 @@ impl AreaCell {
     }
 }
 
-/// Clouds of all rain areas at a moment.
+/// Clouds of all rain areas at one time.
 pub(crate) struct AreaClouds {
     /// Cells, of which the first `count` are in use.
     pub cells: [AreaCell; MAX_AREAS],
@@ -113,9 +114,9 @@ pub(crate) struct AreaClouds {
 }
 
 impl AreaClouds {
-    /// Creates the clouds around a place at `eye` in the host's world, m, and `place_m`, m east and north of the
-    /// world's origin. `to_enu` rotates the host's axes to (east, north, up) there. Returns `None` if no rain falls in
-    /// any area.
+    /// Creates the clouds around a place. `eye` is the place in the host's world, m, and `place_m` is the place in m
+    /// east and north of the world's origin. `to_enu` rotates the host's axes to (east, north, up) there. Returns
+    /// `None` if no rain falls in any area.
     ///
     /// # Errors
     /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
@@ -149,8 +150,8 @@ impl AreaClouds {
         Ok(strongest.map(|(_, brings)| Self { cells, count, lowest_m, half_m, brings }))
     }
 
-    /// Returns the slab that the cells are made of, with cover 0. `others` are the other layers, each with whether a
-    /// cover map places its clouds. Returns `None` if one of them hides the sky.
+    /// Returns the slab that the cells are made of, with cover 0. `others` are the other layers; each flag says whether
+    /// a cover map places the layer's clouds. Returns `None` if one of these layers hides the sky.
     pub fn slab<'a>(&self, others: impl Iterator<Item = (&'a CloudSlab, bool)> + Clone) -> Option<CloudSlab> {
         let closes =
             |(slab, is_placed): (&CloudSlab, bool)| slab.cover >= 1.0 && slab.optical_depth > 5.0 && !is_placed;
@@ -185,8 +186,8 @@ fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
     0.5 * (1.0 - (h2 + d2 - r2) / (sum * sum - 4.0 * r2 * d2).max(f64::MIN_POSITIVE).sqrt())
 }
 
-/// Returns the layer that lights a place under the cells of rain areas, with the share of the sky that they cover
-/// there. `None` without cells. The place is `eye` in the host's world.
+/// Returns the layer that lights a place under the cells of rain areas. Its cover is the share of the sky that the
+/// cells hide there. `None` without cells. The place is `eye` in the host's world.
 ///
 /// # Errors
 /// [`WeatherOver::check_time`] refuses times for which the weather is not known.

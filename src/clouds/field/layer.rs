@@ -20,7 +20,7 @@ pub(crate) struct OverheadLayer {
 }
 
 impl OverheadLayer {
-    /// Returns the index of its medium: 0 for droplets, [`ICE`] for ice.
+    /// Returns the index of the layer's medium: 0 for droplets, [`ICE`] for ice.
     pub fn medium(&self) -> usize {
         if self.slab.ice_fraction > 0.5 { ICE } else { 0 }
     }

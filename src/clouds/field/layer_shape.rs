@@ -17,18 +17,19 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
-/// Least number of the map at which a cloud reaches the layer's top: one place in seventy has more. With a lower
-/// number, tops would be cut flat.
+/// Least value of the map's number at which a cloud reaches the layer's top: one place in seventy has more. With a
+/// lower value, tops would be cut flat.
 const HIGHEST: f64 = 2.2;
-/// Least number of the map at which a cumulonimbus reaches the layer's top. It is lower because its towers spread
-/// there.
+/// Least value of the map's number at which a cumulonimbus reaches the layer's top. It is lower than [`HIGHEST`],
+/// because the cloud's towers spread there.
 const HIGHEST_OF_TOWERS: f64 = 1.2;
 
 /// Side of the cube of solid noise, in distances from cloud to cloud.
 const SOLID_CELLS: f64 = 1.5;
 /// Side of the cube of solid noise for fibrous clouds, in distances from cloud to cloud.
 const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
-/// Distance from cloud to cloud up to which the heads (bulges of a cloud) are proportional to it, m.
+/// Largest distance from cloud to cloud, m, at which the size of the heads (bulges of a cloud) is still proportional to
+/// this distance.
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
 /// Excess over the threshold above which a place of a cumulonimbus has an anvil above it.
 const ANVIL_BEYOND: f64 = -0.2;
@@ -36,11 +37,11 @@ const ANVIL_BEYOND: f64 = -0.2;
 /// slower air (Heymsfield 1975).
 const LEAN: f64 = 3.0;
 
-/// Number of columns over which the mean is taken.
+/// Number of places over which [`filled_share`] takes the mean.
 const COLUMNS: usize = 32;
 
-/// Returns the mean share of the layer's thickness that a cloudy column fills. Most tops are below the layer's. The
-/// map's number has a normal distribution; edges are taken without fraying.
+/// Returns the share of the layer's thickness that cloud fills, as a mean over the places that have cloud. Most tops
+/// are below the layer's. The map's number has a normal distribution; edges are taken without fraying.
 fn filled_share(shape: &Shape) -> f64 {
     let below = 0.5 * libm::erfc(-shape.threshold * std::f64::consts::FRAC_1_SQRT_2);
     let one = |i: usize| {
@@ -96,7 +97,7 @@ impl Shape {
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
         };
-        // Scale the extinction so that cloudy columns have the layer's optical depth on average.
+        // Scale the extinction so that places with cloud have the layer's optical depth on average.
         Self { extinction_per_m: shape.extinction_per_m / filled_share(&shape), ..shape }
     }
 }

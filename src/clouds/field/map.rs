@@ -1,4 +1,5 @@
-//! Map of where clouds grow. The noise is made normal by ranks, so the share of the plane above a threshold is known.
+//! Map of where clouds grow. Ranks give the noise a normal distribution, so the share of the plane above a threshold is
+//! known.
 
 use glam::{DVec2, UVec2};
 
@@ -19,18 +20,18 @@ pub(crate) const SECOND_PERIOD: f64 = 1.618_033_988_749_895;
 pub(crate) const SECOND_TURN_RAD: f64 = 0.9;
 /// Offset of the second sheet, in periods.
 pub(crate) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
-/// Octaves of the even sheets. The first has half as many cells along a side as the map has clouds, so that clouds
-/// stand in groups.
+/// Number of octaves of the sheets of gradient noise. The first octave has half as many cells along a side as the map
+/// has clouds, so that clouds stand in groups.
 const EVEN_OCTAVES: u32 = 4;
-/// Ratio of an octave's amplitude to that of the one before, in the even and in the cellular sheets.
+/// Ratio of an octave's amplitude to that of the octave before, in the sheets of gradient noise and of cellular noise.
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];
 /// Number of octaves of the cellular sheets.
 const CELLULAR_OCTAVES: u32 = 3;
 
-/// Texels of the map: two sheets of gradient noise (the even sheets), and two of cellular noise.
+/// Texels of the map: two sheets of gradient noise, then two of cellular noise.
 pub struct Map(pub Vec<[f32; 4]>);
 
-/// Returns the value of a sheet at a place, in periods, before its ranks are taken.
+/// Returns the value of a sheet before its ranks are taken. `place` is in periods.
 fn raw(sheet: u32, place: DVec2, seed: u32) -> f64 {
     let cells = MAP_CELLS as u32;
     let octaves = |count: u32, first: u32, persistence: f64, noise: &dyn Fn(DVec2, UVec2, u32) -> f64| {

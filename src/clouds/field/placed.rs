@@ -3,8 +3,8 @@
 //!
 //! # Model
 //! A part of a layer with its own cover is cut out of the field as a whole layer with this cover would be: with the
-//! threshold, dome and extinction of that cover. They are found for the middle of each cell of a map and interpolated
-//! between.
+//! threshold, dome and extinction of that cover. These three are found for the middle of each cell of a map and
+//! interpolated between.
 //!
 //! Cells over rain areas ([`super::cells`]) are a separate layer with cloud nowhere else. Over an area the layer is
 //! overcast. Beyond the area's border its cover falls to 0 across the cell's edge, which is several clouds wide, so

@@ -1,5 +1,5 @@
-//! Shape of a layer's clouds: its parameters, and how domes, anvils and bases bound the cloud in a column. The model is
-//! in the folder's `mod.rs`; excess is the map's number there less the threshold.
+//! Shape of a layer's clouds: its parameters, and how domes, anvils and bases bound the cloud over a place. The model
+//! is in the folder's `mod.rs`. Excess is the map's number at a place less the threshold.
 
 use glam::{DMat2, DVec2};
 
@@ -46,7 +46,7 @@ pub struct Shape {
 pub const NO_ANVIL: f64 = 1e3;
 /// Heights between which an anvil is whole, 0 at the layer's base to 1 at its top.
 const ANVIL: [f64; 2] = [0.84, 0.95];
-/// Heights over which an anvil fades out below that range and above it.
+/// Heights over which an anvil fades out, below the range of [`ANVIL`] and above it.
 const ANVIL_FACES: [f64; 2] = [0.2, 0.05];
 /// Share by which an anvil's edges fray less than those of its towers.
 const ANVIL_SMOOTHER: f64 = 0.65;
@@ -74,7 +74,7 @@ impl Shape {
 
 /// Height over which the edges of a base are round, as a share of the layer's thickness.
 const EDGE_SHARE: f64 = 0.08;
-/// Limit of that height, m: bases of deep layers are flatter.
+/// Limit of the height of [`EDGE_SHARE`], m: bases of deep layers are flatter.
 const EDGE_M: f64 = 40.0;
 
 /// Returns the excess needed for cloud at a height (0 at the base to 1 at the top) over a place of this excess. This
@@ -101,8 +101,8 @@ pub struct CloudAround {
     pub edge_m: f64,
 }
 
-/// Returns how much cloud a column of this excess has below a height, in layer thicknesses: the integral of the ratio
-/// of the extinction to full extinction.
+/// Returns how much cloud lies below a height over a place of this excess, in layer thicknesses: the integral over
+/// height of the ratio of the extinction to full extinction.
 pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
     let d = shape.dome_over(excess).max(1e-3);
     let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);

@@ -2,9 +2,10 @@
 //!
 //! # Model
 //! Light that enters one side of a hexagonal crystal and leaves through the next side but one is refracted as by a
-//! prism of 60 degrees. The deflection is at least 2 asin(n / 2) - 60 degrees (Minnaert 1954, section 134), and little
-//! more for most of the light. Over randomly oriented crystals the light begins with a step at that angle and falls off
-//! nearly as exp(-angle / 4.1 degrees); the test traces light through prisms. Ice refracts blue more than red, so the
+//! prism of 60 degrees. For refractive index n the deflection is at least 2 asin(n / 2) - 60 degrees (Minnaert 1954,
+//! section 134), and little more for most of the light. Over randomly oriented crystals the light begins with a step at
+//! that angle. Beyond the step it falls off nearly exponentially, to 1/e in 4.1 degrees; the test traces light through
+//! prisms. Ice refracts blue more than red, so the halo is red inside. The sun's disc blurs the step.
 //! halo is red inside. The sun's disc blurs the step.
 //!
 //! Rough crystals make no halo. In cirrus with a visible halo 37 % of the crystals were smooth (Forster and

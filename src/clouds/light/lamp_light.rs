@@ -8,10 +8,10 @@
 //!   a cloud without bounds, the diffuse light's mean radiance at a distance d from a source of intensity I would be
 //!   3 (1 - g') I / (4 pi d) (diffusion; Ishimaru 1978, chapter 9). At a face of the box, diffuse light falls off as if
 //!   it reached 0 on a plane 0.71 / (1 - g') outside; an image source of opposite sign beyond this plane makes it 0
-//!   there. Let p and s be the depths of place and source behind a face's plane, and r = d / sqrt(d^2 + 4 p s) the
-//!   ratio of the distances to source and image. Of the light, the face nearest to the place leaves the share 1 - r,
-//!   the face opposite that one 1 - r^2, and each of the other four 1 - r^3. Flux follows the gradient of the diffuse
-//!   light, and the place scatters more light along the flux than against it.
+//!   there. Let p and s be the depths of place and source behind this plane, and r = d / sqrt(d^2 + 4 p s) the ratio of
+//!   the distances to source and image. The mean radiance is multiplied by 1 - r for the face nearest to the place, by
+//!   1 - r^2 for the face opposite that one, and by 1 - r^3 for each of the other four. Flux follows the gradient of
+//!   the diffuse light, and the place scatters more light along the flux than against it.
 //! * A source outside lights the face towards it as a sky of the same irradiance would ([`super::transport`]).
 //!
 //! The share of the path that lies in cloud decides between the two. A flash in a cloud always counts as inside, even
@@ -106,7 +106,7 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     // source lies beyond the place, deeper in the same cloud.
     let out = direction.truncate().length();
     let half = 0.5 * (depths.left + depths.right).max(d);
-    // Depths of place and source at each face, and the growth of the first along the direction.
+    // Depths of place and source at each face, and the growth of the place's depth along the direction.
     let faces = [
         (depths.above, shine.within[0], -direction.z),
         (depths.below, shine.within[1], direction.z),
@@ -120,8 +120,8 @@ fn from_inside(scattering: &Scattering, depths: &Depths, shine: &Shine, directio
     let nearest = (0..3).min_by(|i, j| faces[*i].0.total_cmp(&faces[*j].0)).unwrap_or(0);
     for (i, (place, source, grows_by)) in faces.into_iter().enumerate() {
         let power = if i == nearest { 1 } else { FARTHER[usize::from(i != nearest ^ 1)] };
-        // A cloud is round: where one face is near, the others are farther away, so that the place counts as no less
-        // deep behind them than the source.
+        // A cloud is round: where one face is near, the others are farther away. So the place counts as at least as
+        // deep behind the others as the source.
         let place = if i == nearest { place } else { place.max(source) };
         let (ratio, falling) = mirrored(shine, direction, [place + dark, grows_by], source.max(0.0) + dark);
         let left = 1.0 - ratio.powi(power);

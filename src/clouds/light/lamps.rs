@@ -18,7 +18,7 @@ const ROWS: u32 = 96;
 const LEAST_SHOWN: f64 = 1e-3;
 /// Largest share of a lamp's light that a cloud reflects.
 const REFLECTS: f64 = 0.7;
-/// Distance at which a lamp inside a cloud is taken to light it, m.
+/// Least distance of a lamp from the cloud that it lights, m. A lamp inside a cloud counts as at this distance.
 const NEAREST_M: f64 = 5.0;
 
 /// A lamp or a flash: `CloudLamp` of `shaders/clouds/lamps.wgsl`.

@@ -48,15 +48,15 @@ pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposu
 
 impl CloudLayers {
     /// Returns the mean radiance of the drawn clouds seen from the place, cd/m^2, with their cover, and the height of
-    /// the lowest of them above the place, m. With a transmittance T, the lit
-    /// side reflects 1 - T and the shaded side passes T. From above only the lit side is seen; from below half of what
-    /// is seen is lit and half shaded: ((1 - T) + T) / 2.
+    /// the lowest of them above the place, m. With a transmittance T, the lit side reflects 1 - T and the shaded side
+    /// passes T. From above only the lit side is seen. From below half of what is seen is lit and the other half is
+    /// shaded: ((1 - T) + T) / 2.
     pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {
             let (shape, cover) = (&layer.shape, layer.slab.cover);
             let of = light_on(scene, (shape, self.is_placed()), 1.0);
-            // Transmittance of even cloud with g = 0.85 (Bohren 1987, American Journal of Physics 55, 524).
+            // Transmittance of uniform cloud with g = 0.85 (Bohren 1987, American Journal of Physics 55, 524).
             let through = 2.0 / (2.0 + 0.15 * layer.slab.optical_depth);
             let is_over = shape.base_m > scene.place.altitude_m;
             let seen = if is_over { 0.5 } else { 1.0 - through };

@@ -4,9 +4,9 @@
 //! A place has the depth of cloud above and below it, towards the sun and, horizontally, to either side. Its light is
 //! that in a box with these depths. Light that is scattered once keeps the true phase function. Light scattered more
 //! often comes from the tables of [`transport`]: one for the beam on the box's top, one for the beam on the side that
-//! faces the sun, and one each for sky and ground. Near the face that the beam falls on, this light is even from side
-//! to side. Deeper in the box it varies from side to side as a cosine, the one from which [`transport`] computes the
-//! leak.
+//! faces the sun, and one each for sky and ground. Near the face that the beam falls on, this light is the same from
+//! side to side. Deeper in the box it varies from side to side as a cosine, the one from which [`transport`] computes
+//! the leak.
 //!
 //! Top and side share the beam, because the sun's rays reach a place through the nearer of the two. With d the path to
 //! the top less the path to the side, the top has the share 1 / (1 + exp((1 - g') d)), and the side has the rest. A

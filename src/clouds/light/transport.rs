@@ -7,13 +7,14 @@
 //! for eight directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
 //!
 //! A place has the scaled depth `above` and `below` it. The layers above and below it are slabs from a ladder of
-//! doubled depths. The radiance between the two follows from their reflection and transmission. Its first four moments
-//! give what the place scatters: J = sum of (2 l + 1) chi_l m_l P_l / (4 pi).
+//! doubled depths. The radiance between the two slabs follows from their reflection and transmission. Its first four
+//! Legendre moments m_l give what the place scatters: J = albedo x sum of (2 l + 1) chi_l m_l P_l / (4 pi). chi_l are
+//! the moments of the phase function, and P_l the Legendre polynomials.
 //!
 //! A cloud of finite width loses light through its sides. In the diffusion approximation the light in a box varies as a
 //! cosine from side to side. It leaks as if it were absorbed at the rate D b^2 for each of the two level axes, with b =
 //! pi / (width + 2 x 0.71 / (1 - g')) and D = 1 / (3 (1 - g')) (Duderstadt and Hamilton 1976, chapter 5):
-//! [`leak_rate`]. There is one ladder for each of [`LEAKS`] rates.
+//! [`leak_rate`]. g' is the asymmetry of the scaled phase function. There is one ladder for each of [`LEAKS`] rates.
 //!
 //! # Error
 //! `cargo test --lib clouds::drawn::probe -- --nocapture` prints reflectance and transmittance of drawn slabs against
@@ -45,7 +46,7 @@ pub const THINNEST: f64 = 0.05;
 /// Number of slabs in a ladder, with the one of depth 0.
 pub const DEPTHS: usize = 28;
 /// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The light falls off
-/// with the root of the rate; the roots are 0.03 (e^(k/4) - 1).
+/// with the root of the rate; the root of ladder k is 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
 /// Factor in the roots of the leak rates.
 const LEAK_ROOT: f64 = 0.03;
@@ -248,8 +249,8 @@ impl ScatterMatrices {
 
 /// Slabs of doubled depths of one medium with one leak rate.
 struct SlabLadder {
-    /// Doublings from each of two thinnest slabs up to the deepest slab of the ladder, each with [`back_and_forth`]
-    /// between two such slabs.
+    /// Two chains of slabs, each slab twice as deep as the one before it: from a slab so thin that nothing is scattered
+    /// twice up to the deepest slab of the ladder. Each slab has its [`back_and_forth`] with a slab like it.
     doublings: [Vec<(ScatterSlab, DMat4)>; 2],
     /// Slabs of the ladder, the one of depth 0 first.
     slabs: Vec<ScatterSlab>,
@@ -302,8 +303,8 @@ impl SlabLadder {
     }
 }
 
-/// Returns the value at depth 0 and then at each depth of a ladder, taken in turn from the doublings of the two
-/// thinnest slabs.
+/// Returns the value at depth 0 and then the values at the other depths of a ladder, taken in turn from its two chains.
+/// The first [`DOUBLINGS`] values of each chain belong to thinner slabs and are left out.
 fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     chains.iter_mut().for_each(|chain| (0..DOUBLINGS).for_each(|_| drop(chain.next())));
     let [even, odd] = chains;
@@ -311,8 +312,8 @@ fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     std::iter::once(none).chain(pairs).take(DEPTHS).collect()
 }
 
-/// Source terms of light scattered more than once, by depth above (columns), depth below (rows) and leak (blocks of
-/// rows). Each entry has the Legendre coefficients of the cosine between a direction and straight down, 1/sr.
+/// Source terms of light scattered more than once, by depth above (columns), depth below (rows) and leak rate (blocks
+/// of rows). Each entry has the Legendre coefficients of the cosine between a direction and straight down, 1/sr.
 pub type Table = Vec<[f32; 4]>;
 
 /// Transport of light in a medium: all that does not depend on the light itself.
@@ -337,9 +338,9 @@ impl Transport {
         made
     }
 
-    /// Returns the factor that makes the light leaving an even slab, as found by rays through it, equal to the light
-    /// that falls on it where nothing is absorbed. Without it a sum over eight directions differs by a hundredth from
-    /// one over all directions.
+    /// Returns the factor that conserves energy: with it, as much light leaves a uniform slab that absorbs nothing as
+    /// falls on it. Rays through the slab find the light that leaves. Without the factor a sum over eight directions
+    /// differs by a hundredth from one over all directions.
     fn conserving(&self) -> f64 {
         let of = Scattering { albedo: 1.0, ..self.scattering };
         let ladders = vec![SlabLadder::new(&of, &ScatterMatrices::new(&of), 0.0)];

@@ -29,8 +29,8 @@ pub struct CloudShadows {
     /// Weight of the map against `mean_share`, 0 to 1. It is 0 without broken clouds, with the deck, and under a light
     /// near the horizon.
     pub map_weight: f64,
-    /// Height above the plane, m, from which on `mean_share` holds instead of the map: 100 m above the base of the
-    /// lowest clouds.
+    /// Height above the plane, m: 100 m above the base of the lowest clouds. At and above it `mean_share` holds instead
+    /// of the map.
     pub top_m: f64,
 }
 
@@ -61,7 +61,7 @@ impl HostShadowTexture {
         Self { shadows }
     }
 
-    /// Takes over the mapping of a frame; `None` if no clouds cast shadows that the map shows.
+    /// Takes over the mapping of a frame. `projection` is `None` if no clouds cast shadows that the map shows.
     pub fn lay(&mut self, now: &SceneMoment<'_>, projection: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;

@@ -16,11 +16,12 @@ use crate::{
     stage::flag,
 };
 
-/// Number of rows that a frame refreshes. While inputs change, a frame waits until as many are old.
+/// Number of rows that a frame refreshes. While inputs change, a frame waits until this many rows are old.
 const ROWS: u32 = 12;
-/// Aging. A share of one of these changes makes that share of the rows old, to be refreshed a few at a time: distance
-/// that the camera or the clouds move, m, which turns a cloud 500 m up by one texel; and change of the exposure
-/// (logarithm). The number between them multiplies the aging of the shadow map.
+/// Aging of the rows, which are refreshed a few at a time. First: distance, m, that the camera or the clouds move until
+/// all rows are old; it turns a cloud 500 m up by one texel. Second: factor on the aging of the shadow map. Third:
+/// change of the exposure (logarithm) until all rows are old. A share of such a change makes that share of the rows
+/// old.
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
 /// Jumps between two frames beyond which the panorama is redrawn at once: distance that the camera moves, m; change of
 /// the exposure (logarithm).

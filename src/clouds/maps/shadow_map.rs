@@ -20,7 +20,7 @@ use crate::{
     stage::flag,
 };
 
-/// Side of the coarse map, texels. It has as many texels as the rows that a frame refreshes.
+/// Side of the coarse map, texels. It has a quarter as many texels as the rows that a frame refreshes.
 const COARSE: u32 = 64;
 /// Rows refreshed in a frame. A frame refreshes them once as many rows are old, or while some of the map is coarse.
 /// Sixteen frames refresh all rows.

@@ -18,8 +18,8 @@ const TEXEL_M: f64 = 40.0;
 const ENDS_M: f64 = 100.0;
 /// Sines of the light's elevation between which shadows fade in.
 const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
-/// Changes between two frames after which nothing of the map is kept: time, s; turn of the light, rad; change of a
-/// layer's threshold.
+/// Changes between two frames after which nothing of the map is kept: time, s; turn of the light, rad; change of
+/// [`ShadowInputs::threshold_sum`].
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
 /// Distance, m, that the layer with which the map moves may go between two frames. A longer one means that another
@@ -62,7 +62,7 @@ pub(crate) struct ShadowInputs {
     pub time_s: f64,
     /// Unit vector towards the light (east, north, up).
     pub to_light: DVec3,
-    /// Sum over the layers of threshold and base, km.
+    /// Sum over the layers of the threshold plus the base in km.
     pub threshold_sum: f64,
     /// Distance that the layer with which the map moves has drifted, m east and north.
     pub drift_m: DVec2,
@@ -92,7 +92,7 @@ pub(crate) struct ShadowProjection {
     mean: f64,
     /// Weight of the map against the mean share, 0 to 1.
     pub map_weight: f64,
-    /// Height above the plane from which on the mean share holds, m.
+    /// Height above the plane, m, at and above which the mean share holds.
     pub top_m: f64,
     /// Extinction of the air at the camera's height, 1/m, and its scale height, m.
     haze: [f64; 2],

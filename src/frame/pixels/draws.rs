@@ -68,7 +68,7 @@ impl Draws {
     /// [`kinds::draws`].
     ///
     /// # Errors
-    /// The single draw; a missing shader file.
+    /// [`PipelineNotReady::Coming`] with the single draw; [`PipelineNotReady::Failed`] for a missing shader file.
     pub fn new(
         device: &Arc<Device>,
         composite: &mut Composite,

@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{gpu::flat_texture, stage::Stages};
 
-/// Whether the interpolated pixels on which the host drew have a draw of their own, which reads depth: they do where
-/// water or snow lies on surfaces, or clouds may be in front of them.
+/// Whether the interpolated pixels on which the host drew have a draw of their own, which reads depth. They have one if
+/// water or snow lies on surfaces, or if clouds may be in front of these pixels.
 pub(in crate::frame) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }

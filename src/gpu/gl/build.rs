@@ -1,5 +1,4 @@
-//! Building of targets: the framebuffers and copies that a target needs, and the wgpu textures that stand for the
-//! host's images.
+//! Building of targets: the framebuffers and copies that a target needs, and the wgpu textures for the host's images.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -55,7 +54,7 @@ impl TargetImage {
         }
     }
 
-    /// Returns the attachment of an object that stands for this image.
+    /// Returns the attachment of `object`, which is this image or Welkin's copy of it.
     fn attachment(&self, object: GlObject) -> Attachment {
         Attachment { side: self.side, object, internal: self.facts.internal }
     }
@@ -95,7 +94,8 @@ impl TargetBuilder<'_> {
             parts.push(self.part(desc, image, TargetSide::Depth)?);
         }
         let samples = parts[0].facts.samples;
-        // If the picture has one sample, multisampled depth is copied to depth of one sample; OpenGL ES cannot do that.
+        // Beside a picture of one sample, multisampled depth is copied to depth of one sample. OpenGL ES cannot do
+        // that.
         let resolved = samples == 1 && !self.ask.info.is_es();
         if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
             let accepted = format!("an image with as many samples as color, {samples}");
@@ -136,7 +136,7 @@ impl TargetBuilder<'_> {
         Ok((target, parts))
     }
 
-    /// Builds a target that is only read: its depth texture stands for its colour too.
+    /// Builds a target that is only read: its depth texture also serves as its colour texture.
     fn only_depth(
         &self,
         desc: GlTargetDesc,
@@ -178,7 +178,8 @@ impl TargetBuilder<'_> {
     /// Whether multisampled images are copied to images of one sample.
     ///
     /// # Errors
-    /// The context can neither do that nor use the samples as requested.
+    /// [`Status::Unsupported`] for multisampled images on OpenGL ES, and for [`Multisample::Each`] before OpenGL 4.0 or
+    /// on tier 0.
     fn resolves(&self, multisample: Multisample, samples: u32) -> Result<bool> {
         let es = self.ask.info.is_es();
         match multisample {
@@ -251,8 +252,8 @@ impl TargetBuilder<'_> {
             GlImage::Texture { name, target } => self.end(part.attachment(GlObject::Texture(name, target)), made)?,
             GlImage::Renderbuffer { name } => self.end(part.attachment(GlObject::Renderbuffer(name)), made)?,
         };
-        // Only the bits of a window's depth are known, and drivers differ in the formats that they copy it to. Colours
-        // convert.
+        // Only the bits of a window's depth are known, and drivers differ in the depth formats to which they copy it,
+        // so several formats are tried. A copy of colour converts between formats.
         let others: &[u32] = match (part.image, part.side) {
             (GlImage::Framebuffer { .. }, TargetSide::Depth) => {
                 &[DEPTH24_STENCIL8, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH32F_STENCIL8, DEPTH_COMPONENT16]
@@ -462,7 +463,7 @@ fn check_written_back(parts: &[TargetImage], resolve: bool) -> Result<()> {
     }
 }
 
-/// Returns the error for an image that this context refuses, with a format that always works.
+/// Returns the error for an image that this context refuses. The message names a format that always works.
 fn refused(side: TargetSide, internal: u32, verb: &str, answer: u32) -> Error {
     let parameter = side.parameter();
     let (internal, answer_text) = (spell(internal), spell(answer));

@@ -76,8 +76,8 @@ impl Inner {
         self.targets.iter().find(is_it)
     }
 
-    /// Checks that the host's window, if it is the target, has the size that the host gives. For a `new` target it
-    /// waits for the result; otherwise it uses the result of an earlier frame.
+    /// Checks that the host's window, if it is the target, has the size that the host gives. For a `new` target the
+    /// check waits for the GPU; otherwise it uses the result of an earlier frame.
     fn check_window(&mut self, info: &GlInfo, desc: &GlTargetDesc, new: bool) -> Result<()> {
         if desc.color != (GlImage::Framebuffer { name: 0 }) || desc.width == 0 || desc.height == 0 {
             return Ok(());

@@ -112,7 +112,7 @@ fn parse_version(text: &str) -> Option<(bool, (u32, u32))> {
     Some((es, (major, minor)))
 }
 
-/// Functions that wgpu calls without checking that they were found; it panics when one is missing.
+/// Functions that wgpu calls without checking that they were found. wgpu panics when one is missing.
 const NEEDED: &[&CStr] = &[
     c"glGetString",
     c"glGetStringi",

@@ -1,9 +1,10 @@
 //! Checks for the host's conditional rendering and active queries, in the context in which Welkin draws.
 //!
-//! Both affect what Welkin draws. Under conditional rendering whose query counted nothing, no draw is made, so tables
-//! that are drawn once would stay empty. An active query counts Welkin's samples. Neither can be suspended and resumed.
-//! OpenGL reports whether a query is active (`GL_CURRENT_QUERY`). It does not report whether rendering is conditional,
-//! but beginning it twice is an error (OpenGL 4.6 core specification, section 10.9), so a trial finds out.
+//! If the host renders conditionally and its query counted nothing, none of Welkin's draws is made, so tables that are
+//! drawn once would stay empty. An active query of the host would count Welkin's samples. Neither can be suspended and
+//! resumed. OpenGL reports whether a query is active (`GL_CURRENT_QUERY`). It does not report whether rendering is
+//! conditional. But it is an error to begin conditional rendering twice (OpenGL 4.6 core specification, section 10.9),
+//! so a trial finds out.
 
 use super::{
     api::Api,
@@ -24,8 +25,9 @@ const COUNTING: [(u32, &str); 4] = [
 pub(super) struct Counting {
     /// Query targets that this context has.
     targets: Vec<(u32, &'static str)>,
-    /// Ended query for the trial. 0 on OpenGL ES, which has no conditional rendering; if a query was active when the
-    /// device was created; or if trials are not reliable with this driver.
+    /// Ended query for the trial; 0 if no trial is made. There is none on OpenGL ES, which has no conditional
+    /// rendering, none if a query was active when the device was created, and none if trials are not reliable with this
+    /// driver.
     trial: u32,
 }
 
@@ -67,9 +69,9 @@ impl Counting {
         is_conditional
     }
 
-    /// Opens a device, unless a query is active. If rendering is conditional, nothing is drawn and opening fails. If
-    /// the trial says that rendering is conditional but opening succeeds, trials are not reliable with this driver and
-    /// no more are made.
+    /// Opens a device. Refuses without opening if a query is active, because `trial` is then 0. Otherwise calls `open`
+    /// even if the trial says that rendering is conditional: if that is true, nothing is drawn and opening fails. If
+    /// opening succeeds all the same, trials are not reliable with this driver, and no more are made.
     ///
     /// # Errors
     /// The errors of [`Counting::allows`] and of `open`.

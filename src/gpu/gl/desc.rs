@@ -36,7 +36,7 @@ pub struct GlHostDesc {
     /// Callback that makes contexts current. Required in shared mode. In the host's context it is optional: if given,
     /// it is called with [`WhichContext::Host`](super::WhichContext::Host) before each batch.
     pub make_current: Option<MakeCurrent>,
-    /// Argument of both callbacks. They may be called on any thread that calls Welkin, one call at a time.
+    /// Argument of both callbacks. The callbacks may be called on any thread that calls Welkin, one call at a time.
     pub user: *mut c_void,
     /// Context in which Welkin uses the host's OpenGL.
     pub mode: GlMode,

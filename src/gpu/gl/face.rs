@@ -2,8 +2,9 @@
 //!
 //! There are two reasons. A forced tier 0 must draw as on OpenGL 3.3 or OpenGL ES 3.0, even if the driver can do more,
 //! so the version, the shading language and later extensions are hidden. And wgpu treats float formats as renderable
-//! and filterable only if an OpenGL 2 extension is listed. Core profiles no longer list that extension, because OpenGL
-//! 3.0 made both part of itself (OpenGL 3.0 specification, table 3.16); this room adds it to the list again.
+//! and filterable only if an OpenGL 2 extension is listed. Core profiles no longer list that extension, because both
+//! abilities are part of OpenGL 3.0 (OpenGL 3.0 specification, table 3.16); this room adds the extension to the list
+//! again.
 
 use std::{
     cell::RefCell,
@@ -55,7 +56,7 @@ pub(super) const STORAGE: [&str; 2] = ["GL_ARB_buffer_storage", "GL_EXT_buffer_s
 /// Extension that says that float formats are renderable and filterable.
 const FLOATS: &str = "GL_ARB_color_buffer_float";
 
-/// Answers of the two functions on this thread.
+/// Answers of `glGetString` and `glGetStringi` on this thread.
 struct Face {
     real: GetString,
     version: Option<CString>,
@@ -94,7 +95,7 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
     })
 }
 
-/// Guard: as long as it lives, the two functions answer from this thread's [`Face`].
+/// Guard: as long as it lives, `glGetString` and `glGetStringi` answer from this thread's [`Face`].
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {
@@ -124,8 +125,8 @@ impl FaceGuard {
         Some(Self(()))
     }
 
-    /// Returns the function that wgpu's loader gets for `name`: for the two functions this room's own, for all others
-    /// the host's.
+    /// Returns the function that wgpu's loader gets for `name`: this room's own for `glGetString` and `glGetStringi`,
+    /// the host's for all others.
     pub(super) fn resolve(name: &CStr, hosts: *const c_void) -> *const c_void {
         match name.to_bytes() {
             b"glGetString" => get_string as extern "system" fn(u32) -> *const u8 as *const c_void,

@@ -52,7 +52,7 @@ pub(super) struct Bits {
     pub(super) alpha: i32,
     pub(super) depth: i32,
     pub(super) stencil: i32,
-    /// Component type of the attachment, of colour or of depth: `GL_FLOAT`, `GL_UNSIGNED_NORMALIZED` and others.
+    /// Component type of the attachment's colour or depth: `GL_FLOAT`, `GL_UNSIGNED_NORMALIZED` and others.
     pub(super) component: u32,
     pub(super) srgb: bool,
 }
@@ -63,7 +63,7 @@ impl Bits {
         let float = self.component == FLOAT;
         Some(match (self.red, self.green, self.alpha, float) {
             (8, 8, _, false) if self.srgb => SRGB8_ALPHA8,
-            // A window with 5 or 6 bits a channel is drawn in a texture of 8; copying the texture back rounds.
+            // A window with 5 or 6 bits a channel is drawn in a texture with 8; copying the texture back rounds.
             (1..=8, 1..=8, _, false) => RGBA8,
             (10, 10, _, false) => RGB10_A2,
             (16, 16, _, true) => RGBA16F,
@@ -87,8 +87,8 @@ impl Bits {
     }
 }
 
-/// Returns wgpu's format for the internal format `internal` of a target's colour, depth, mask, surface classes or
-/// normals, as `side` says.
+/// Returns wgpu's format for `internal`, the internal format of one of a target's images. `side` says which image:
+/// colour, depth, mask, surface classes or normals.
 ///
 /// # Errors
 /// [`crate::Status::Unsupported`], which names the parameter, the format and the accepted formats.
@@ -108,8 +108,8 @@ pub(super) fn format(internal: u32, side: TargetSide) -> Result<Format> {
     Err(Error::about(Status::Unsupported, side.parameter(), rest))
 }
 
-/// Returns the client format and type with which `internal` can be allocated without data. OpenGL ES accepts only those
-/// of its table (OpenGL ES 3.0 specification, table 3.2), so a format without alpha is allocated without alpha.
+/// Returns the client format and type with which `internal` can be allocated without data. OpenGL ES accepts only the
+/// pairs of its table (OpenGL ES 3.0 specification, table 3.2), so a format without alpha is allocated without alpha.
 pub(super) fn allocation(internal: u32) -> (u32, u32) {
     match internal {
         R8 => (RED, UNSIGNED_BYTE),

@@ -6,18 +6,18 @@ use std::{
     thread::{self, ThreadId},
 };
 
-/// Reentrant lock. A call releases it, not the end of a guard's life, because entering and leaving a host are two
+/// Reentrant lock. A call releases it instead of the drop of a guard, because entering and leaving a host are two
 /// calls.
 #[derive(Default)]
 pub(super) struct Gate {
-    /// Thread that holds the lock, and its depth.
+    /// Thread that holds the lock, and its depth: the number of its enters that are not undone yet.
     state: Mutex<(Option<ThreadId>, u32)>,
     /// Signalled when the lock is released.
     freed: Condvar,
 }
 
 impl Gate {
-    /// Waits until no other thread holds the lock; returns this thread's depth, from 1.
+    /// Waits until no other thread holds the lock. Returns this thread's depth, which is 1 after its first enter.
     pub(super) fn enter(&self) -> u32 {
         let me = Some(thread::current().id());
         let mut state = self.lock();

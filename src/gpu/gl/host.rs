@@ -45,17 +45,17 @@ pub(super) struct Inner {
     pub(super) sharing: Sharing,
     pub(super) mark: Mark,
     pub(super) backend: Backend,
-    /// Framebuffer and its two textures, for reading state and probing.
+    /// Framebuffer that is bound while state is read, and its two textures.
     pub(super) probe: (u32, [u32; 2]),
-    /// Framebuffer for queries, whose attachments are changed.
+    /// Framebuffer to which textures are attached to query their formats.
     pub(super) scratch: u32,
     pub(super) tier0: bool,
     pub(super) targets: Vec<Entry>,
-    /// Window's size check, created when the host's window is first a target.
+    /// Check of the window's size, created when the host's window is first a target.
     pub(super) window: Option<WindowSize>,
     /// Ids of the targets in use since the last enter.
     pub(super) active: Vec<u64>,
-    /// Number of the next target or use.
+    /// Number last given to a target or to a use of one.
     pub(super) next_id: u64,
     /// Error that could not be returned when it occurred; the next call that can return it does.
     pub(super) fault: Option<Error>,
@@ -98,9 +98,10 @@ impl GlHost {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Enters the host. In shared mode the host's context must be current on this thread, or none; Welkin's is current
-    /// on return. In the host's own context that context must be current; its state is saved. Entering again on the
-    /// same thread costs nothing.
+    /// Enters the host. In shared mode the host's context or no context must be current on this thread; Welkin's
+    /// context is current on return. In the other mode the host's own context must be current, unless the host gave
+    /// `make_current`, which then makes it current; the host's state is saved. Entering again on the same thread costs
+    /// nothing.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now; also any error
@@ -134,8 +135,8 @@ impl GlHost {
         self.inner().fault.take().map_or(Ok(()), Err)
     }
 
-    /// Undoes one [`GlHost::begin`]. The last one copies pictures back, restores the host's state, and makes the host's
-    /// context wait for Welkin's.
+    /// Undoes one [`GlHost::begin`]. When all are undone, pictures are copied back and the host continues: in its own
+    /// context with its state restored, in shared mode with its context waiting for Welkin's.
     pub fn leave(&self) {
         match self.gate.depth() {
             0 => return,
@@ -149,7 +150,8 @@ impl GlHost {
     /// without allocation, as long as the host's objects do not change.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] outside of enter and leave; an image that cannot be used, by name.
+    /// [`Status::WrongOrder`] if the host is not entered. For an image that cannot be used, an error that names its
+    /// field, such as `target.color`.
     pub fn target(&self, device: &wgpu::Device, desc: &GlTargetDesc) -> Result<Arc<GlTarget>> {
         if self.gate.depth() == 0 {
             return Err(Error::new(Status::WrongOrder, "the OpenGL host must be entered before its target is used"));
@@ -175,7 +177,7 @@ impl GlHost {
             let rest = "must be a texture or a renderbuffer here, not a framebuffer";
             return Err(Error::about(Status::Unsupported, "target.depth", rest));
         }
-        // The depth stands for the colour, because nothing is drawn.
+        // A target with one image as both colour and depth is built as a target that is only read.
         let multisample = Multisample::Each;
         let desc = GlTargetDesc {
             color: image,
@@ -306,7 +308,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Ends the batch and gives the context back to the host.
+    /// Ends the use of all targets and gives the context back to the host.
     fn end(&mut self, info: &GlInfo) {
         let mut fault = self.finish_targets().err();
         self.rest(info);
@@ -331,7 +333,8 @@ impl Inner {
                         }
                     }
                     Err(e) => {
-                        // No context is left to wait, and Welkin's context is still current.
+                        // The host's context is not current, so it cannot wait for the fence. Welkin's context still
+                        // is.
                         self.api.DeleteSync(fence);
                         fault = fault.or(Some(e));
                     }

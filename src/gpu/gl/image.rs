@@ -24,15 +24,15 @@ pub enum GlImage {
         /// Name from `glGenRenderbuffers`.
         name: u32,
     },
-    /// Image that framebuffer `name` draws to; 0 is the window's. It works only in the host's own context, because
-    /// framebuffers are not shared between contexts. It is copied in and out.
+    /// Image that framebuffer `name` draws to; name 0 is the window's framebuffer. It can be used only in the host's
+    /// own context, because framebuffers are not shared between contexts. The image is copied in and out.
     Framebuffer {
         /// Name from `glGenFramebuffers`, or 0.
         name: u32,
     },
 }
 
-/// Returns the target of one of Welkin's textures.
+/// Returns the OpenGL target of a texture of Welkin's with this number of samples.
 pub(super) fn target_of(samples: u32) -> u32 {
     if samples > 1 { TEXTURE_2D_MULTISAMPLE } else { TEXTURE_2D }
 }
@@ -60,10 +60,12 @@ pub(super) struct Ask<'a> {
     pub(super) encodes: bool,
 }
 
-/// Queries `image`. `size` is used where OpenGL reports none (a window's framebuffer, textures before OpenGL ES 3.1).
+/// Queries `image`. `size` is used for an image whose size OpenGL cannot be asked for: a window's framebuffer, a
+/// texture on OpenGL ES before 3.1, and a layer of an array texture or a face of a cube map in a framebuffer.
 ///
 /// # Errors
-/// There is no such object, or its target or format cannot be used; the message names it.
+/// There is no such object, it lacks storage or the requested buffer, or its target or format cannot be used. The
+/// message names the parameter.
 pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     ask.api.take_error(); // so that only errors of the calls below count
     match image {
@@ -111,7 +113,7 @@ fn texture_facts(ask: Ask<'_>, name: u32, target: u32, side: TargetSide, size: (
         return Err(Error::invalid(side.parameter(), rest));
     }
     let internal = match named {
-        // The format is not a sized name: the driver chose one, so its bits are queried.
+        // The format is not a sized name, so the driver chose the bits. They are queried.
         1..=4 | RGB | RGBA | RED | DEPTH_COMPONENT | DEPTH_STENCIL | 0x8C40 | 0x8C42 => {
             let bits = attached_bits(api, name, target, side, scratch);
             sized(bits, side)?
@@ -240,7 +242,8 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)
                     let rest = format!("must draw to a colour buffer, framebuffer {name} has GL_NONE");
                     return Err(Error::invalid(side.parameter(), rest));
                 }
-                // Desktop OpenGL names the window's buffers one by one, OpenGL ES as GL_BACK.
+                // In queries of attachments, desktop OpenGL takes a single buffer of the window (GL_BACK_LEFT), OpenGL
+                // ES takes GL_BACK.
                 BACK if !info.is_es() => BACK_LEFT,
                 FRONT | 0x0406 if !info.is_es() => FRONT_LEFT,
                 other => other,
@@ -250,7 +253,7 @@ fn framebuffer_facts(ask: Ask<'_>, name: u32, side: TargetSide, size: (u32, u32)
         (TargetSide::Depth, _) => DEPTH_ATTACHMENT,
     };
     let mut bits = count_bits(api, DRAW_FRAMEBUFFER, attachment, side);
-    // A window that is able to encode may still hold values that the host encoded itself.
+    // With GL_FRAMEBUFFER_SRGB off, a framebuffer that can encode holds values that the host encoded itself.
     bits.srgb &= ask.encodes;
     let samples = api.uint(SAMPLES).max(1);
     let attached_size = if name == 0 { None } else { attached_size(ask, attachment, samples) };

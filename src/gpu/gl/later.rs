@@ -7,7 +7,7 @@ use std::ffi::{CStr, CString, c_void};
 
 use super::check::GlInfo;
 
-/// Functions that joined ES 3.2 together, and the extensions that have them, each with its suffix.
+/// Functions that joined ES 3.2 together, and the extensions that have them in earlier versions.
 struct Later {
     /// ES 3.2 names of the functions.
     functions: &'static [&'static str],
@@ -96,7 +96,7 @@ const LATER: &[Later] = &[
     },
 ];
 
-/// Returns the ES 3.2 names of all functions in the list.
+/// Returns the ES 3.2 names of all functions in [`LATER`].
 #[cfg(test)]
 fn functions() -> impl Iterator<Item = &'static str> {
     LATER.iter().flat_map(|later| later.functions.iter().copied())

@@ -15,7 +15,7 @@ use super::{api::Api, names::*};
 
 const ATTRIBUTE: u32 = 15;
 
-/// Number of the next mark.
+/// Number for the next mark to be created.
 static NEXT: AtomicUsize = AtomicUsize::new(0x5745_4C4B);
 /// Vertex array and number of each live mark.
 static LIVE: Mutex<Vec<(u32, usize)>> = Mutex::new(Vec::new());
@@ -42,7 +42,7 @@ impl Mark {
         mark
     }
 
-    /// Marks the current context, so that it can be recognised.
+    /// Marks the current context, so that it can be recognised. The mark is not one of the live marks.
     pub(super) fn leave(api: &Api) -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let (array_was, buffer_was) = (api.uint(VERTEX_ARRAY_BINDING), api.uint(ARRAY_BUFFER_BINDING));
@@ -73,8 +73,8 @@ impl Mark {
         self.forget();
     }
 
-    /// Deletes the part of the mark that another context of the share group can reach; the vertex array goes with its
-    /// context.
+    /// Deletes the mark's buffer, which can be reached from another context of the share group. The vertex array is
+    /// deleted with its context.
     pub(super) fn remove_shared(&self, api: &Api) {
         api.delete(Api::DeleteBuffers, self.buffer);
     }

@@ -3,8 +3,8 @@
 //! # Two modes
 //! [`GlMode::Shared`]: the host creates a second context that shares objects with its own, and gives a callback that
 //! makes either one current. Welkin draws in the second context, so it cannot change the host's state. Fences order the
-//! two: the host's commands end before Welkin's begin, and Welkin's before the host's next ones. Framebuffers are not
-//! shared between contexts, so targets are textures and renderbuffers.
+//! two: the host's commands end before Welkin's begin, and Welkin's end before the host's next commands begin.
+//! Framebuffers are not shared between contexts, so targets are textures and renderbuffers.
 //!
 //! [`GlMode::HostContext`]: Welkin draws in the host's own context. It saves the host's state, sets the state that wgpu
 //! assumes, and restores the host's state at the end (`src/gpu/gl/state`). Any framebuffer can be a target, the
@@ -15,10 +15,10 @@
 //! (`gl_Position.y`), so wgpu's top row lies in memory where OpenGL has its bottom row. A host's image has the opposite
 //! order. Rows are never copied to correct that. Instead:
 //! - Geometry: multiply wgpu's clip-space y by -1 ([`CLIP_Y_SIGN`]). This undoes the backend's negation. wgpu does not
-//!   know of it, so front faces are then clockwise to wgpu (`wgpu::FrontFace::Cw`).
+//!   know of the multiplication, so front faces are then clockwise to wgpu (`wgpu::FrontFace::Cw`).
 //! - Full-screen passes: `@builtin(position).xy` is the host's texel, counted from its first row, in colour and depth
-//!   alike, so `textureLoad` needs no change. Only the step from texel to ray does: for a host's image, y in clip space
-//!   is `2 (y + 0.5) / h - 1`, not `1 - 2 (y + 0.5) / h`.
+//!   alike, so `textureLoad` needs no change. Only the step from texel to ray changes: in row y of a host's image of
+//!   height h, clip-space y is `2 (y + 0.5) / h - 1`, not `1 - 2 (y + 0.5) / h`.
 //!
 //! In both cases clip-space y has the sign [`CLIP_Y_SIGN`]. A host that draws with its clip control's origin at the
 //! upper left stores rows from the top, as wgpu does. Such a host passes a projection with y negated.

@@ -1,8 +1,8 @@
-//! OpenGL objects that wgpu textures stand for.
+//! OpenGL objects to which wgpu textures refer.
 
 use super::{api::Api, names::*};
 
-/// An OpenGL object that a wgpu texture stands for.
+/// An OpenGL object to which a wgpu texture refers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GlObject {
     /// Name and target.
@@ -18,7 +18,7 @@ impl GlObject {
         name
     }
 
-    /// Attaches the object to the bound framebuffer.
+    /// Attaches level 0 of a texture, or a renderbuffer, to the bound framebuffer. Does nothing for a framebuffer.
     pub(super) fn attach(self, api: &Api, attachment: u32) {
         match self {
             Self::Texture(name, target) => api.FramebufferTexture2D(FRAMEBUFFER, attachment, target, name, 0),

@@ -54,8 +54,8 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// # Errors
 /// [`Status::InvalidArgument`] for callbacks that are missing or return NULL; [`Status::WrongOrder`] if no context or
 /// the wrong one is current; [`Status::Unsupported`] if the context is older than OpenGL 3.3 or OpenGL ES 3.0;
-/// [`Status::AlreadyWrapped`] if it has a device already; [`Status::NoAdapter`] if wgpu cannot use it, or if its driver
-/// fails the test of known answers (`src/gpu/known.rs`) or does not finish it in 6 s.
+/// [`Status::AlreadyWrapped`] if the context has a device already; [`Status::NoAdapter`] if wgpu cannot use the
+/// context, or if its driver fails the test of known answers (`src/gpu/known.rs`) or does not finish the test in 6 s.
 ///
 /// # Safety
 /// The callbacks must do what their types declare until the device is gone. The contexts must outlive the device, or be
@@ -76,7 +76,8 @@ pub unsafe fn adopt(desc: &GlHostDesc) -> Result<GlDevice> {
             if Mark::any_here(&host) {
                 return Err(already_wrapped());
             }
-            // Saves twice: saving needs the probe, and the probe must be created with nothing but bindings changed.
+            // Saves twice: the save that is kept needs the probe, and creating the probe changes bindings. The first
+            // save, without the probe, restores these bindings.
             let mut state = HostState::new(&host, &host_info);
             state.save(&host, 0);
             let probe = make_probe(&host);
@@ -223,7 +224,7 @@ struct Parts {
 }
 
 /// Opens wgpu on the current context and tests the driver by known answers. If shaders read bytes from blocks that
-/// differ from those written, wgpu is opened once more so that it writes them by `glBufferSubData`.
+/// differ from those written, opens wgpu once more so that it writes blocks by `glBufferSubData`.
 fn open_known(
     api: &Api,
     info: &GlInfo,
@@ -274,7 +275,7 @@ fn open(
         debug_fns: wgpu::GlDebugFns::Disabled,
         ..Default::default()
     };
-    // wgpu's loader panics at unexpected values from a driver; the checks before leave few of these.
+    // wgpu's loader panics at unexpected values from a driver; the earlier checks leave few of these.
     let exposed = catch_unwind(AssertUnwindSafe(|| {
         // SAFETY: the context is current, and stays so until this function returns.
         unsafe { gles::Adapter::new_external(loader, options) }
@@ -303,7 +304,7 @@ fn open(
     Ok(Opened { instance, adapter, device, queue })
 }
 
-/// Creates the objects that stay in the context beside wgpu's own. Leaves nothing behind on failure.
+/// Creates the objects that stay in the context beside wgpu's own. If opening failed, deletes the probe instead.
 fn finish(opened: Result<(Backend, Opened)>, api: &Api, probe: (u32, [u32; 2]), info: &GlInfo) -> Result<Parts> {
     match opened {
         Ok((backend, opened)) => {

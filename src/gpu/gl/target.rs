@@ -3,7 +3,7 @@
 //! | host's image | colour | depth |
 //! |---|---|---|
 //! | texture | drawn to and copied directly | read and attached directly |
-//! | multisampled texture | drawn to through Welkin's own framebuffer | read directly, attached through it |
+//! | multisampled texture | drawn to through Welkin's framebuffer | read directly, attached through that framebuffer |
 //! | renderbuffer | drawn to directly | attached directly, read from a copy |
 //! | framebuffer (the window's or any other) | copied in, drawn to, copied back | copied in, copied back if asked |
 //!
@@ -75,7 +75,7 @@ pub struct GlTarget {
     pub color: wgpu::Texture,
     /// Picture to read (`TEXTURE_BINDING`), if wgpu cannot copy `color` itself.
     /// [`HostBinding::refresh`](crate::gpu::HostBinding::refresh) fills it;
-    /// [`View::record`](crate::frame::View::record) calls that.
+    /// [`View::record`](crate::frame::View::record) calls that function.
     pub color_read: Option<wgpu::Texture>,
     /// Depth to attach.
     pub depth: Option<wgpu::Texture>,
@@ -119,7 +119,7 @@ pub(super) struct Copied {
 pub(super) struct Entry {
     pub(super) desc: GlTargetDesc,
     pub(super) target: Arc<GlTarget>,
-    /// Number of the use, for dropping the least recently used target.
+    /// Number of the latest use, for dropping the least recently used target.
     pub(super) used: u64,
     pub(super) parts: Vec<TargetImage>,
     pub(super) made: TargetObjects,

@@ -9,7 +9,8 @@ use std::ffi::c_char;
 use super::{api::Api, check::GlInfo, names::*};
 use crate::error::{Error, Result};
 
-/// Number of lines: beyond the window's right and upper edges, its last column, its last row, its first pixel.
+/// Number of queries: one for the lines beyond the window's right and upper edges, and one each for its last column,
+/// its last row and its first pixel.
 const LINES: usize = 4;
 
 /// Program and queries in one context.

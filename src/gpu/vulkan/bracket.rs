@@ -131,8 +131,8 @@ fn driver_error(e: vk::Result) -> Error {
     Error::new(status, format!("the host's Vulkan device refused a command buffer: {e}"))
 }
 
-/// Returns a full dependency on one layer of an image, with its change of layout. `taking` is the change from the
-/// host's layout.
+/// Returns a full dependency on one layer of an image, with its change of layout. `taking` is true for the change from
+/// the host's layout to wgpu's.
 fn barrier(image: &HostImage, role: ImageRole, taking: bool) -> vk::ImageMemoryBarrier<'static> {
     let home = image::home_layout(role);
     let (from, to) = if taking { (image.layout, home) } else { (home, image.final_layout) };

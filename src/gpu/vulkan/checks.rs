@@ -10,7 +10,7 @@ use super::dispatch::{self, RealFunctions};
 use super::facts::EnabledFeatures;
 use crate::error::{Error, Result, Status};
 
-/// Host description that passed the checks which need no driver call.
+/// Loader function and version from a host's description that passed the checks which need no driver call.
 pub(super) struct Handles {
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
     pub instance_api_version: u32,
@@ -52,7 +52,7 @@ pub(super) fn handles(desc: &VulkanHostDesc<'_>) -> Result<Handles> {
     Ok(Handles { get_instance_proc_addr: get, instance_api_version: v })
 }
 
-/// Host's instance with some of wgpu's queries redirected, and the functions behind the redirections.
+/// Host's instance as wgpu sees it, with some queries redirected, and the real functions of the host's instance.
 pub(super) struct LoadedInstance {
     pub instance: ash::Instance,
     pub entry: ash::Entry,
@@ -198,7 +198,8 @@ pub(super) fn extensions(
     Error::all(lacks)
 }
 
-/// Loads the device's functions with the queue calls redirected, and keeps the real functions for the redirections.
+/// Loads the device's functions, with two queue calls and the creation of descriptor set layouts redirected. Also
+/// returns the real functions that the substitutes call.
 ///
 /// # Safety
 /// The requirements of [`load_instance`]; `desc.device` must be live and made from `desc.physical_device`.

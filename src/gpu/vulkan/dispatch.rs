@@ -50,7 +50,7 @@ pub(super) struct HostRecord {
     pub device: vk::Device,
     pub queue: vk::Queue,
     pub queue_family_index: u32,
-    /// Lower one of the instance's and the device's version, which says what may be called.
+    /// Lower of the instance's and the physical device's versions. It says which functions may be called.
     pub api_version: u32,
     pub extensions: Vec<&'static CStr>,
     pub enabled: EnabledFeatures,
@@ -66,7 +66,7 @@ thread_local! {
     static ADOPTING: RefCell<Option<Arc<HostRecord>>> = const { RefCell::new(None) };
 }
 
-/// Adds the record to the list, unless its queue is already there; returns whether it was added.
+/// Adds the record to the list of adopted hosts, unless its queue is already there; returns whether it was added.
 pub(super) fn register(record: &Arc<HostRecord>) -> bool {
     let mut hosts = HOSTS.write().unwrap_or_else(PoisonError::into_inner);
     if hosts.iter().any(|h| h.queue == record.queue) {

@@ -199,8 +199,8 @@ impl EnabledFeatures {
     }
 
     /// Removes features that are not enabled from a whole chain, as filled in by `vkGetPhysicalDeviceFeatures2`. A
-    /// feature structure that is not in this table belongs to an extension that [`visible_extension`] hides, so wgpu
-    /// never asks for it.
+    /// feature structure that [`Self::narrow`] does not change belongs to an extension that [`visible_extension`]
+    /// hides, so wgpu never asks for it.
     ///
     /// # Safety
     /// `chain` must be a valid, filled chain.

@@ -38,10 +38,10 @@ impl VulkanHost {
     /// On return the work is submitted, not done.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`], which names a semaphore that is null or of a kind that the host did not enable;
-    /// nothing is then submitted. [`Status::OutOfMemory`], if there is no memory for the barriers. [`Status::Internal`]
-    /// or [`Status::DeviceLost`] for a GPU fault in the commands; if they were refused for it, the semaphores are
-    /// neither waited for nor signalled.
+    /// [`Status::InvalidArgument`], which names a null semaphore, or a timeline semaphore where the host did not enable
+    /// timeline semaphores; nothing is then submitted. [`Status::OutOfMemory`], if there is no memory for the barriers.
+    /// [`Status::Internal`] or [`Status::DeviceLost`] for a GPU fault in the commands; if wgpu refused the commands for
+    /// it, the semaphores are neither waited for nor signalled.
     ///
     /// # Safety
     /// The images' descriptions must be true, and the semaphores live and of the kind that `value` says. The queue must
@@ -108,7 +108,8 @@ impl VulkanHost {
         Ok(())
     }
 
-    /// Removes semaphores that no submission has used, which means that wgpu refused the commands.
+    /// Removes the semaphores that are still staged, which are left only if wgpu refused the commands. Reports a GPU
+    /// fault.
     ///
     /// # Safety
     /// The requirements of [`Self::stage`].

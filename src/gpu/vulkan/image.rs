@@ -16,8 +16,8 @@ pub(super) const FORMAT_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUE
 /// Use that Welkin makes of a host's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageRole {
-    /// Drawn into, and copied for reading: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`;
-    /// multisampled, also `sampleRateShading` enabled.
+    /// Drawn into, and copied for reading: needs `VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT` and `TRANSFER_SRC_BIT`. A
+    /// multisampled image also needs `sampleRateShading` enabled.
     Colour,
     /// Depth that is read: needs `VK_IMAGE_USAGE_SAMPLED_BIT`.
     Depth,

@@ -40,9 +40,10 @@ impl VulkanHost {
         Ok(texture)
     }
 
-    /// Waits until the GPU no longer uses `image`, and forgets it. Must be called before or after the host destroys an
-    /// image that it handed over, but before it hands over another one, because Vulkan may give a new image the old
-    /// handle. Only views are still to be destroyed, for which the image need not exist. Not for use in a frame.
+    /// Waits until the GPU no longer uses `image`, and forgets it. The host must call it for every image that it handed
+    /// over and destroys, before or after the destruction, but before it hands over another image, because Vulkan may
+    /// give a new image the old handle. After the destruction only Welkin's views are left to be destroyed, for which
+    /// the image need not exist. Not for use in a frame.
     ///
     /// # Errors
     /// [`Status::DeviceLost`].
@@ -138,8 +139,8 @@ impl VulkanHost {
         Error::all(self.lacks(name, image, role)).map(|()| format)
     }
 
-    /// Lists everything that the host must enable, list or create differently before it hands over an image that this
-    /// device can support.
+    /// Lists what the host must change before it hands over this image, whose format the device supports: features to
+    /// enable, usages of the image, layouts.
     fn lacks(&self, name: &str, image: &HostImage, role: ImageRole) -> Vec<Error> {
         let field = |name_of_field: &str| format!("{name}.{name_of_field}");
         let mut lacks = Vec::new();

@@ -2,7 +2,7 @@
 
 use ash::vk;
 
-/// Returns a feature's name, and where the host says that it enabled it.
+/// Returns a feature's name with the places where the host must enable and list it.
 pub(super) fn feature_text(name: &str) -> String {
     format!("{name} enabled on the device and listed in enabled_features of the wk_vulkan_host_desc")
 }

@@ -1,4 +1,5 @@
-//! Sink of each cell of a tile, where its run-off ends: in a pit, or across the border of its block in the next one.
+//! Sink of each cell of a tile: the end of the cell's run-off within its block of cells. It is a pit, a cell of a
+//! neighbouring block, or a hole or edge of the terrain.
 //!
 //! Run-off takes the steepest of the eight directions down, as on a single grid. Paths are resolved within blocks of 32
 //! x 32 cells. A change of the ground therefore updates only the blocks that it touches, however far their water runs.
@@ -43,8 +44,8 @@ pub(super) struct Drains {
     pub blocks: Vec<DrainBlock>,
 }
 
-/// Returns whether cell `a` is lower than `b`. Cells of equal height are ordered by place from the south-west, so no
-/// two cells are equally high.
+/// Returns whether cell `a` is lower than `b`. Cells of equal height are ordered by place from the south-west, so one
+/// of two cells is always the lower one.
 pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     let (low, high) = (terrain.height(a), terrain.height(b));
     if low != high {

@@ -3,10 +3,10 @@
 //! The water of a pit rises over its neighbours from the lowest up, until the next cell has a lower neighbour outside
 //! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014), restricted to one hollow and to the
 //! height of its water. Further water spills over the saddle into the pit beyond. Two full lakes that spill into each
-//! other become one, which rises on from the saddle; when it sinks below the saddle, they part again. This builds the
-//! depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below, so the ground is examined only
-//! where water stands. After a change of the ground, the lakes that it touches are removed and their water is poured
-//! again.
+//! other become one, which rises on from the saddle. When the water sinks below the saddle, the lake parts into the two
+//! again. This builds the depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below, so the
+//! ground is examined only where water stands. After a change of the ground, the lakes that it touches are removed and
+//! their water is poured again.
 //!
 //! Water is counted in millimetres times cells. Cells of equal height are ordered by place, so the same ground and
 //! water give the same hollows, whatever their history.
@@ -52,20 +52,20 @@ impl PartialOrd for Rim {
 struct Close {
     /// Water in the hollow when it spills, mm times cells.
     capacity: f64,
-    /// Cell beyond the saddle onto which it spills; `None` if the water leaves the terrain there.
+    /// Cell beyond the saddle onto which the hollow spills; `None` if the water leaves the terrain there.
     to: Option<CellId>,
 }
 
 /// Hollow, as far as its cells have been found.
 #[derive(Clone, Debug)]
 struct Hollow {
-    /// Indices of the two hollows from which it was joined; `None` for the hollow of one pit.
+    /// Indices of the two hollows from which this one was joined; `None` for the hollow of one pit.
     parts: Option<[u32; 2]>,
     /// Cells of the hollow that belong to none of its parts, in the order in which water covers them.
     cells: Vec<CellId>,
-    /// Heights of these cells, mm.
+    /// Heights of the cells in `cells`, mm.
     levels_mm: Vec<f64>,
-    /// Water that the hollow holds when its level is at the cell, mm times cells; for each of these cells.
+    /// Water that the hollow holds when its level is at the cell, mm times cells, for each of the cells in `cells`.
     held_at: Vec<f64>,
     /// Number of cells of its parts.
     below: f64,
@@ -102,7 +102,7 @@ pub(super) struct Lakes {
     /// Indices of the free places in `lakes`.
     free_lakes: Vec<u32>,
     /// Lake of each cell, by the tile's slot and then by cell: the index of the lake plus 1, or 0 for none. Empty for a
-    /// tile without lakes.
+    /// tile in which no lake has stood.
     owners: Vec<Vec<u32>>,
     /// Number of lakes.
     pub count: usize,
@@ -167,7 +167,7 @@ impl Lakes {
         }
     }
 
-    /// Returns the lake among whose known cells a cell is. The cell may lie above the lake's level.
+    /// Returns the lake to whose known cells a cell belongs. The cell may lie above the lake's level.
     pub fn lake_of(&self, slot: usize, cell: usize) -> Option<u32> {
         self.owners.get(slot)?.get(cell)?.checked_sub(1)
     }
@@ -177,7 +177,7 @@ impl Lakes {
         self.lake(lake).map_or(f64::NEG_INFINITY, |l| l.level_mm)
     }
 
-    /// Returns whether any cell of a tile is known to lie in a lake.
+    /// Returns whether any cell of a tile may lie in a lake.
     pub fn has_any(&self, slot: usize) -> bool {
         self.owners.get(slot).is_some_and(|o| !o.is_empty())
     }

@@ -14,7 +14,7 @@ use crate::{
     world::{binary_text, parse_error, text_binary, values, words},
 };
 
-/// Word in the list of a lake's pits that says that the two trees before it join.
+/// Word in the list of a lake's pits by which the two trees listed before it join.
 const JOINED: u64 = u64::MAX;
 
 /// Saved water of a tile.
@@ -25,7 +25,8 @@ struct SavedWaterTile {
     tile: [i32; 2],
     /// Hash of the heights and classes.
     cells: String,
-    /// Runs of equal film and pores, in base 64; for a hash, their hash. Left out if the tile has no state of its own.
+    /// Runs of equal film and pores, in base 64. In a state that is only hashed, the hash of film and pores. Left out
+    /// if the tile has no state of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<String>,
 }

@@ -17,7 +17,7 @@ use crate::{
 pub(crate) struct TiledStep<'a> {
     pub world: &'a World,
     pub terrain: &'a Terrain,
-    /// Step of level, open ground outside all regions.
+    /// Inputs of the same step for level, open ground outside all weather regions.
     pub ground: GroundStep<'a>,
 }
 
@@ -94,7 +94,8 @@ impl TiledWater {
         Ok(())
     }
 
-    /// Pours run-off into its pits, and lowers standing water.
+    /// Pours the run-off of the step into the pits that it reaches, and lowers standing water by evaporation and
+    /// leakage.
     fn finish(&mut self, terrain: &Terrain, step: &Step, flows: &mut Flows) {
         let came = self.gather(terrain, flows);
         flows.drained += pour_all((&self.tiles, &mut self.lakes), terrain, came);
@@ -110,7 +111,8 @@ impl TiledWater {
             (self.lakes.covered(), (terrain.all().len() * terrain.side() * terrain.side()) as f64);
     }
 
-    /// Returns the run-off of this step with the pit that each part of it reaches, mm times cells.
+    /// Collects the run-off of this step from all blocks. Returns pairs of a pit and an amount of water that reaches
+    /// it, mm times cells; a pit may occur several times. Water that leaves the terrain is added to `flows.drained`.
     fn gather(&mut self, terrain: &Terrain, flows: &mut Flows) -> Vec<(CellId, f64)> {
         let mut ends: Vec<(Sink, f64)> = Vec::new();
         for slot in self.keys.values() {

@@ -18,8 +18,8 @@ use crate::{
 
 /// Standing water of a cell where none stands, mm.
 const BARE_MM: f64 = -50.0;
-/// Distance around a change of heights, in cells, within which lakes depend on it: a lake's own cell, the saddle beside
-/// it, and the cell beyond the saddle.
+/// Distance around a change of heights, in cells, within which lakes depend on the changed heights: a lake's own cell,
+/// the saddle beside it, and the cell beyond the saddle.
 const AROUND_LAKES: i32 = 2;
 
 /// Part of the terrain that has changed.
@@ -48,7 +48,7 @@ pub(super) struct StepInParts {
 pub(crate) struct TiledWater {
     /// Identity of the terrain on which it lies.
     id: u64,
-    /// Water of each tile, by the tile's number in the terrain.
+    /// Water of each tile, by the tile's slot in the terrain.
     pub(super) tiles: Vec<Option<Box<TileWater>>>,
     /// Slot of each tile in the terrain, by the tile's key.
     pub(super) keys: BTreeMap<TileKey, u32>,

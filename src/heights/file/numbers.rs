@@ -15,8 +15,12 @@ pub fn in_order(map: &HeightMap, row_order: RowOrder) -> impl Iterator<Item = us
     })
 }
 
-/// Returns the whole number within a range that is nearest to a height by the settings' scale, or their number for no
-/// data.
+/// Returns the whole number that is nearest to a height by the settings' scale, or the settings' number for no data if
+/// the height is not known.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] if the number lies outside `range`, if an unknown height has no whole number for
+/// no data within `range`, or if a known height would get the number for no data.
 pub fn whole_number(map: &HeightMap, index: usize, settings: &HeightSettings, range: [i32; 2]) -> Result<i32> {
     let [low, high] = range.map(f64::from);
     let (height, scale) = (f64::from(map.heights_m()[index]), settings.scale);

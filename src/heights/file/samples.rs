@@ -66,7 +66,7 @@ impl<'a> Samples<'a> {
         self.heights_m.len()
     }
 
-    /// Returns the map of all heights, which the file holds in this order.
+    /// Returns the map of all heights. `row_order` is the order of the rows in the file.
     pub fn finish(mut self, row_order: RowOrder) -> HeightMap {
         debug_assert_eq!(self.heights_m.len() as u64, u64::from(self.columns) * u64::from(self.rows));
         if row_order == RowOrder::NorthFirst {

@@ -1,4 +1,4 @@
-//! Creation of a planet's tables that no build draws: empty ones, and mixes of two sets.
+//! Creation of a planet's tables: empty ones for a build, and mixes of two sets.
 
 use std::sync::{
     Arc, OnceLock,
@@ -22,7 +22,7 @@ impl Kit {
     /// Creates the tables of a planet, empty.
     ///
     /// # Errors
-    /// Fails for a planet whose wavelengths are no valid set.
+    /// Fails for a number of wavelengths in the settings that is out of range.
     pub(super) fn empty_set(&self, planet: &Planet, detail: Detail) -> Result<TableSet> {
         static SETS: AtomicU64 = AtomicU64::new(0);
         let device = &self.device;

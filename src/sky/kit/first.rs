@@ -1,4 +1,4 @@
-//! Test that an OpenGL driver can draw one texel of the tables before the rest is submitted.
+//! Check on OpenGL, before the rest of a build is submitted, that the driver draws the first texel of the sky's tables.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -12,9 +12,10 @@ use crate::gpu::readback;
 const LIMIT: Duration = Duration::from_secs(20);
 
 impl Kit {
-    /// On OpenGL, the first time, draws one texel of the first strip and waits for it; the strip draws over it later.
-    /// NVIDIA's driver 580.159 never finishes this texel, and a wait for any frame after it would never end. Inside a
-    /// host's conditional render nothing is drawn; the tables would then count as built but be empty.
+    /// Draws one texel of the first strip and waits for it. This is done on OpenGL only, until it has succeeded once.
+    /// The strip draws over the texel later. NVIDIA's driver 580.159 never finishes this texel, and a wait for any
+    /// frame after it would never end. Inside a host's conditional render nothing is drawn. Without this check the
+    /// tables would then be taken as built although they are empty.
     ///
     /// # Errors
     /// [`Status::DeviceLost`] if the GPU does not finish. [`Status::WrongOrder`] if nothing was drawn; the next call
@@ -41,7 +42,8 @@ impl Kit {
             );
             Error::new(Status::DeviceLost, text)
         })?;
-        // The first texel is a sum of weights near 1.
+        // The texel belongs to the table of norms. Its value, the sum of the haze's phase function over all directions,
+        // is near 1.
         let Some(norms) = table_named(&build.set, &build.scratch, Name::Norms) else { return Ok(()) };
         let texels = readback::bytes(&self.device, &norms.texture, 0)?;
         let first = half::f16::from_le_bytes([texels[0], texels[1]]).to_f32();

@@ -13,8 +13,9 @@ use super::ray::horizon_mu;
 #[derive(Clone, Debug)]
 pub struct Altitudes {
     top_m: f64,
-    /// Height and share of each term share (1 - exp(-h / height)), which makes the nodes dense below that height. The
-    /// shares are scaled so that all terms add up to 1 at the top, with the linear one.
+    /// Height and share of each exponential term of the coordinate, share (1 - exp(-h / height)). Such a term makes the
+    /// nodes dense below its height. The shares are scaled so that these terms and the linear one add up to 1 at the
+    /// top.
     terms: Vec<(f64, f64)>,
     /// Share of the linear term.
     linear_share: f64,
@@ -58,9 +59,10 @@ pub struct SunAngles {
     /// Sun angle at which the nodes are densest, and width of the dense part, rad.
     center: f64,
     width: f64,
-    /// Share of the nodes that follow the arc tangent, which is dense at the terminator.
+    /// Share of the coordinate that follows the arc tangent of (angle - center) / width, which makes the nodes dense at
+    /// the terminator. The rest is linear in the angle.
     crowd: f64,
-    /// Values of that arc tangent at the angles 0 and pi.
+    /// Values of the arc tangent at the angles 0 and pi.
     ends: (f64, f64),
     /// Nodes from 0 to pi, radians.
     pub nodes: Vec<f64>,
@@ -103,8 +105,8 @@ fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Directions over which radiance is integrated at one altitude: cosines of the zenith angle, with weights. The rule is
-/// Gauss's in the square root of the distance to the horizon, on both sides of it, where radiance has a steep gradient
-/// and a step.
+/// Gauss's in the square root of the difference from the horizon's cosine, on each side of the horizon. Radiance has a
+/// steep gradient and a step there.
 pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_above: &Gauss) -> Vec<(f64, f64)> {
     let horizon = horizon_mu(medium, altitude_m);
     let side = |rule: &Gauss, far: f64| -> Vec<(f64, f64)> {
@@ -120,7 +122,7 @@ pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_ab
     nodes
 }
 
-/// Midpoints of `n` equal parts of [0, pi]. The sky is symmetric about the sun's vertical plane.
+/// Midpoints of `n` equal intervals of [0, pi], rad. The sky is symmetric about the sun's vertical plane.
 pub fn azimuths(n: usize) -> Vec<f64> {
     (0..n).map(|i| PI * (i as f64 + 0.5) / n as f64).collect()
 }

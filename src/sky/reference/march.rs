@@ -1,28 +1,31 @@
-//! Sample points along a ray, dense where the air is, with the transmittance back to the start of the ray.
+//! Sample points along a span of a ray, closer together where the air is optically thick, with the transmittance from
+//! each point back to the start of the span.
 
 use super::medium::{MEDIA, Medium};
 use super::quadrature::Gauss;
 use super::ray::Ray;
 
-/// Sample point of a ray with the values that every integral along it needs.
+/// Sample point of a ray, with the weights of gas and haze in every integral along the ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sample {
     /// Distance from the ray's origin, m.
     pub distance_m: f64,
     /// Altitude, m.
     pub altitude_m: f64,
-    /// Cosine of the ray's zenith angle here.
+    /// Cosine of the ray's zenith angle at the sample.
     pub mu: f64,
-    /// Path length x gas scattering x transmittance back to the start, per wavelength; dimensionless.
+    /// Weight of gas per wavelength, dimensionless: path length x scattering coefficient of gas x transmittance back to
+    /// the start of the span.
     pub gas: [f64; 3],
-    /// Path length x haze scattering x transmittance back to the start, per wavelength; dimensionless.
+    /// Weight of haze per wavelength, dimensionless: path length x scattering coefficient of haze x transmittance back
+    /// to the start of the span.
     pub haze: [f64; 3],
 }
 
 /// Settings that divide a ray into panels.
 #[derive(Clone, Copy)]
 pub struct Cutting<'a> {
-    /// Altitudes at which panels end, ascending; the first is 0, the last the top.
+    /// Altitudes at which panels end, ascending; the first is 0, the last the top of the air.
     pub altitudes_m: &'a [f64],
     /// Quadrature rule inside a panel.
     pub rule: &'a Gauss,
@@ -32,13 +35,14 @@ pub struct Cutting<'a> {
 
 /// Optical depth beyond which the air hides everything (e^-46 = 1e-20).
 const BLACK: f64 = 46.0;
-/// Largest number of halvings of a panel. On any accepted planet, 2^24 parts of the longest panel are shorter than a
-/// metre.
+/// Largest number of halvings of a panel. On any accepted planet, each of 2^24 pieces of the longest panel is shorter
+/// than a metre.
 const MAX_HALVINGS: u32 = 24;
 
-/// Fills `samples` (cleared first) with the samples of `ray` between the two distances of `span`, and returns the
-/// columns of that interval, in m at density 1. `cuts` are further distances at which panels end (the edges of the
-/// shadow). Samples stop where the air before them hides everything.
+/// Fills `samples` (cleared first) with the samples of `ray` between the two distances of `span`, and returns each
+/// medium's column over `span`: the integral of its density along the ray, m. `cuts` are further distances at which
+/// panels end (the edges of the planet's shadow). Panels get no samples if the air between them and the start of `span`
+/// hides everything.
 pub fn march(
     ray: &Ray,
     medium: &Medium,
@@ -80,8 +84,9 @@ struct RayWalk<'a> {
 }
 
 impl RayWalk<'_> {
-    /// Integrates one panel from u = `a` to u = `b` (descending before the perigee), and halves it while it is
-    /// optically thick.
+    /// Integrates one panel from `a` to `b`, two values of u = sqrt(altitude above the perigee) ([`Ray::u_at`]), and
+    /// halves the panel while it is optically thick. `side` is -1 before the perigee, where u falls along the ray, and
+    /// 1 after the perigee.
     fn panel(&mut self, side: f64, a: f64, b: f64, halvings: u32) {
         let rule = self.cutting.rule;
         let n = rule.len();
@@ -148,7 +153,8 @@ mod tests {
     use super::*;
     use crate::planet::Planet;
 
-    /// A ray that is black in one colour and clear in another needs as many panels as the black depth has.
+    /// The air is black in one colour and clear in the others. The black colour needs panels only down to a depth of
+    /// [`BLACK`], so a ray has few panels.
     #[test]
     fn air_that_is_black_in_one_colour_needs_few_panels() {
         let mut planet = Planet::earth();
@@ -171,7 +177,7 @@ mod tests {
         }
     }
 
-    /// Gas absorbs nothing, so the sum of the weights is exactly 1 - transmittance.
+    /// Gas absorbs nothing, so the gas weights of all samples sum to 1 - transmittance.
     #[test]
     fn weights_of_a_gas_sum_to_what_is_not_transmitted() {
         for thickness in [1e-3, 1.0, 30.0, 1e4] {

@@ -45,8 +45,8 @@ impl Medium {
     }
 
     /// Densities relative to those at the ground (gas, haze) or at the centre of the layer (ozone). Below altitude 0
-    /// the density stays at 1: real air 100 m down is 1 % denser, but a scale height of centimetres would overflow.
-    /// Above the top it is 0.
+    /// the densities of gas and haze stay at 1: real air 100 m down is 1 % denser, but a scale height of centimetres
+    /// would overflow. Above the top all densities are 0.
     pub fn density(&self, altitude_m: f64) -> [f64; MEDIA] {
         if altitude_m > self.top_m {
             return [0.0; MEDIA];
@@ -87,7 +87,8 @@ impl Medium {
         }
         marks.retain(|m| (0.0..=self.top_m).contains(m));
         marks.sort_by(f64::total_cmp);
-        // Marks less than a tenth of their height above the one below are dropped; the two ends always stay.
+        // A mark is dropped if it is less than 10 % above the last mark that was kept, or above 95 % of the top. The
+        // two ends always stay.
         let mut kept: Vec<f64> = vec![0.0];
         for m in marks {
             if m > kept[kept.len() - 1] * 1.1 + 1e-9 && m < self.top_m * 0.95 {

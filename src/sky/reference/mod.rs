@@ -6,12 +6,12 @@
 //! at every point; the ray is cut at the edges of the planet's shadow. Higher orders come from the source function on a
 //! grid ([`source`], `solve`). Doubling the grid's resolution shows its error.
 //!
-//! Conventions: altitude 0 is the ground's sphere. Below it the density stays at its ground value, and the ground lies
-//! at the point's own level. Angles are in radians: zenith angles from the vertical at the observer, and the azimuth of
-//! the view relative to the sun's. Radiances are in the unit of [`Planet::solar_irradiance`] per steradian. Sun rays
-//! are parallel. Refraction is left out (see `shaders/sky/disc.wgsl` for its lift of the disc). No device is used.
-//! Threads are spawned only if [`Options::threads`] is above 1. All results depend only on the arguments and are equal
-//! for any number of threads.
+//! Conventions: altitude 0 is the ground's sphere. For a point below it, the densities of gas and haze are those of
+//! altitude 0, and the ground lies at the point's own level. Angles are in radians: zenith angles from the vertical at
+//! the observer, and the azimuth of the view relative to the sun's. Radiances are in the unit of
+//! [`Planet::solar_irradiance`] per steradian. Sun rays are parallel. Refraction is left out (see
+//! `shaders/sky/disc.wgsl` for its lift of the disc). No device is used. Threads are spawned only if
+//! [`Options::threads`] is above 1. All results depend only on the arguments and are equal for any number of threads.
 
 pub mod grid;
 pub mod march;
@@ -42,8 +42,9 @@ use crate::planet::Planet;
 pub enum Orders {
     /// Exactly this many, `[1, 1e4]`; the ground counts as a scatterer.
     Exactly(usize),
-    /// Orders until the tail is below `tolerance` of the light at every relevant grid point, `(0, 0.1]`, but at most
-    /// `limit` orders. The tail is estimated from the last two orders as a geometric series, and is then added.
+    /// Orders until the tail is a smaller share of the light than `tolerance`, `(0, 0.1]`, but at most `limit` orders.
+    /// Every grid point that has more than 1e-9 of the brightest one's light must fulfil this. The tail is estimated
+    /// from the last two orders as a geometric series, and is then added.
     Converged {
         /// Largest share of the light that the added tail may have.
         tolerance: f64,
@@ -118,7 +119,7 @@ fn check_altitude(altitude_m: f64) -> Result<()> {
 pub struct Along {
     /// Radiance scattered into the ray by the air, without the ground's reflection and the sun's disc.
     pub radiance: [f64; 3],
-    /// Transmittance to the end of the ray; 0 for a sky ray that meets the ground.
+    /// Transmittance to the end of the ray. [`Reference::radiance`] returns 0 if the ray meets the ground.
     pub transmittance: [f64; 3],
     /// Whether the ray meets the ground.
     pub ground: bool,
@@ -239,8 +240,8 @@ impl Reference {
         Ok(along)
     }
 
-    /// Light scattered into the first `distance_m` of a ray, and its transmittance. The ray ends at the ground's sphere
-    /// if it meets that earlier.
+    /// Light scattered into the first `distance_m` of a ray, and its transmittance. The ray ends earlier if it meets
+    /// the ground's sphere.
     ///
     /// # Errors
     /// As [`Reference::radiance`]; `distance_m` must be in `[0, 1e12]` m.

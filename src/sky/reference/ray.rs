@@ -1,8 +1,10 @@
-//! Straight rays through spherical shells, and the columns of air along them.
+//! Straight rays through spherical shells, and the columns of air along them. A medium's column is the integral of its
+//! density along a ray, in m at density 1.
 //!
-//! All formulas use altitudes: r^2 - R^2 is computed as h (2 R + h). A point on a ray is given by u = sqrt(h - h_p),
-//! where h_p is the altitude of the ray's perigee. In u the path element ds = 2 r / sqrt(r + r_p) du has no pole at the
-//! perigee, and an exponential density becomes a Gaussian, so that few Gauss points give 10 digits.
+//! All formulas use altitudes: r^2 - R^2 is computed as h (2 R + h). Here r is the radius of a point, h its altitude
+//! and R the radius of the ground. The ray's perigee has the radius r_p and the altitude h_p. A point on a ray is given
+//! by u = sqrt(h - h_p). In u the path element ds = 2 r / sqrt(r + r_p) du has no pole at the perigee, and an
+//! exponential density becomes a Gaussian, so that few Gauss points give 10 digits.
 
 use super::medium::{MEDIA, Medium};
 use super::quadrature::GAUSS_16;
@@ -59,8 +61,9 @@ impl Ray {
         self.altitude_m + growth / (r + r_there).max(f64::MIN_POSITIVE)
     }
 
-    /// Distance from the origin to the ground, m; `None` if the ray misses it. A point below altitude 0 stands on the
-    /// ground of its own level: below its horizontal plane it sees ground at distance 0, above it none.
+    /// Distance from the origin to the ground, m; `None` if the ray misses the ground. For an origin at or below
+    /// altitude 0 the ground lies at the origin's own level: every ray below the horizontal meets it at distance 0, all
+    /// others miss it.
     pub fn distance_to_ground(&self) -> Option<f64> {
         if self.mu >= 0.0 {
             return None;
@@ -115,7 +118,7 @@ impl Ray {
         side * u * (2.0 * self.perigee_radius_m + u * u).sqrt() - self.radius_m() * self.mu
     }
 
-    /// Derivative ds/du at `u`, m.
+    /// Derivative ds/du at `u`, m^(1/2).
     pub fn stretch(&self, u: f64) -> f64 {
         let rp = self.perigee_radius_m;
         2.0 * (rp + u * u) / (2.0 * rp + u * u).max(f64::MIN_POSITIVE).sqrt()
@@ -135,8 +138,8 @@ impl Ray {
         std::array::from_fn(|i| a[i] + b[i])
     }
 
-    /// Columns from the origin to the end of the air, even if the ground is in between. The part below altitude 0
-    /// counts with density 1.
+    /// Columns from the origin to the end of the air, even if the ground is in between. Below altitude 0 gas and haze
+    /// have density 1.
     pub fn columns_to_space(&self, medium: &Medium) -> [f64; MEDIA] {
         let u0 = self.above_perigee_m.sqrt();
         let u_top = self.u_of_altitude(medium.top_m);
@@ -178,7 +181,7 @@ impl Ray {
         if density == 0.0 {
             return 0.0;
         }
-        // Panels end where the density has fallen by e^3, e^12 and e^40 from the lowest point of the leg.
+        // Panels end where the density has fallen by the factors e^3, e^12 and e^40 from the lowest point of the leg.
         let mut sum = 0.0;
         let mut from = a;
         for fall in [3.0, 12.0, 40.0] {
@@ -222,8 +225,9 @@ impl Ray {
         self.ozone_leg(medium, 0.0, u0.min(u_top)) + self.ozone_leg(medium, 0.0, u_top)
     }
 
-    /// Gauss integral of `density` ds over u in [a, b]. The interval is cut where the path element itself bends, which
-    /// is near a perigee that is close to the planet's centre compared with the length of the leg.
+    /// Gauss integral of `density` ds over u in [a, b]. The interval is cut into pieces over which ds/du is smooth
+    /// enough. There are several pieces only if the perigee is close to the planet's centre compared with the length of
+    /// the leg, as on nearly vertical rays.
     fn panel(&self, a: f64, b: f64, density: &dyn Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         let mut from = a;
@@ -244,11 +248,12 @@ pub fn horizon_mu(medium: &Medium, altitude_m: f64) -> f64 {
     -(h * (2.0 * medium.bottom_m + h)).sqrt() / (medium.bottom_m + h)
 }
 
-/// Interval of a ray in the planet's shadow, for a sun at infinity, as distances along the ray; `None` if all of the
-/// ray is lit. `mu_s` is the cosine of the sun's zenith angle at the origin, and `nu` that of the angle between ray and
-/// sun.
+/// Interval of a ray's whole line in the planet's shadow, for a sun at infinity, as distances from the ray's origin,
+/// which are negative behind it; `None` if all of the line is lit. `mu_s` is the cosine of the sun's zenith angle at
+/// the origin, and `nu` that of the angle between ray and sun.
 pub fn shadow(ray: &Ray, mu_s: f64, nu: f64) -> Option<(f64, f64)> {
-    // The shadow is a half cylinder of the ground's radius that begins behind the planet.
+    // The shadow is a cylinder of the ground's radius. It extends from the plane through the planet's centre away from
+    // the sun.
     let r = ray.radius_m();
     let h = ray.altitude_m;
     let a = (1.0 - nu) * (1.0 + nu);
@@ -314,7 +319,7 @@ mod tests {
         }
     }
 
-    /// Plain Simpson sums with millions of steps: slow, but independent of the substitution and of the panels.
+    /// Plain Simpson sums of `n` steps: slow, but independent of the substitution and of the panels.
     fn brute_columns(m: &Medium, altitude_m: f64, mu: f64, length_m: f64, n: usize) -> [f64; MEDIA] {
         let r = m.bottom_m + altitude_m;
         let mut out = [0.0; MEDIA];

@@ -21,8 +21,8 @@ pub struct Resolution {
 
 impl Resolution {
     /// Resolution for everyday tests, which takes a second or two. Compared with [`Resolution::FINE`], 95 % of all
-    /// views from the ground to space, with the sun down to 96 degrees, are within 0.3 % in clear air and 0.6 % in haze
-    /// (visibility 12 km).
+    /// views from the ground to space, with the sun down to 96 degrees from the zenith, are within 0.3 % in clear air
+    /// and 0.6 % in haze (visibility 12 km).
     pub const QUICK: Self =
         Self { altitudes: 12, sun_angles: 30, zeniths: 14, azimuths: 8, panel_points: 3, haze_directions: (25, 13) };
     /// Resolution for reference values, which takes half a minute to minutes. Compared with twice this resolution, 95 %

@@ -37,7 +37,7 @@ pub struct Solver<'a> {
 /// Share of the brightest light below which light is ignored. It is a millionth of the stars' light.
 const DARK: f64 = 1e-12;
 
-/// Result of the sweep at one altitude.
+/// Result of a sweep, the integration over all directions and sun angles, at one altitude.
 struct Row {
     /// Source of gas, for each sun angle.
     gas: Vec<Moments>,
@@ -99,7 +99,7 @@ impl<'a> Solver<'a> {
         nodes
     }
 
-    /// Source of the next order from the `nodes` of this one.
+    /// Source of the order that follows the order of `nodes`.
     pub fn next(&self, nodes: &Nodes, threads: usize) -> Nodes {
         let source = self.source(nodes);
         self.sweep(&SweepLight::Scattered(&source, &nodes.ground), threads)
@@ -229,7 +229,7 @@ impl<'a> Solver<'a> {
         out
     }
 
-    /// Radiance of light scattered once. If the shadow's edge crosses the ray, its panels are cut there.
+    /// Radiance of light scattered once. If the shadow's edge crosses the ray, the ray's panels are cut there.
     fn sunlit(&self, p: &Prepared, mu_s: f64, nu: f64, scratch: &mut Vec<Sample>) -> [f64; 3] {
         let dark = shadow(&p.ray, mu_s, nu).filter(|(from, to)| *from < p.span.1 && *to > p.span.0);
         scratch.clear();
@@ -290,10 +290,10 @@ impl<'a> Solver<'a> {
         out
     }
 
-    /// Phase function of the haze between the table's directions and the quadrature's directions, as cosine series in
-    /// azimuth: [zenith of the table][ray][mode], times the rule's weight and 2 pi. Rows are normalised so that equal
-    /// light from all sides is scattered equally into all directions; for sharp peaks the rule alone does not achieve
-    /// that.
+    /// Phase function of the haze between the directions of the haze table and those of the quadrature, times the
+    /// quadrature's weight and 2 pi, as cosine series in azimuth. The order is [zenith of the table][ray][mode]. Rows
+    /// are normalised so that equal light from all sides is scattered equally into all directions. For sharp peaks the
+    /// quadrature alone does not achieve that.
     fn kernel(&self, rays: &[Prepared]) -> Vec<f64> {
         let (zeniths, modes) = (self.resolution.haze_directions.0, self.azimuths.len());
         // Enough azimuths for the sharpest peak that the modes can represent.

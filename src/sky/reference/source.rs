@@ -1,9 +1,11 @@
-//! Light that the air scatters into a direction at a point after it has been scattered before: tables and look-ups.
+//! Source of multiple scattering: light that air or ground has scattered before, and that the air at a point scatters
+//! into a direction. The file has its tables and look-ups.
 //!
 //! Gas: the Rayleigh phase function is a polynomial of degree 2, so the light that gas scatters into any direction
 //! follows exactly from the second moments of the radiance, four numbers per wavelength (with the sun in the xz plane).
 //!
-//! Haze: a table over directions in the local frame (zenith angle, azimuth from the sun), cubic between nodes.
+//! Haze: a table over directions in the local frame (zenith angle, azimuth from the sun), with cubic interpolation
+//! between its nodes.
 //!
 //! Both are per unit of scattering coefficient, so that they vary slowly with altitude.
 
@@ -12,22 +14,23 @@ use std::f64::consts::PI;
 use super::grid::{Altitudes, SunAngles};
 use super::quadrature::{cubic_weights, linear};
 
-/// Second moments of radiance per wavelength: xx, yy, zz, xz.
+/// Second moments xx, yy, zz and xz of radiance, each at three wavelengths.
 pub type Moments = [f64; 12];
 
 /// Source of one order, or of a sum of orders, at the nodes.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Moments, ordered by altitude, then sun.
+    /// Moments, ordered by altitude, then sun angle.
     pub gas: Vec<Moments>,
-    /// Haze source, ordered by altitude, sun, zenith and azimuth; empty if haze does not scatter.
+    /// Haze source, ordered by altitude, sun angle, zenith and azimuth; empty if haze does not scatter.
     pub haze: Vec<[f64; 3]>,
-    /// Radiance that the ground reflects, for each sun.
+    /// Radiance that the ground reflects, for each sun angle of the grid.
     pub ground: Vec<[f64; 3]>,
 }
 
 impl Nodes {
-    /// Adds `other` times a factor that depends on altitude, sun and wavelength.
+    /// Adds the sources of gas and haze of `other`, times a factor for each node (altitude and sun angle) and
+    /// wavelength. `ground` stays as it is.
     pub fn add(&mut self, other: &Self, factor: impl Fn(usize) -> [f64; 3]) {
         let directions = if self.gas.is_empty() { 0 } else { self.haze.len() / self.gas.len() };
         for (node, (a, b)) in self.gas.iter_mut().zip(&other.gas).enumerate() {
@@ -64,11 +67,11 @@ pub struct Place {
 pub struct Source {
     altitudes: Altitudes,
     suns: SunAngles,
-    /// Moments on a grid `REFINE` times finer, for linear interpolation.
+    /// Moments on a grid finer than that of [`Nodes`] by the factors [`REFINE`], for linear interpolation.
     gas: Vec<Moments>,
     gas_size: (usize, usize),
-    /// Haze source with the same layout, `REFINE_HAZE` times finer in altitude and sun; in single precision, because it
-    /// is large.
+    /// Haze source in the order of [`Nodes::haze`], on a grid finer by the factors [`REFINE_HAZE`] in altitude and sun
+    /// angle. It is in single precision, because it is large.
     haze: Vec<[f32; 3]>,
     haze_size: (usize, usize),
     haze_directions: (usize, usize),
@@ -140,7 +143,8 @@ impl Source {
         let (a, b, c, d) = (&self.gas[row], &self.gas[row + 1], &self.gas[row + ns], &self.gas[row + ns + 1]);
         let (wa, wb, wc, wd) = ((1.0 - fi) * (1.0 - fj), (1.0 - fi) * fj, fi * (1.0 - fj), fi * fj);
         let (x2, z2) = (x * x, place.mu * place.mu);
-        // Sum of 1 + (direction . direction')^2 over the directions of the radiance.
+        // Factors of the moments in the sum of 1 + (d . d')^2 over the directions d' of the radiance. The ray's
+        // direction is d.
         let (kx, ky, kz, kxz) = (1.0 + x2, 1.0 + (1.0 - x2 - z2).max(0.0), 1.0 + z2, 2.0 * x * place.mu);
         std::array::from_fn(|k| {
             let m = |n: usize| wa * a[n] + wb * b[n] + wc * c[n] + wd * d[n];
@@ -187,7 +191,7 @@ fn to_log(v: f64, floor: f64) -> f64 {
     v.max(floor).max(f64::MIN_POSITIVE).ln()
 }
 
-/// Inverse of `to_log`; values at the floor become 0.
+/// Inverse of `to_log`; values up to twice the floor become 0.
 fn from_log(v: f64, floor: f64) -> f64 {
     let v = v.exp();
     if v > 2.0 * floor { v } else { 0.0 }
@@ -221,7 +225,7 @@ fn mirrored(x: f64, n: usize) -> (isize, [f64; 4]) {
     (first, cubic_weights(x - first as f64))
 }
 
-/// Mirrors an index at both ends, and returns whether it was beyond one.
+/// Mirrors an index at both ends, and returns whether it was beyond an end.
 fn fold(i: isize, n: usize) -> (usize, bool) {
     let last = n as isize - 1;
     if i < 0 {

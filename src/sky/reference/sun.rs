@@ -34,11 +34,11 @@ pub struct SunTable {
     medium: Medium,
     altitudes: usize,
     angles: usize,
-    /// Columns of gas and haze in the order [altitude][angle].
+    /// Logarithms of the columns of gas and haze, in m at density 1, in the order [altitude][angle].
     columns: Vec<[f64; 2]>,
 }
 
-/// Smallest column at density 1, m; shorter columns count as this. A millimetre of air takes no light.
+/// Smallest column in the table, m at density 1; shorter columns are raised to it. A millimetre of air takes no light.
 const LEAST_COLUMN_M: f64 = 1e-3;
 
 impl SunTable {

@@ -33,9 +33,9 @@ pub struct CuttingInputs {
 pub struct CuttingForce {
     /// Force across the plane of the blade, at the soil-metal friction angle from its normal, N: the equation's P.
     pub force_n: f64,
-    /// Part of the whole force on the blade against the motion, N.
+    /// Component, against the motion, of the whole force on the blade, N.
     pub horizontal_n: f64,
-    /// Part that pulls the blade down, N; negative where soil lifts it.
+    /// Component of the whole force that pulls the blade down, N; negative where soil lifts it.
     pub vertical_n: f64,
     /// Angle of the plane of failure to the horizontal, radians.
     pub failure: f64,

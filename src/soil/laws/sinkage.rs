@@ -3,7 +3,8 @@
 /// Least exponent of a set that is trusted beyond the range in which it was measured.
 const LEAST_EXPONENT: f64 = 0.3;
 
-/// Bekker's description of how a soil yields under a plate: p = (kc / b + kphi) z^n (Bekker 1956, 1969).
+/// Bekker's description of how a soil yields under a plate: p = (kc / b + kphi) z^n (Bekker 1956, 1969). p is the
+/// pressure, kPa, b the shorter side of the plate, m, and z the sinkage, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinkageSet {
     /// Cohesive modulus kc, kN/m^(n + 1); in a kind of soil \[0, 1e6\].
@@ -30,7 +31,7 @@ impl SinkageSet {
     pub const DRY_SAND: Self = Self { kc: 0.99, kphi: 1528.43, n: 1.1 };
     /// Sandy loam at 15 % moisture (Wong 2008, table 2.3).
     pub const SANDY_LOAM_15: Self = Self { kc: 5.27, kphi: 1515.04, n: 0.7 };
-    /// Sandy loam at 22 % moisture (Wong 2008, table 2.3): a fit of a small range.
+    /// Sandy loam at 22 % moisture (Wong 2008, table 2.3): a fit over a small range.
     pub const SANDY_LOAM_22: Self = Self { kc: 2.56, kphi: 43.12, n: 0.2 };
     /// Clayey soil at 38 % moisture (Wong 2008, table 2.3).
     pub const CLAYEY_38: Self = Self { kc: 13.19, kphi: 692.15, n: 0.5 };
@@ -54,7 +55,8 @@ impl SinkageSet {
     }
 
     /// Returns the sinkage of a rigid wheel, m: z = (3 W / (b (3 - n) k sqrt(D)))^(2 / (2 n + 1)) (Bekker 1956; Wong
-    /// 2008, eq. 2.41). It neglects terms of the second order in z / D, and is for moderate sinkage and n up to 1.3.
+    /// 2008, eq. 2.41). W is the load, kN, b the width, m, D the diameter, m, and k = kc / b + kphi. The formula
+    /// neglects terms of the second order in z / D, and is for moderate sinkage and n up to 1.3.
     pub fn wheel_m(&self, wheel: &WheelLoad) -> f64 {
         let resisted = wheel.width_m * (3.0 - self.n) * self.modulus(wheel.width_m) * wheel.diameter_m.sqrt();
         libm::pow(3e-3 * wheel.load_n / resisted, 2.0 / (2.0 * self.n + 1.0))
@@ -92,14 +94,15 @@ impl SinkageSet {
         1e3 * wheel.width_m * self.modulus(wheel.width_m) * sinkage_m.sqrt() * part * sum
     }
 
-    /// Whether the set is a fit of a small range, so that sinkages beyond it mean little.
+    /// Whether the set is a fit over a small range of sinkages, beyond which its results mean little.
     pub fn is_narrow(&self) -> bool {
         self.n < LEAST_EXPONENT
     }
 }
 
 /// Reece's description, with moduli without dimension: p = (c kc' + gamma b kphi') (z / b)^n (Reece 1964; Wong and
-/// Reece 1967).
+/// Reece 1967). p is the pressure, kPa, c the cohesion, kPa, gamma the weight of the soil, kN/m^3, b the shorter side
+/// of the plate, m, and z the sinkage, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReeceSet {
     /// Cohesive modulus kc'.

@@ -67,9 +67,9 @@ pub(super) fn covers(groups: &[Option<Amount>], rule: CloudAmountRule) -> Vec<f6
 ///
 /// A group whose class is below that of a lower group, or unknown, counts in the lower group's class, because a sum
 /// cannot fall. Layers are placed independently of each other (random overlap, as everywhere in Welkin). Of the sky
-/// that the layers below leave open, a layer therefore covers (s - below) / (1 - below): each cover is above 0, and 1
-/// minus the product of the open shares stays within each group's class. Sums say nothing about a layer above an
-/// overcast; it has its own class.
+/// that the layers below leave open, a layer therefore covers (s - below) / (1 - below), with the sum s of its group
+/// and the sum `below` of the next lower group. Each cover is above 0, and 1 minus the product of the open shares stays
+/// within each group's class. Sums say nothing about a layer above an overcast; it has its own class.
 fn covers_of_sums(groups: &[Option<Amount>]) -> Vec<f64> {
     let mut highest = Amount::Few;
     let classes: Vec<Amount> = groups

@@ -54,8 +54,8 @@ fn temperature_of_dew_c(dew_c: f64) -> f64 {
     243.12 * x / (17.62 - x)
 }
 
-/// Sets temperature and humidity to the reported values, or to values that its weather and dew point allow, and names
-/// those that are assumed.
+/// Sets temperature and humidity to the reported values, or to values that the reported weather and dew point allow.
+/// Adds the names of assumed fields to `assumed`.
 ///
 /// A missing temperature is 15 C, or follows from the dew point at a humidity of 70 %. It is at most the bound that the
 /// weather sets, but not below the reported dew point.

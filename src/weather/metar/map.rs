@@ -226,8 +226,9 @@ fn wind(p: &Parsed, assumed: &mut Vec<&'static str>) -> Wind {
     }
 }
 
-/// Returns the visibility, m. If the report gives only a lower bound, it follows from humidity and precipitation, and
-/// is at least that bound. If the report gives none, it is at most what its fog or haze allow.
+/// Returns the visibility, m. If the report gives only a lower bound, the visibility follows from humidity and
+/// precipitation, and is at least that bound. If the report gives no visibility, it is at most what the reported fog or
+/// haze allows.
 fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64 {
     let (least, most) = match p.visibility {
         _ if p.cavok => (10_000.0, f64::INFINITY),

@@ -190,7 +190,7 @@ fn heading(r: &mut Reader<'_>, p: &mut Parsed) -> Result<()> {
     }
 }
 
-/// Takes the next group, of one word or of several. Returns `false` if the next word is none.
+/// Takes the next group, of one word or of several. Returns `false` if no group begins with the next word.
 fn group(r: &mut Reader<'_>, p: &mut Parsed) -> bool {
     let Some(word) = r.peek(0) else { return false };
     let is_now = !p.ended;
@@ -325,7 +325,8 @@ fn visibility_of(word: &str) -> Option<Reading<VisibilityGroup>> {
     groups::visibility_miles(None, word).or_else(|| groups::visibility_metres(word))
 }
 
-/// Takes one word that gives wind, visibility, weather or sky now. Returns `false` if it does not, or repeats one.
+/// Takes one word that gives wind, visibility, weather or sky now. Returns `false` if the word gives none of these, or
+/// cannot be added to what was read before.
 fn one(word: &str, p: &mut Parsed) -> bool {
     if word == "CAVOK" {
         p.cavok = true;
@@ -345,8 +346,8 @@ fn one(word: &str, p: &mut Parsed) -> bool {
     true
 }
 
-/// Reads a visibility, or a further one: with a direction, or without if an automatic station cannot tell it
-/// (`9999 3100`). The first is the prevailing one.
+/// Reads a visibility. The first one is the prevailing visibility. A further one has a direction, or none if an
+/// automatic station cannot tell the direction (`9999 3100`).
 fn visibility(word: &str, sight: Reading<VisibilityGroup>, p: &mut Parsed) -> bool {
     if p.visibility.is_none() && !p.cavok {
         p.visibility = sight;

@@ -11,7 +11,7 @@ pub const MAX_METAR_BYTES: usize = 4096;
 /// Options for reading a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MetarOptions {
-    /// Rule by which the amounts of cloud groups count. Default: by the station.
+    /// Rule by which the amounts of cloud groups are read. Default: by the station.
     pub cloud_amounts: CloudAmountRule,
 }
 
@@ -48,11 +48,11 @@ pub struct MetarReport {
     pub hour: u32,
     /// Minute, 0 to 59 (UTC).
     pub minute: u32,
-    /// Whether it is a special report (SPECI).
+    /// Whether the report is a special one (SPECI).
     pub special: bool,
-    /// Whether it was made without an observer (AUTO).
+    /// Whether the report was made without an observer (AUTO).
     pub automatic: bool,
-    /// Whether it is a correction (COR).
+    /// Whether the report is a correction (COR).
     pub corrected: bool,
     /// Whether the report gives only a lower bound of the visibility (CAVOK, 9999, 10SM, P6SM), or no visibility.
     /// `weather.visibility_m` is then [`crate::weather::unlimited_visibility_m`] for its humidity and precipitation,

@@ -3,8 +3,8 @@
 
 use super::phenomena;
 
-/// Whether a word is such a group. After the pressure (`ended`) every word that begins like a runway state counts;
-/// before it, only words that cannot be another group.
+/// Whether a word is a group that does not describe the weather now. After the pressure (`ended`) every word that
+/// begins like a runway state is one; before the pressure, only words that cannot be another group.
 pub(super) fn is_supplement(text: &str, ended: bool) -> bool {
     let colour = matches!(text, "BLU+" | "BLU" | "WHT" | "GRN" | "YLO" | "YLO1" | "YLO2" | "AMB" | "RED")
         || text.starts_with("BLACK");
@@ -30,8 +30,8 @@ fn is_runway_state(text: &str) -> bool {
         && (figures(state, 6) || state.starts_with("CLRD") || state == "SNOCLO")
 }
 
-/// Whether a word begins with R and has a digit or a slash: runways in local forms, Australia's rainfall
-/// (`RF00.0/016.4`).
+/// Whether a word begins with R and then has a digit at once or a slash anywhere. Such words are runway states in local
+/// forms, and Australia's rainfall (`RF00.0/016.4`).
 fn begins_as_runway(text: &str) -> bool {
     text.strip_prefix('R').is_some_and(|r| r.contains('/') || r.starts_with(|c: char| c.is_ascii_digit()))
 }

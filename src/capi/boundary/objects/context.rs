@@ -12,7 +12,7 @@ pub struct wk_context {
     _opaque: [u8; 0],
 }
 
-/// A context behind the lock that orders its updates and everything that reads it.
+/// A context and its lock: changes of the context are exclusive, reads may run at the same time.
 pub(in crate::capi) struct ContextObject {
     pub(in crate::capi) cell: Arc<DeviceCell>,
     context: RwLock<Context>,
@@ -25,7 +25,8 @@ impl ContextObject {
     }
 
     pub(in crate::capi) fn read(&self) -> RwLockReadGuard<'_, Context> {
-        // A panic while it was held has poisoned the device already.
+        // A panic while this lock was held has poisoned the device already, and the device refuses later calls. The
+        // lock's own poisoning says nothing more, so it is ignored.
         self.context.read().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -4,7 +4,7 @@ use std::{ffi::CString, sync::Arc};
 
 use crate::capi::boundary::{device_cell::DeviceCell, handles::HandleObject};
 
-/// A native queue or OpenGL context. Parent of contexts, surfaces and textures.
+/// A native queue or OpenGL context. Parent of wk_contexts, surfaces and textures.
 pub struct wk_device {
     _opaque: [u8; 0],
 }

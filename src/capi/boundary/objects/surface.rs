@@ -25,7 +25,8 @@ impl SurfaceObject {
     }
 
     pub(in crate::capi) fn lock(&self) -> MutexGuard<'_, Surface> {
-        // A panic while it was held has poisoned the device already.
+        // A panic while this lock was held has poisoned the device already, and the device refuses later calls. The
+        // lock's own poisoning says nothing more, so it is ignored.
         self.surface.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

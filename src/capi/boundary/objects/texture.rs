@@ -15,7 +15,7 @@ pub(in crate::capi) struct TextureObject {
     pub(in crate::capi) texture: wgpu::Texture,
     /// Format of the texture, a checked `wk_format`.
     pub(in crate::capi) format: u32,
-    /// Lock of reads and writes, which wait for the GPU, one at a time.
+    /// Lock that lets one read or write run at a time; each of them waits for the GPU.
     pub(in crate::capi) transfer: Mutex<()>,
 }
 

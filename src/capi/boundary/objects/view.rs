@@ -73,7 +73,8 @@ impl ViewObject {
     }
 
     pub(in crate::capi) fn lock(&self) -> MutexGuard<'_, View> {
-        // A panic while it was held has poisoned the device already.
+        // A panic while this lock was held has poisoned the device already, and the device refuses later calls. The
+        // lock's own poisoning says nothing more, so it is ignored.
         self.view.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

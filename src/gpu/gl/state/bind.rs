@@ -3,12 +3,12 @@
 
 use super::super::{api::Api, check::GlInfo, names::*};
 
-/// Largest number of texture units, samplers and buffer slots that wgpu's backend uses; it uses the first ones.
+/// Largest number of texture units, samplers and buffer slots that wgpu's backend uses. It uses them from the first on.
 const SLOTS: u32 = 16;
-/// Largest number of storage images that it binds.
+/// Largest number of storage images that wgpu's backend binds.
 const IMAGES: u32 = 8;
 
-/// Part of a buffer that is bound to an indexed slot, bytes.
+/// Range of a buffer that is bound to an indexed slot, bytes.
 #[derive(Clone, Copy, Default)]
 struct BufferRange {
     buffer: u32,

@@ -4,8 +4,8 @@
 //! *Host state that would affect wgpu*: wgpu's backend sets most of what it needs at every pass (masks, scissor,
 //! blending, stencil, samplers). For the rest it assumes a context of its own: a vertex array other than 0, no
 //! rasteriser discard, filled polygons, the default clip control, tightly packed pixels, no logic operation, full
-//! sample coverage, no colour clamping. `normalise` sets that. *wgpu state that would affect the host*: everything that
-//! wgpu sets. One list serves both: the union is saved.
+//! sample coverage, no colour clamping. `normalise` sets this rest. *wgpu state that would affect the host*: everything
+//! that wgpu sets. The saved state is the union of the two.
 //!
 //! Conditional rendering and active queries are not in the list, because they cannot be suspended;
 //! `src/gpu/gl/counting.rs` refuses them.

@@ -49,7 +49,7 @@ const FRONT_NAMES: [u32; 7] = [
     STENCIL_PASS_DEPTH_FAIL,
     STENCIL_PASS_DEPTH_PASS,
 ];
-/// Queries of the back face's stencil state, in the same order.
+/// Queries of the back face's stencil state, in the order of the fields of [`Stencil`].
 const BACK_NAMES: [u32; 7] = [
     STENCIL_BACK_FUNC,
     STENCIL_BACK_REF,

@@ -98,7 +98,7 @@ impl Lakes {
         let found: f64 = loose[first..].iter().map(|w| w.1).sum();
         match loose[first..].first_mut() {
             Some(w) => w.1 += held - found,
-            // No cell is below the rounded level of so thin a water: all of it goes to the pit.
+            // The water is so thin that no cell lies below its rounded level: all of it goes to the pit.
             None => loose.extend(self.tree(l.hollow).first().and_then(|h| self.pit_of(*h)).map(|pit| (pit, held))),
         }
         self.forget(terrain, lake);
