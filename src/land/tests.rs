@@ -1,4 +1,4 @@
-//! Tests of the drawn terrain without a device: patches that meet have the same vertices, and pages the same texels.
+//! Tests of the drawn terrain without a device: patches that meet have the same vertices.
 
 use std::collections::HashMap;
 

@@ -19,7 +19,7 @@ pub(super) use self::maps::{ShadowMaps, no_maps};
 use super::{
     pages::Pages,
     relief::Relief,
-    selection::{LandFrustum, LandPatch, select},
+    selection::{LandFrustum, LandPatch, LevelDistances, select},
     uniforms::{CASCADES, CascadeUniform, LandPicture, LandShadowUniform, PatchInstance},
 };
 use crate::{
@@ -139,16 +139,18 @@ impl Shadows {
         }
         self.patches.clear();
         let mut ranges = [0..0, 0..0, 0..0, 0..0];
+        let mut above = [picture.detail.above; CASCADES];
         for i in (0..CASCADES).filter(|i| due[*i]) {
             let first = self.patches.len() as u32;
-            self.drawn[i] = Some(self.add_patches(Cascade::new(light, eye, sides_m[i], side), picture, relief));
+            let (map, own) = self.add_patches(Cascade::new(light, eye, sides_m[i], side), picture, relief);
+            (self.drawn[i], above[i]) = (Some(map), own.above);
             self.stale[i] = 0;
             ranges[i] = first..self.patches.len() as u32;
         }
         self.pages.begin(terrain, 0);
         self.pages.place(recording.device, (terrain, picture.eye), &self.patches, &mut self.instances);
         self.leave_out(&mut ranges);
-        self.record(picture, relief.top(), &ranges, recording);
+        self.record(picture, (relief.top(), &above), &ranges, recording);
         Ok(())
     }
 
@@ -190,8 +192,9 @@ impl Shadows {
         std::array::from_fn(|i| lateness[i] > FAR_TOO_LATE || (i == latest && lateness[i] >= 1.0))
     }
 
-    /// Adds the patches of a map, and returns the map with the depth that they need.
-    fn add_patches(&mut self, mut map: Cascade, picture: &LandPicture, relief: &Relief) -> Cascade {
+    /// Adds the patches of a map. Returns the map with the depth that they need, and the distances by which their
+    /// levels were chosen: coarser than the picture's where the map would have too many patches.
+    fn add_patches(&mut self, mut map: Cascade, picture: &LandPicture, relief: &Relief) -> (Cascade, LevelDistances) {
         let frustum = LandFrustum::of_light(map.clip(picture.eye_m()), picture.eye.place, picture.cell_m);
         let mut detail = picture.detail;
         select(relief, &mut detail, &frustum, &mut self.chosen);
@@ -200,14 +203,15 @@ impl Shadows {
             map.hold(low, high);
         }
         self.patches.extend_from_slice(&self.chosen);
-        map
+        (map, detail)
     }
 
-    /// Records the passes of the maps that have a range of patches.
+    /// Records the passes of the maps that have a range of patches. `top` is the level of the largest nodes, `above`
+    /// the height by which the levels of each map were chosen.
     fn record(
         &mut self,
         picture: &LandPicture,
-        top: u8,
+        (top, above): (u8, &[f64; CASCADES]),
         ranges: &[Range<u32>; CASCADES],
         recording: &mut Recording<'_>,
     ) {
@@ -217,6 +221,7 @@ impl Shadows {
         for (i, range) in ranges.iter().enumerate().filter(|(_, range)| !range.is_empty()) {
             let Some(map) = &self.drawn[i] else { continue };
             let mut block = picture.uniform(glam::DMat4::IDENTITY, top);
+            block.above = above[i] as f32;
             block.clip = map.clip(picture.eye_m()).as_mat4().to_cols_array();
             maps.draw(device, recording.encoder, (i, &block), pages, range.clone());
             #[cfg(test)]
