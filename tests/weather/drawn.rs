@@ -68,7 +68,7 @@ fn every_random_weather_is_drawn_finite_in_the_other_half() {
 }
 
 fn random_weathers_are_drawn_finite(half: usize) {
-    let count = if accept() { 96 } else { 8 };
+    let count = if accept() { 72 } else { 8 };
     let (mut dice, mut faults) = (Dice(5), Vec::new());
     let mut cases: Vec<_> = (0..count)
         .map(|n| {
