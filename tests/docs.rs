@@ -92,8 +92,8 @@ fn the_readme_s_test_commands_are_the_makefile_s() {
 #[test]
 fn the_contents_list_every_article() {
     let listed: BTreeSet<PathBuf> = links("docs/README.md").into_iter().collect();
-    let missing: Vec<String> =
-        documents("docs").into_iter().filter(|d| d != "docs/README.md" && !listed.contains(Path::new(d))).collect();
+    let articles = documents("docs").into_iter().chain(documents("docs/sources"));
+    let missing: Vec<String> = articles.filter(|d| d != "docs/README.md" && !listed.contains(Path::new(d))).collect();
     assert!(missing.is_empty(), "docs/README.md does not list {missing:?}");
 }
 
@@ -101,7 +101,9 @@ fn the_contents_list_every_article() {
 fn links_lead_somewhere() {
     let own = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "SECURITY.md"].map(str::to_owned);
     let mut dead = Vec::new();
-    for document in own.into_iter().chain(documents("docs")).chain(documents("docs/lab")) {
+    for document in
+        own.into_iter().chain(documents("docs")).chain(documents("docs/lab")).chain(documents("docs/sources"))
+    {
         dead.extend(
             links(&document).into_iter().filter(|to| !root().join(to).exists()).map(|to| (document.clone(), to)),
         );
@@ -134,4 +136,89 @@ fn articles_are_short_and_say_where_to_go_next() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Numbers of the ids in a row's first cell: `M-05`, `M-38, M-39`, `T-02 to T-23`.
+fn ids(cell: &str) -> BTreeSet<String> {
+    let number = |id: &str| id.split_once('-').and_then(|(_, n)| n.parse::<u32>().ok()).expect("an id with a number");
+    let mut all = BTreeSet::new();
+    for part in cell.split(", ") {
+        let (first, last) = part.split_once(" to ").unwrap_or((part, part));
+        all.extend((number(first)..=number(last)).map(|n| format!("{}-{n:02}", &first[..1])));
+    }
+    all
+}
+
+/// Rows of a source's page: the ids, and what stands for them.
+fn rows(text: &str) -> Vec<(BTreeSet<String>, &str)> {
+    let rows = text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| id "));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.trim_matches('|').split(" | ").map(str::trim).collect();
+        (ids(cells[0]), *cells.last().expect("a cell"))
+    })
+    .collect()
+}
+
+#[test]
+fn pages_of_sources_have_each_id_once_and_count_them() {
+    let pages = documents("docs/sources");
+    assert!(pages.len() >= 5, "{pages:?}");
+    for page in pages {
+        let text = read(&page);
+        let (mut seen, mut counts) = (BTreeSet::new(), [0; 3]);
+        for (ids, cell) in rows(&text) {
+            let kind = if cell.starts_with("none yet") { 2 } else { usize::from(cell.starts_with("partly")) };
+            counts[kind] += ids.len();
+            for id in ids {
+                assert!(seen.insert(id.clone()), "{page} has {id} twice");
+            }
+        }
+        let [built, partly, none] = counts;
+        let line = format!("{} ids: {built} built, {partly} partly, {none} none yet.", seen.len());
+        assert!(text.contains(&line), "{page} should say: {line}");
+        // Numbers of a letter run without a gap.
+        for letter in seen.iter().map(|id| &id[..1]).collect::<BTreeSet<_>>() {
+            let numbers: Vec<u32> = seen.iter().filter_map(|id| id.strip_prefix(letter)?[1..].parse().ok()).collect();
+            assert!(numbers.windows(2).all(|n| n[1] == n[0] + 1), "{page} leaves out one of {letter}: {numbers:?}");
+        }
+    }
+}
+
+/// Text of every Rust and C source of the repository.
+fn sources() -> String {
+    fn gather(folder: &Path, all: &mut String) {
+        for entry in fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
+            if entry.is_dir() {
+                gather(&entry, all);
+            } else if entry.extension().is_some_and(|e| ["rs", "c", "cpp", "h", "wgsl"].iter().any(|x| e == *x)) {
+                all.push_str(&fs::read_to_string(entry).expect("a text"));
+            }
+        }
+    }
+    let mut all = String::new();
+    for folder in ["src", "tests", "examples", "shaders", "include", "benches"] {
+        gather(&root().join(folder), &mut all);
+    }
+    all
+}
+
+#[test]
+fn names_on_the_pages_of_sources_stand_in_the_code() {
+    let code = sources();
+    let words: BTreeSet<&str> = code.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+    let mut missing = Vec::new();
+    for page in documents("docs/sources").into_iter().chain(["docs/rain-features.md".into()]) {
+        let text = read(&page);
+        // Files are checked elsewhere; commands and formulas are no names.
+        let is_name = |name: &&str| {
+            name.contains('_')
+                && name.chars().all(|c| c.is_alphanumeric() || "_.:".contains(c))
+                && !name.contains(".rs")
+        };
+        for name in text.split('`').skip(1).step_by(2).filter(is_name) {
+            let parts = name.split(['.', ':']).filter(|part| !part.is_empty());
+            missing.extend(parts.filter(|part| !words.contains(part)).map(|part| format!("{page}: {part}")));
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
