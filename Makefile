@@ -40,7 +40,7 @@ RUN_TESTS = $(if $(NEXTEST),cargo nextest run --locked --workspace --no-fail-fas
 
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-.PHONY: ci dist help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab cigi-host on-gpu-pack
+.PHONY: ci dist help setup setup-build lib stage install uninstall host osg-host demo fmt lint header docs test accept bench fuzz gallery lab studio cigi-host on-gpu-pack
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -144,6 +144,9 @@ fuzz: setup-build ## fuzz all that Welkin reads, 15 minutes a target (ARGS="--se
 
 lab: setup-build ## chart speed against accuracy, map where methods fail (ARGS="chart sky"; without: what it can do)
 	cargo run --locked --release --package welkin-lab -- $(ARGS)
+
+studio: setup-build ## a window to set, see and write out the weather in (ARGS="--headless --script FILE": without one)
+	cargo run --locked --release --package welkin-studio -- $(ARGS)
 
 cigi-host: setup-build ## answer a CIGI host at port 8000 without drawing, or print a capture (ARGS="--decode FILE.bin")
 	cargo run --locked --release --package welkin-cigi-host -- $(or $(ARGS),--listen 0.0.0.0:8000)

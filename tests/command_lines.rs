@@ -132,6 +132,14 @@ fn examples_in_rust_keep_the_conventions() {
         &built().join("cigi_host"),
         &[(&["--decode"], "--decode has no value"), (&[], "--listen"), (&["--rate", "60x"], "--rate")],
     );
+    assert_conventions(
+        &built().join("studio"),
+        &[
+            (&["--headless"], "--script"),
+            (&["--headless", "--script"], "--script takes a value"),
+            (&["--headless", "--script", "x", "--size", "9x9"], "320x200"),
+        ],
+    );
     assert_conventions(&built().join("lab"), &[(&["chart", "soup"], "soup"), (&["--scene"], "--scene")]);
     assert_conventions(&native, &[(&["a.png", "METAR", "more"], "more")]);
     // Later errors are sentences too.

@@ -50,8 +50,8 @@ pub struct Windscreen {
     /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each
     /// within 400. The number of drops that hit the glass depends on it.
     pub velocity_m_s: DVec3,
-    /// Speed of the air that flows up along the glass, as close to it as a bead is high, m/s, [-100, 100]. It drives the
-    /// beads.
+    /// Speed of the air that flows up along the glass, as close to it as a bead is high, m/s, [-100, 100]. It drives
+    /// the beads.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, [0, 1]; for example 0 in a tunnel for which the host has set
     /// no box. The context's boxes and maps ([`crate::context::Context::set_shelters`],
