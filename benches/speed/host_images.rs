@@ -12,12 +12,30 @@ use welkin_support::{processor::processor_ns, textures::texture};
 pub struct HostImages {
     color: wgpu::Texture,
     depth: wgpu::Texture,
+    /// Colour and depth of the host's own world, if it has one.
+    world: Option<[wgpu::Texture; 2]>,
 }
 
 impl HostImages {
     pub fn new(device: &Device, size: (u32, u32)) -> Self {
         let color = texture(device, size, wgpu::TextureFormat::Rgba16Float, 1);
-        Self { color, depth: texture(device, size, wgpu::TextureFormat::Depth32Float, 1) }
+        Self { color, depth: texture(device, size, wgpu::TextureFormat::Depth32Float, 1), world: None }
+    }
+
+    /// Returns images of a host whose own world is what these show now.
+    pub fn kept(&self, device: &Device) -> Result<Self, Box<dyn std::error::Error>> {
+        let (from, size) = ([&self.color, &self.depth], (self.color.width(), self.color.height()));
+        let to = from.map(|image| texture(device, size, image.format(), 1));
+        copy(device, from, [&to[0], &to[1]])?;
+        Ok(Self { world: Some(to), ..Self::new(device, size) })
+    }
+
+    /// Brings colour and depth to what they are before Welkin draws: clear, or the host's own world.
+    fn begin(&self, device: &Device) -> Result<(), Box<dyn std::error::Error>> {
+        match &self.world {
+            Some([color, depth]) => copy(device, [color, depth], [&self.color, &self.depth]),
+            None => self.clear(device),
+        }
     }
 
     /// Clears colour and depth, as a host does before its own things.
@@ -43,7 +61,7 @@ impl HostImages {
         Ok(())
     }
 
-    /// Draws a frame into cleared images. Returns its processor time, ns.
+    /// Draws a frame over the host's own world. Returns its processor time, ns.
     ///
     /// # Errors
     /// The errors of [`View::record`].
@@ -54,7 +72,7 @@ impl HostImages {
         camera: &Camera,
         frame_id: u64,
     ) -> Result<f64, Box<dyn std::error::Error>> {
-        self.clear(device)?;
+        self.begin(device)?;
         let mut frame = Frame::new(frame_id, *camera, &self.color, Some(&self.depth));
         (frame.depth_access, frame.flags) = (DepthAccess::ReadWrite, FrameFlags::NO_HISTORY);
         let before = processor_ns();
@@ -62,4 +80,13 @@ impl HostImages {
         device.wait()?;
         Ok((processor_ns() - before) as f64)
     }
+}
+
+fn copy(device: &Device, from: [&wgpu::Texture; 2], to: [&wgpu::Texture; 2]) -> Result<(), Box<dyn std::error::Error>> {
+    let mut encoder = device.device.create_command_encoder(&Default::default());
+    for (from, to) in from.into_iter().zip(to) {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
+    device.submit_and_wait(encoder)?;
+    Ok(())
 }
