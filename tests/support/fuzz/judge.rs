@@ -37,9 +37,22 @@ fn unquoted(text: &str) -> String {
     own + rest
 }
 
+/// Word of the implementation in a message's own text. Words that the input has may be in it: names of its fields stand
+/// there without quotation marks.
+fn internal_word(message: &str, input: &[u8]) -> Option<&'static str> {
+    let is_given = |word: &str| input.windows(word.len()).any(|part| part == word.as_bytes());
+    let own = unquoted(message);
+    INTERNAL.iter().find(|word| own.contains(**word) && !is_given(word)).copied()
+}
+
 impl Judge {
     /// The error in an answer of `function`, if any.
     pub fn fault(&self, function: &str, status: wk_status) -> Option<String> {
+        self.fault_about(b"", function, status)
+    }
+
+    /// The error in an answer of `function` about an input, if any.
+    pub fn fault_about(&self, input: &[u8], function: &str, status: wk_status) -> Option<String> {
         if status >= 0 {
             return None;
         }
@@ -50,7 +63,7 @@ impl Judge {
         let Some(what) = text.strip_prefix(&format!("{function}: ")) else {
             return Some(format!("the message does not begin with the function's name: {text:?}"));
         };
-        if let Some(word) = INTERNAL.iter().find(|w| unquoted(what).contains(**w)) {
+        if let Some(word) = internal_word(what, input) {
             return Some(format!("the message has {word:?} in it: {text:?}"));
         }
         if text.len() >= 300 {

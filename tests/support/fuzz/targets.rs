@@ -46,7 +46,12 @@ fn fit(error: &Error) {
 
 /// Panics if an answer of the C interface is wrong.
 fn judged(function: &str, status: i32) -> bool {
-    if let Some(fault) = Judge.fault(function, status) {
+    judged_about(b"", function, status)
+}
+
+/// Panics if an answer of the C interface about an input is wrong.
+fn judged_about(input: &[u8], function: &str, status: i32) -> bool {
+    if let Some(fault) = Judge.fault_about(input, function, status) {
         panic!("{function}: {fault}");
     }
     status == WK_OK
@@ -63,7 +68,7 @@ pub fn metar(data: &[u8]) {
         let layers = layers.ptr().cast();
         wk_weather_from_metar(text.as_ptr(), layers, 16, size, weather.ptr().cast(), metar.ptr().cast())
     };
-    if !judged("wk_weather_from_metar", status) {
+    if !judged_about(data, "wk_weather_from_metar", status) {
         return;
     }
     assert_eq!([weather.not_finite(), metar.not_finite()].concat(), Vec::<&str>::new());
@@ -115,7 +120,7 @@ pub fn state(data: &[u8]) {
     let data = &std::str::from_utf8(data).map_or_else(|_| data.to_vec(), |text| sealed(text).into_bytes());
     // SAFETY: a live handle, and a slice's own pointer and length.
     let status = unsafe { wk_context_load(context, data.as_ptr().cast(), data.len()) };
-    if !judged("wk_context_load", status) {
+    if !judged_about(data, "wk_context_load", status) {
         return;
     }
     let (before, saved) = (hash(context), saved(context).expect("a state that was loaded has no steps left"));
@@ -182,7 +187,7 @@ pub fn tables() -> Vec<u8> {
 pub fn plan(data: &[u8]) {
     let view = WORLD.with(World::view);
     // SAFETY: a live handle, and a slice's own pointer and length.
-    judged("wk_view_load_plan", unsafe { wk_view_load_plan(view, data.as_ptr().cast(), data.len()) });
+    judged_about(data, "wk_view_load_plan", unsafe { wk_view_load_plan(view, data.as_ptr().cast(), data.len()) });
 }
 
 /// The tables in a cache file, with a valid key and checksum.
