@@ -58,7 +58,7 @@ impl FlyCamera {
     }
 
     /// Moves for `seconds`, with `keys` from -1 to 1: to the right, forward and up. The speed grows with the height
-    /// above the ground, so that a flight from a walker's eye to orbit takes half a minute.
+    /// above the ground, so that lifting from a walker's eye to orbit takes about 20 s.
     pub fn fly(&mut self, keys: DVec3, seconds: f64, ground_m: f64) {
         let above = (self.place.z - ground_m).max(LOWEST_M);
         let speed = 2.0 + 0.6 * above;
