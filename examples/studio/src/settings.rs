@@ -80,7 +80,9 @@ impl Default for Settings {
     fn default() -> Self {
         let bytes = |name| default_of(name).unwrap_or_default();
         let weather = NamedWeather { weather: bytes("wk_weather"), overrides: None, layers: Vec::new() };
-        let calls = SETTERS.iter().map(|s| (s.0, None)).collect();
+        // The studio's world has terrain, which would not be seen otherwise.
+        let is_on = |call: &str| call == "wk_context_set_terrain_drawing";
+        let calls = SETTERS.iter().map(|s| (s.0, is_on(s.0).then(|| bytes(s.1)))).collect();
         Self { world: bytes("wk_context_desc"), weather, calls }
     }
 }
@@ -278,7 +280,12 @@ impl Settings {
     pub fn to_toml(&self) -> String {
         let mut file = toml::Table::new();
         for part in Part::all(self.layers()) {
-            let Some(bytes) = self.bytes(part) else { continue };
+            let Some(bytes) = self.bytes(part) else {
+                if Self::default().bytes(part).is_some() {
+                    file.insert(part.key(), false.into());
+                }
+                continue;
+            };
             let default = default_of(part.structure()).unwrap_or_default();
             let mut own = toml::Table::new();
             for row in table::rows(part.structure()) {
@@ -304,7 +311,11 @@ impl Settings {
         let mut settings = Self::default();
         for (key, own) in &file {
             let part = Part::of_key(key)?;
-            let own = own.as_table().ok_or_else(|| format!("{key} is a table of fields; got {own}"))?;
+            if own.as_bool() == Some(false) {
+                settings.switch(part, false);
+                continue;
+            }
+            let own = own.as_table().ok_or_else(|| format!("{key} is a table of fields, or false; got {own}"))?;
             if settings.bytes(part).is_none() {
                 settings.switch(part, true);
             }

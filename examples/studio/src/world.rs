@@ -8,7 +8,6 @@ use welkin::{
     frame::{DepthAccess, Frame, Stages},
     gpu::Device,
     heights::{HeightMap, HeightSettings},
-    land::TerrainDrawing,
     scene::Camera,
     terrain::{Rows, TerrainCells, TerrainDesc, TileKey},
 };
@@ -85,7 +84,7 @@ impl World {
                     ..TerrainCells::default()
                 })?;
             }
-            context.set_terrain_drawing(Some(TerrainDrawing::default()))
+            Ok(())
         });
         laid.unwrap_or(Ok(()))
     }

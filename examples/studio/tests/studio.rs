@@ -150,12 +150,14 @@ fn a_settings_file_brings_back_what_was_set() {
             let (part, row) = &rows[dice.below(rows.len())];
             shake(&mut dice, &mut settings, *part, row);
         }
+        settings.switch(Part::Call("wk_context_set_terrain_drawing"), dice.below(2) == 0);
         let text = settings.to_toml();
         let back = Settings::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
         // Values of fields that are off are not kept.
         for part in Part::all(settings.layers()) {
-            let (Some(a), b) = (settings.bytes(part), back.bytes(part)) else { continue };
-            let b = b.unwrap_or_else(|| panic!("{part:?} is lost in\n{text}"));
+            let (a, b) = (settings.bytes(part), back.bytes(part));
+            assert_eq!(a.is_some(), b.is_some(), "{part:?} in\n{text}");
+            let (Some(a), Some(b)) = (a, b) else { continue };
             for row in table::rows(part.structure()).iter().filter(|row| table::is_on(a, row)) {
                 for element in 0..row.field.count {
                     let [a, b] = [a, b].map(|bytes| bytes::integer(bytes, &row.field, element));
