@@ -162,7 +162,7 @@ impl NamedWeather {
     /// Reads a report (METAR).
     ///
     /// # Errors
-    /// Those of `wk_weather_from_metar`.
+    /// The errors of `wk_weather_from_metar`.
     pub fn of_metar(report: &str) -> Result<Self, Refusal> {
         let (capacity, size) = (LAYERS as u32, size_of::<weather::wk_cloud_layer>() as u32);
         // SAFETY: the pointers are to a text, to as many layers as is said, and to a struct.
@@ -174,7 +174,7 @@ impl NamedWeather {
     /// Returns a preset.
     ///
     /// # Errors
-    /// Those of `wk_weather_from_preset`.
+    /// The errors of `wk_weather_from_preset`.
     pub fn of_preset(name: &str) -> Result<Self, Refusal> {
         let (capacity, size) = (LAYERS as u32, size_of::<weather::wk_cloud_layer>() as u32);
         // SAFETY: as above.
@@ -203,7 +203,7 @@ impl NamedCalls {
     /// Creates them. `desc` has the bytes of a `wk_context_desc`.
     ///
     /// # Errors
-    /// Those of `wk_context_create` and `wk_view_create`.
+    /// The errors of `wk_context_create` and `wk_view_create`.
     pub fn new(gpu: &Arc<Device>, desc: &[u64]) -> Result<Self, Refusal> {
         let device = device::issue(gpu.clone(), Host::Own)
             .map_err(|e| Refusal { message: e.to_string(), field: String::new() })?;
@@ -220,7 +220,7 @@ impl NamedCalls {
     /// Makes the call that takes one struct, by the call's name; `None` for `bytes` passes NULL.
     ///
     /// # Errors
-    /// Those of the call; an unknown call.
+    /// The errors of the call; an unknown call.
     pub fn set(&self, call: &str, bytes: Option<&[u64]>) -> Result<(), Refusal> {
         let unknown = || Refusal { message: format!("there is no call {call} for one struct"), field: String::new() };
         let (_, name) = SETTERS.iter().find(|s| s.0 == call).ok_or_else(unknown)?;
@@ -251,7 +251,7 @@ impl NamedCalls {
     /// Sets the weather, from a simulation time on.
     ///
     /// # Errors
-    /// Those of `wk_context_set_weather`.
+    /// The errors of `wk_context_set_weather`.
     pub fn set_weather(&self, given: &NamedWeather, start_s: f64, transition_s: f64) -> Result<(), Refusal> {
         let mut bytes = sealed("wk_weather", &given.weather)?;
         let overrides = given.overrides.as_ref().map(|b| sealed("wk_weather_overrides", b)).transpose()?;
@@ -273,7 +273,7 @@ impl NamedCalls {
     /// of the last frame.
     ///
     /// # Errors
-    /// Those of the call; an unknown call.
+    /// The errors of the call; an unknown call.
     pub fn get(&self, call: &str, position_m: [f64; 3]) -> Result<(&'static str, StructBytes), Refusal> {
         let unknown = || Refusal { message: format!("there is no call {call} for answers"), field: String::new() };
         let (_, name) = GETTERS.iter().find(|s| s.0 == call).ok_or_else(unknown)?;

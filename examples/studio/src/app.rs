@@ -23,13 +23,13 @@ const LONGEST_STEP_S: f64 = 0.5;
 pub struct App {
     gpu: Arc<Device>,
     world: World,
-    /// What is set.
+    /// Settings of the panel, which the library is told at the next step.
     pub settings: Settings,
-    /// What the library has been told.
+    /// Settings that the library has been told.
     told: Settings,
     /// Steps to undo.
     pub history: History,
-    /// What the library has refused of the present settings.
+    /// Refusals of the present settings by the library.
     pub refused: Vec<Refused>,
     /// The camera.
     pub camera: FlyCamera,

@@ -80,8 +80,6 @@ impl Headless {
             ..Default::default()
         };
         input.viewports.entry(egui::ViewportId::ROOT).or_default().native_pixels_per_point = Some(self.scale);
-        let theme = if self.app.is_dark { egui::Theme::Dark } else { egui::Theme::Light };
-        self.context.set_theme(theme);
         let texture = self.painter.show(self.app.world().picture());
         let (app, mut picture) = (&mut self.app, self.picture);
         let output = self.context.run_ui(input, |ui| picture = panel::show(ui, app, texture));

@@ -14,7 +14,7 @@ usage: studio                                        a window
 options: --size WxH    size of the window, pixels (1280x760; 320x200 to 4096x4096)
          --scale S     pixels in a point of the panel (1; 0.5 to 4)";
 
-/// What the command line asks for.
+/// Request of the command line.
 #[derive(Default)]
 struct Asked {
     headless: bool,

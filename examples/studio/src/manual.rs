@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::{
     pages::{PAGES, title},
     panel::written,
-    settings::{Part, Settings},
+    settings::Settings,
     table,
 };
 
@@ -26,15 +26,14 @@ pub fn page() -> String {
                 } else {
                     row.field.range.to_owned()
                 };
-                let _ = writeln!(text, "| `{}` | {} | {range} | {} |", row.field.name, row.unit, default(part, &row));
+                let _ = writeln!(text, "| `{}` | {} | {range} | {} |", row.field.name, row.unit, default(row));
             }
         }
     }
     text
 }
 
-fn default(part: Part, row: &table::Row) -> String {
-    let _ = part;
+fn default(row: &table::Row) -> String {
     if row.is_optional() {
         return "Welkin chooses".into();
     }

@@ -96,7 +96,7 @@ struct LightUniform {
 /// A box as the shader takes it: middle, axes, albedo.
 type Instance = [[f32; 3]; 5];
 
-/// What draws the boxes.
+/// Pipeline and buffers that draw the boxes.
 pub struct Objects {
     pipeline: wgpu::RenderPipeline,
     uniform: wgpu::Buffer,

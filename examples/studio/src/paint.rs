@@ -8,7 +8,7 @@ use welkin::gpu::{Device, readback};
 /// Format of the pictures: numbers by the sRGB curve, as the panel's renderer wants them.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What paints.
+/// Renderer of the panel, and the pass that encodes the picture for it.
 pub struct Painter {
     gpu: Arc<Device>,
     panel: egui_wgpu::Renderer,

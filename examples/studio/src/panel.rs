@@ -23,6 +23,7 @@ const DRAGGED_DEG: f64 = 0.15;
 
 /// Shows the panel and the picture. Returns the size that the picture should have, pixels.
 pub fn show(ui: &mut Ui, app: &mut App, picture: egui::TextureId) -> [u32; 2] {
+    ui.ctx().set_theme(if app.is_dark { egui::Theme::Dark } else { egui::Theme::Light });
     shortcuts(ui, app);
     egui::Panel::bottom("time").show(ui, |ui| time(ui, app));
     egui::Panel::left("panel").resizable(true).default_size(WIDTH).show(ui, |ui| {

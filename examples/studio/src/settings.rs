@@ -25,8 +25,7 @@ pub enum Part {
     Call(&'static str),
 }
 
-/// Most cloud layers.
-pub const LAYERS: usize = 16;
+pub use welkin::weather::MAX_CLOUD_LAYERS as LAYERS;
 
 impl Part {
     /// Name of the struct.
@@ -88,11 +87,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The weather.
-    pub fn weather(&self) -> &NamedWeather {
-        &self.weather
-    }
-
     /// Replaces the weather.
     pub fn set_weather(&mut self, weather: NamedWeather) {
         self.weather = weather;
@@ -289,9 +283,9 @@ impl Settings {
             let default = default_of(part.structure()).unwrap_or_default();
             let mut own = toml::Table::new();
             for row in table::rows(part.structure()) {
-                let is_set = row.is_optional() && table::is_on(bytes, &row);
-                if is_set || (!row.is_optional() && value(bytes, &row) != value(&default, &row)) {
-                    own.insert(row.field.name.into(), value(bytes, &row));
+                let is_set = row.is_optional() && table::is_on(bytes, row);
+                if is_set || (!row.is_optional() && value(bytes, row) != value(&default, row)) {
+                    own.insert(row.field.name.into(), value(bytes, row));
                 }
             }
             let stays = matches!(part, Part::World | Part::Weather) && own.is_empty();

@@ -1,7 +1,10 @@
 //! Table of everything that a host sets, from the C header: fields with unit, range, default and help. The panel, the
 //! settings file and the manual's page are made from it.
 
-use std::{collections::HashMap, sync::OnceLock};
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::{Mutex, OnceLock, PoisonError},
+};
 
 use welkin::capi::{
     abi::HEADER,
@@ -11,10 +14,10 @@ use welkin::capi::{
 use crate::bytes;
 
 /// Bit of a struct that says that a field is set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Switch {
     /// Field that holds the bit.
-    pub of: &'static str,
+    pub of: NamedField,
     /// Number of the bit's flag.
     pub bit: u64,
 }
@@ -62,6 +65,11 @@ impl Row {
             && !name.starts_with("reserved")
             && !switched.contains(&name)
             && !matches!(field.kind, NamedKind::Pointer | NamedKind::Struct(_))
+    }
+
+    /// Name in words with its unit.
+    pub fn name(&self) -> String {
+        if self.unit.is_empty() { self.label.clone() } else { format!("{}, {}", self.label, self.unit) }
     }
 
     /// Whether the library chooses the value unless the field is set.
@@ -213,7 +221,7 @@ fn switch(all: &[NamedField], field: &NamedField) -> Option<Switch> {
                 None => !key.is_empty() && field.name.starts_with(&key),
             };
             if fits {
-                found.push((name.len(), Switch { of: union.name, bit: *bit }));
+                found.push((name.len(), Switch { of: *union, bit: *bit }));
             }
         }
     }
@@ -227,15 +235,22 @@ fn worded(name: &str) -> (String, &'static str) {
     (stem.replace('_', " "), unit)
 }
 
-/// Returns the rows of a struct, in the header's order; none for an unknown one.
-pub fn rows(structure: &'static str) -> Vec<Row> {
+/// Returns the rows of a struct, in the header's order; none for an unknown one. They are made once: the panel asks for
+/// them in each frame.
+pub fn rows(structure: &'static str) -> &'static [Row] {
+    static ROWS: Mutex<BTreeMap<&str, &[Row]>> = Mutex::new(BTreeMap::new());
+    let mut known = ROWS.lock().unwrap_or_else(PoisonError::into_inner);
+    known.entry(structure).or_insert_with(|| made(structure).leak())
+}
+
+fn made(structure: &'static str) -> Vec<Row> {
     let all = by_name::fields(structure).unwrap_or_default();
     // Unions all of whose flags switch other fields need no row of their own.
     let mut switched = Vec::new();
     for union in all.iter().filter(|f| f.name == "has" || f.name == "set") {
         let NamedKind::Choice { values, .. } = union.kind else { continue };
         let used: Vec<u64> =
-            all.iter().filter_map(|f| switch(&all, f)).filter(|s| s.of == union.name).map(|s| s.bit).collect();
+            all.iter().filter_map(|f| switch(&all, f)).filter(|s| s.of.name == union.name).map(|s| s.bit).collect();
         if values.iter().all(|v| used.contains(&v.1)) {
             switched.push(union.name);
         }
@@ -259,8 +274,7 @@ pub fn is_on(bytes: &[u64], row: &Row) -> bool {
     if row.zero_is_automatic {
         return bytes::number(bytes, &row.field, 0) != 0.0;
     }
-    let Some(switch) = row.switch else { return true };
-    union_of(row.of, switch.of).is_none_or(|union| bytes::integer(bytes, &union, 0) & switch.bit == switch.bit)
+    row.switch.is_none_or(|switch| bytes::integer(bytes, &switch.of, 0) & switch.bit == switch.bit)
 }
 
 /// Says in a struct whether a row's field is set. A field of which 0 means that it is not gets the lowest number that
@@ -273,11 +287,7 @@ pub fn turn(bytes: &mut StructBytes, row: &Row, on: bool) {
         }
         return;
     }
-    let Some((switch, union)) = row.switch.and_then(|s| Some((s, union_of(row.of, s.of)?))) else { return };
-    let flags = bytes::integer(bytes, &union, 0);
-    bytes::set_integer(bytes, &union, 0, if on { flags | switch.bit } else { flags & !switch.bit });
-}
-
-fn union_of(structure: &str, name: &str) -> Option<NamedField> {
-    by_name::fields(structure)?.into_iter().find(|f| f.name == name)
+    let Some(switch) = row.switch else { return };
+    let flags = bytes::integer(bytes, &switch.of, 0);
+    bytes::set_integer(bytes, &switch.of, 0, if on { flags | switch.bit } else { flags & !switch.bit });
 }

@@ -120,7 +120,6 @@ impl Open {
             _ => return,
         };
         let context = self.input.egui_ctx().clone();
-        context.set_theme(if self.app.is_dark { egui::Theme::Dark } else { egui::Theme::Light });
         let texture = self.painter.show(self.app.world().picture());
         let input = self.input.take_egui_input(&self.window);
         let (app, mut picture) = (&mut self.app, self.picture);

@@ -39,8 +39,6 @@ pub struct World {
     objects: Objects,
     /// Height of the site's ground, m.
     site_m: f64,
-    /// Elevation model at the spacing of the cells.
-    heights: HeightMap,
 }
 
 impl World {
@@ -50,12 +48,9 @@ impl World {
     /// A sentence, if there can be no world at all.
     pub fn new(gpu: &Arc<Device>, settings: &Settings, size: [u32; 2]) -> Result<(Self, Vec<Refused>), String> {
         let calls = NamedCalls::new(gpu, settings.world()).map_err(|refusal| refusal.message)?;
-        let map = HeightMap::from_bytes(HEIGHTS, &HeightSettings::default()).map_err(|e| e.to_string())?;
-        let [columns, rows] = SIZE_M.map(|m| (m / CELL_M) as u32);
-        let heights = map.resampled(columns, rows).map_err(|e| e.to_string())?;
         let [color, depth] = images(&gpu.device, size);
         let objects = Objects::new(&gpu.device);
-        let mut world = Self { gpu: gpu.clone(), calls, color, depth, frame_id: 0, objects, site_m: 0.0, heights };
+        let mut world = Self { gpu: gpu.clone(), calls, color, depth, frame_id: 0, objects, site_m: 0.0 };
         world.lay_terrain().map_err(|e| e.to_string())?;
         world.site_m = world.ground_m(DVec3::new(SITE[0], SITE[1], 0.0));
         let shelters = objects::shelters(world.site_m);
@@ -65,8 +60,9 @@ impl World {
         Ok((world, refused))
     }
 
-    fn lay_terrain(&mut self) -> welkin::Result<()> {
-        let heights = &self.heights;
+    fn lay_terrain(&self) -> welkin::Result<()> {
+        let [columns, rows] = SIZE_M.map(|m| (m / CELL_M) as u32);
+        let heights = HeightMap::from_bytes(HEIGHTS, &HeightSettings::default())?.resampled(columns, rows)?;
         let height =
             |column: u32, row: u32| heights.height_m(column, row).filter(|h| h.is_finite()).unwrap_or(NO_DATA_M);
         let laid = self.calls.with(|_, context| {

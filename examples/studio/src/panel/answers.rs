@@ -14,12 +14,7 @@ pub fn show(ui: &mut Ui, app: &App) {
                 ui.label(RichText::new(structure).strong());
                 egui::Grid::new(structure).striped(true).show(ui, |ui| {
                     for row in table::rows(structure).iter().filter(|row| table::is_on(&answer, row)) {
-                        let name = if row.unit.is_empty() {
-                            row.label.clone()
-                        } else {
-                            format!("{}, {}", row.label, row.unit)
-                        };
-                        ui.label(name).on_hover_text(row.help);
+                        ui.label(row.name()).on_hover_text(row.help);
                         ui.label(said(&answer, row));
                         ui.end_row();
                     }

@@ -16,7 +16,7 @@ const IN_A_LINE: usize = 4;
 /// Shows a row of a grid.
 pub fn show(ui: &mut Ui, bytes: &mut StructBytes, row: &Row) {
     let mut is_on = table::is_on(bytes, row);
-    let name = if row.unit.is_empty() { row.label.clone() } else { format!("{}, {}", row.label, row.unit) };
+    let name = row.name();
     if row.is_optional() {
         if ui.checkbox(&mut is_on, name).on_hover_text(row.help).changed() {
             table::turn(bytes, row, is_on);
@@ -103,7 +103,10 @@ fn number(ui: &mut Ui, bytes: &mut StructBytes, row: &Row, element: usize) {
             ui.add(egui::DragValue::new(&mut value).range(low..=high).speed(speed).custom_formatter(shown))
         }
     };
-    if answer.on_hover_text(format!("default {}", written(row.default(element)))).changed() {
+    let default = |ui: &mut Ui| {
+        ui.label(format!("default {}", written(row.default(element))));
+    };
+    if answer.on_hover_ui(default).changed() {
         bytes::set_number(bytes, &row.field, element, value);
     }
 }
