@@ -3,7 +3,7 @@
 //! A [`Candidate`] is a model at a setting, with its [`Work`], a deterministic model of its cost in samples, texels and
 //! bytes. The lab (`examples/lab`) draws every candidate, and the methods of older systems beside them. It measures
 //! cost and [`Difference`](crate::plan::Difference) from the f64 reference, and charts both. A candidate is worth
-//! choosing only if no other is better in both.
+//! choosing only if no other has both less cost and a smaller difference.
 //!
 //! ```
 //! use welkin::candidates::{Effect, Method, candidate, candidates};

@@ -67,12 +67,13 @@ pub struct ContextDesc {
     pub utc_at_zero: Utc,
     /// Settings of the sky. Default the directional tables.
     pub sky: SkySettings,
-    /// Source of the ground's wetness. Default the weather of the moment.
+    /// Source of the ground's wetness. Default the present weather.
     pub ground: GroundModel,
-    /// Source of the lying snow. Default the weather of the moment.
+    /// Source of the lying snow. Default the present weather.
     pub lying_snow: LyingSnowModel,
-    /// Directory that caches the sky's finished tables, created if it does not exist: the next start with the same
-    /// planet, settings and weather reads them. Faults of its files are logged and never an error. Default none.
+    /// Directory that caches the sky's finished tables; it is created if it does not exist. The next start with the
+    /// same planet, settings and weather reads the tables from there. Faults of the files are logged and are never an
+    /// error. Default none.
     pub cache_dir: Option<PathBuf>,
 }
 
@@ -93,7 +94,7 @@ impl Default for ContextDesc {
     }
 }
 
-/// Functions by which the world asks effects for their influence, the same for every world.
+/// Functions through which a world asks effects for their influence. All worlds use the same functions.
 pub(crate) const COUPLINGS: Couplings =
     Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
@@ -244,7 +245,8 @@ pub const PARTS: &[Part] = &[
     snow::candidates::SNOW,
 ];
 
-/// Returns the two parts that cost extra work where both are drawn, and that extra work under the lamps of `scene`.
+/// Returns the two parts that cost extra work where both are drawn, and that extra work under the sun and the moon of
+/// `scene`.
 pub(crate) fn together(scene: &Scene) -> ([&'static Part; 2], StepWork) {
     ([&sky::candidates::AIR, &fog::candidates::FOG], sky::candidates::air_before_fog_work(scene.lamps()))
 }
@@ -257,7 +259,7 @@ pub(crate) fn tables_layout(device: &Device) -> wgpu::BindGroupLayout {
     SkyVolume::view_layout(device)
 }
 
-/// Changes of a picture by streaks and flakes, in closed form: the planner's gauge cannot see them.
+/// Changes of a picture by streaks and flakes, which the planner's gauge cannot see. They are computed in closed form.
 #[derive(Clone, Copy)]
 pub(crate) struct UnseenChanges {
     rain: Option<Streaks>,
@@ -370,8 +372,7 @@ impl Effects {
         ]
     }
 
-    /// Lets each effect find its visible parts around the camera, in the order of the outputs that the effects
-    /// exchange.
+    /// Lets each effect find what the camera can see of it, in the order of the outputs that the effects exchange.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -423,7 +424,7 @@ impl Effects {
         order.into_iter().try_for_each(|place| effects[place].draw(context, merged, recording))
     }
 
-    /// Returns the changes of a picture by streaks and flakes, if the plan decides about either.
+    /// Returns the changes of a picture by streaks and flakes, if the plan decides about streaks or flakes.
     pub fn unseen(&mut self, context: &DrawContext<'_>) -> Option<UnseenChanges> {
         let unseen = UnseenChanges { rain: self.rain.streaks(context), snow: self.snow.contrast(context) };
         (unseen.rain.is_some() || unseen.snow.is_some()).then_some(unseen)

@@ -15,7 +15,7 @@ pub enum Status {
     InvalidArgument = -1,
     /// A handle is dead, foreign or of another kind.
     BadHandle = -2,
-    /// A parent was destroyed while it has live children.
+    /// The call would destroy a parent that has live children.
     InUse = -3,
     /// This device, tier or build does not support the request; the message names the feature.
     Unsupported = -4,
@@ -265,8 +265,8 @@ pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     format!("TOML parse error at line {line}, column {column}: {}", toml_message(e))
 }
 
-/// Returns the parser's message. For a number that is too large, the parser names no range. The message then gives the
-/// range.
+/// Returns the parser's message, or one that gives the range of a number that is too large: the parser's message does
+/// not name that range.
 pub fn toml_message(e: &toml::de::Error) -> Cow<'_, str> {
     let says = |words: &str| e.message().contains(words);
     shown(if ["` as i128", "` as u128", "integer number overflowed"].into_iter().any(says) {

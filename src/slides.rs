@@ -5,8 +5,8 @@
 //! become polygons: their radius is off by 7 to 33 %, depending on the azimuth. Here each edge is judged by the full
 //! gradient: with `a` the drop across the edge and `b` the mean of the four drops beside it, both over one cell, the
 //! slope is `s = sqrt(a^2 + b^2)`. Where it exceeds the gradient `t` at which the higher cell's material rests,
-//! `RATE (s - t) a / s` slides across the edge. Heaps are then round within 1 %. No pattern of cells escapes the rule,
-//! as a checkerboard escapes gradients at cells' corners.
+//! `RATE (s - t) a / s` slides across the edge. Heaps are then round within 1 %. This rule sees every pattern of cells.
+//! Gradients at the corners of cells would miss a checkerboard.
 //!
 //! Heights and flows are whole numbers of units in f64. Flows are truncated to whole units, so that sums are exact, and
 //! the material comes to rest. The caller moves the material, because only it knows what the material consists of.
@@ -27,7 +27,8 @@ pub(crate) struct SlopeInputs<'a> {
     pub grades: &'a [f64],
 }
 
-/// Drop over one cell beside an edge, from the heights on both sides of it; 0 where neither side has ground.
+/// Drop over one cell in the direction of an edge, from the heights of a cell and of its neighbours on both sides in
+/// that direction; 0 where neither neighbour has ground.
 fn side_drop(middle: f64, lower: f64, upper: f64) -> f64 {
     match (lower.is_nan(), upper.is_nan()) {
         (false, false) => 0.5 * (upper - lower),
@@ -37,7 +38,8 @@ fn side_drop(middle: f64, lower: f64, upper: f64) -> f64 {
     }
 }
 
-/// Flow across the edge between a cell and `cell + step`; `aside` is the distance in memory to the neighbours beside.
+/// Flow across the edge between a cell and `cell + step`; `aside` is the distance in memory from a cell to its
+/// neighbours in the direction of the edge.
 #[inline(always)]
 fn edge_flow(inputs: &SlopeInputs<'_>, cell: usize, step: usize, aside: usize) -> f64 {
     let (heights, other) = (inputs.heights, cell + step);

@@ -1,5 +1,5 @@
-// Cloud at a place of a ray, and the depths of cloud around it. For the probe about_box.wgsl takes the place of this
-// file, with a box of even cloud.
+// Cloud at a place on a ray, and the depths of cloud around the place. In the probe, about_box.wgsl replaces this file
+// by a box of even cloud.
 //!include "clouds/field.wgsl"
 //!include "clouds/light.wgsl"
 
@@ -17,7 +17,7 @@ const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.
 struct CloudHere {
-    // Amount by which the map's strength falls short of cloud here, without the rounded base and fraying.
+    // Amount by which the map's number falls short of cloud at the place, without the rounded base and fraying.
     gap: f32,
     // Excess over the threshold, with fraying.
     excess: f32,
@@ -27,27 +27,28 @@ struct CloudHere {
     inside: f32,
     // `gap` with fraying.
     frayed_gap: f32,
-    // Excess at which the place reaches the layer's top.
+    // Excess needed for cloud at the layer's top over the place.
     dome: f32,
     // Distance within which the place's threshold stays the same, m.
     steady: f32,
-    // Largest change of the threshold per metre beyond that distance.
+    // Largest change of the threshold per metre beyond the distance `steady`.
     slope: f32,
-    // Distance without cloud, whatever the map holds, m.
+    // Distance within which there is no cloud, whatever the map's number, m.
     clear: f32,
     // Share of the place that is cloud: 1 unless clouds are blurred. Excess and extinction are those of the cloudy
     // share.
     share: f32,
 }
 
-// A place where clouds are blurred counts as clear if the mean lies this many standard deviations below the threshold.
+// A place where clouds are blurred counts as clear if its mean excess lies this many standard deviations below the
+// threshold.
 const CLOUD_RARE: f32 = 2.5;
 
 // Horizontal distance after which a ray meets other clouds, in distances from cloud to cloud.
 const CLOUD_CELL: f32 = 0.3;
 
-// Share of a normal distribution about `mean` that lies above 0 (x), and the mean of the values in that share (y). Both
-// use the logistic distribution closest to the normal one.
+// Share of a normal distribution about `mean` with the standard deviation `spread` that lies above 0 (x), and the mean
+// of the values in that share (y). Both use the logistic distribution closest to the normal one.
 fn cloud_share(mean: f32, spread: f32) -> vec2f {
     let a = 1.702 * mean / spread;
     let share = 1.0 / (1.0 + exp(-a));
@@ -64,7 +65,7 @@ fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     let frays = cloud_frays(layer, at);
     let excess = over - cloud_dome(layer, over, at.height);
     let dome = cloud_dome_over(layer, over);
-    // A rounded base only takes cloud away, and an anvil may lie above.
+    // The rounded base is left out because it only removes cloud. An anvil may lie above the place.
     let gap = min(dome * at.height * at.height, layer.lean.z) - over;
     let inside = excess + frays;
     let clear = select(0.0, local.steady, CLOUD_PLACED && layer.shape.x > CLOUD_CLEAR_FROM);
@@ -89,7 +90,7 @@ fn cloud_inside(here: CloudHere) -> f32 {
     return here.inside;
 }
 
-// Distance along a ray from a place outside clouds within which there is no cloud, m. The map's strength, the noise and
+// Distance along a ray from a place outside clouds within which there is no cloud, m. The map's number, the noise and
 // the dome change no faster than their largest slopes, and the noise adds no more than its largest value.
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
@@ -115,7 +116,8 @@ fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
 
 // Longest path that a ray is followed through a layer, from its entry, m.
 const CLOUD_FARTHEST: f32 = 60.0e3;
-// Length at the end of that path over which clouds fade out, m. Without it a cloud would end in a flat face.
+// Length, m, over which clouds fade out at the end of the path CLOUD_FARTHEST. Without this fade a cloud would end in a
+// flat face.
 const CLOUD_FADES: f32 = 15.0e3;
 
 // Share of clouds left at a distance from a ray's entry into a layer, m; 0 to 1.
@@ -138,8 +140,8 @@ fn cloud_place(layer: CloudLayer, direction: vec3f, t: f32) -> CloudPlace {
     return CloudPlace(level, (altitude - layer.size.x) * layer.size.y);
 }
 
-// Length of cloud at full extinction along an interval of a ray, m, in columns of this excess. The ray rises by `rise`
-// thicknesses of the layer per metre.
+// Length of cloud at full extinction along an interval of a ray, m. All places of the interval have this excess. The
+// interval begins at `height` and rises by `rise` thicknesses of the layer per metre.
 fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length: f32) -> f32 {
     let to = height + rise * length;
     let low = clamp(min(height, to), 0.0, 1.0);
@@ -151,8 +153,9 @@ fn cloud_stretch(layer: CloudLayer, excess: f32, height: f32, rise: f32, length:
     return length * filled / (top - bottom);
 }
 
-// Length of cloud at full extinction along a direction up to a distance, m. On the nearer part of the path the fraying
-// is looked up. Beyond, each interval is filled as columns with the excess of its middle, without fraying.
+// Length of cloud at full extinction along a direction up to a distance, m. In each of the first SUN_FRAYED intervals,
+// the cloud in the middle is looked up with fraying. In each interval beyond, all places have the excess of the
+// interval's middle, without fraying.
 fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32 {
     let rise = select(min(toward.z, -1e-3), max(toward.z, 1e-3), toward.z >= 0.0) * layer.size.y;
     let way = min(select(at.height, 1.0 - at.height, rise > 0.0) / abs(rise), most);
@@ -187,7 +190,7 @@ fn cloud_box(here: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     return vec4f(about.xy, edge, max(here.below.w - edge, edge));
 }
 
-// Scaled depths of cloud around a place; `excess` is that with fraying.
+// Scaled depths of cloud around a place. `excess` is the excess over the threshold, with fraying.
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let here = cloud_local(layer, cloud_unleaned(layer, at)).layer;
     let about = cloud_box(here, at, excess);
@@ -204,7 +207,7 @@ fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     }
     let up = select(at.height, 1.0 - at.height, clouds.to_sun.z >= 0.0) / layer.size.y;
     let cells = up * length(clouds.to_sun.xy) / max(abs(clouds.to_sun.z), 0.05) * layer.size.z;
-    // The share of cloud falls with height.
+    // The factor 0.5 allows for the share of cloud, which falls with height.
     let blocked = 1.0 - exp(-0.5 * here.share * cells / CLOUD_CELL);
     return 1.0 - min(cloud_blur.spread, 1.0) * blocked;
 }

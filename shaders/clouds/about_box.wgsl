@@ -1,5 +1,5 @@
-// A box of even cloud for the probe; replaces about.wgsl. Its sides, m, are (width along x, width along y, thickness of
-// the layer). The ray starts at `box_origin`, measured from the corner at the base.
+// Box of even cloud that replaces about.wgsl in the probe. The sides of the box, m, are (width along x, width along y,
+// thickness of the layer). The ray starts at `box_origin`, measured from the corner at the base.
 //!include "clouds/box.wgsl"
 //!include "clouds/light.wgsl"
 
@@ -27,7 +27,7 @@ struct CloudBlur {
     spread: f32,
 }
 
-// Blur at the place that a ray looks up.
+// Blur at the place that is looked up for a ray.
 var<private> cloud_blur: CloudBlur;
 
 // Returns no blur.
@@ -40,7 +40,7 @@ fn cloud_here(layer: CloudLayer, at: CloudPlace) -> CloudHere {
     return CloudHere(0.0, layer.size.w, 1.0);
 }
 
-// The whole box is cloud.
+// Returns 1: the whole box is cloud.
 fn cloud_inside(here: CloudHere) -> f32 {
     return 1.0;
 }
@@ -100,7 +100,7 @@ fn cloud_box(layer: CloudLayer, at: CloudPlace, excess: f32) -> vec4f {
     return vec4f(high.z, low.z, edge, max(min(sides.x, sides.y) - edge, edge)) * scaled;
 }
 
-// The sun stands on the side x = 0.
+// Returns the scaled depths of cloud around a place. The sun stands on the side x = 0.
 fn cloud_depths(layer: CloudLayer, at: CloudPlace, excess: f32) -> CloudDepths {
     let scaled = layer.size.w * layer.medium.y;
     let low = box_place(layer, at) * scaled;

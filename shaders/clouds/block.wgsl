@@ -27,8 +27,8 @@ struct CloudLayer {
     // Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
     // excess.
     stretch: vec4f,
-    // Distance that the top lies downwind of the base (east, north), m; least excess that has an anvil above it; length
-    // of the first two, m.
+    // Distance that the top lies downwind of the base, m (east, north); least excess that has an anvil above it; length
+    // of the vector (east, north), m.
     lean: vec4f,
     // Host's map of the layer (placed.wgsl): position of the camera (east, north), in cells from the middle of the
     // first cell; 1/side of a cell, 1/m; row of the map's first texels.

@@ -3,7 +3,8 @@
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 
-// Map of where clouds grow: two layers, the sheets, each with even (x) and cellular (y) noise.
+// Map of how strongly cloud grows at each place, the map's number: two sheets (array layers), each with even (x) and
+// cellular (y) noise.
 @group(0) @binding(2) var cloud_map: texture_2d_array<f32>;
 // Solid noise that frays the clouds' edges.
 @group(0) @binding(3) var cloud_solid: texture_3d<f32>;
@@ -33,16 +34,16 @@ struct CloudPlace {
 
 // Height over which the edges of a base are round, as a share of the layer's thickness.
 const EDGE_SHARE: f32 = 0.08;
-// Limit of that height, m: bases of deep layers are flatter.
+// Limit of the height of EDGE_SHARE, m: bases of deep layers are flatter.
 const EDGE_M: f32 = 40.0;
 // Heights between which an anvil is whole, 0 at the layer's base to 1 at its top.
 const ANVIL: vec2f = vec2f(0.84, 0.95);
-// Heights over which an anvil fades out below that range and above it.
+// Heights over which an anvil fades out below the range ANVIL and above it.
 const ANVIL_FACES: vec2f = vec2f(0.2, 0.05);
 // Share by which an anvil's edges fray less than its towers'.
 const ANVIL_SMOOTHER: f32 = 0.65;
 
-// Blur of clouds in a pixel that spans several of them. All is 0 nearby.
+// Blur of clouds in a pixel that spans several clouds. All members are 0 near the eye.
 struct CloudBlur {
     // Mip level of the map.
     map: f32,
@@ -52,7 +53,7 @@ struct CloudBlur {
     spread: f32,
 }
 
-// Blur at the place that a ray looks up.
+// Blur at the place that is looked up for a ray.
 var<private> cloud_blur: CloudBlur;
 
 // Texels of the map in one distance from cloud to cloud.
@@ -73,7 +74,7 @@ const SOLID_DEVIATION: f32 = 0.107;
 // Width of a pixel up to which clouds are not blurred, in distances from cloud to cloud.
 const BLUR_FROM: f32 = 0.15;
 
-// Share of the variance that a mean over `width` removes, by a law of EVEN_BLUR and the two constants after it.
+// Share of the variance that a mean over `width` removes. `law` is EVEN_BLUR or one of the two constants after it.
 fn cloud_lost(width: f32, law: vec2f) -> f32 {
     return 1.0 - exp(-pow(width / law.x, law.y));
 }
@@ -95,12 +96,12 @@ fn cloud_blur_over(layer: CloudLayer, width: f32) -> CloudBlur {
     return blur;
 }
 
-// Horizontal place in the pattern that belongs to a place, without the cloud's lean; m.
+// Horizontal position of a place, without the cloud's lean, m.
 fn cloud_unleaned(layer: CloudLayer, at: CloudPlace) -> vec2f {
     return at.level - layer.lean.xy * (at.height * at.height);
 }
 
-// Horizontal place in the pattern, without lean and without stretch along the wind; m.
+// Position in the map's pattern that belongs to a place, without lean and without stretch along the wind, m.
 fn cloud_upright(layer: CloudLayer, at: CloudPlace) -> vec2f {
     let level = cloud_unleaned(layer, at);
     return vec2f(dot(layer.stretch.xy, level), dot(layer.stretch.yz, level));
@@ -129,8 +130,8 @@ fn cloud_strength(layer: CloudLayer, level: vec2f) -> f32 {
     return ((first.x + second.x) * (1.0 - c) + (first.y + second.y) * c) * scale;
 }
 
-// Excess needed for cloud at a height over a place of this excess: a flat base with round edges, and a dome or an
-// anvil.
+// Excess needed for cloud at a height over a place of this excess. This gives clouds a flat base with round edges, and
+// a dome or an anvil above it.
 fn cloud_dome(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let share = min(EDGE_M * layer.size.y, EDGE_SHARE);
     let edge = max(1.0 - height / share, 0.0);
@@ -151,7 +152,8 @@ fn cloud_extinction(layer: CloudLayer, excess: f32) -> f32 {
     return layer.size.w * clamp(excess * layer.shape.w, 0.0, 1.0);
 }
 
-// Height of cloud at full extinction below a height, in a column of this excess, in layer thicknesses.
+// Amount of cloud below a height over a place of this excess, in layer thicknesses: the integral over height of the
+// ratio of the extinction to full extinction.
 fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     let d = max(cloud_dome_over(layer, excess), 1e-3);
     let ends = min(sqrt(max(vec2f(excess - 1.0 / layer.shape.w, excess), vec2f(0.0)) / d), vec2f(1.0));
@@ -163,8 +165,8 @@ fn cloud_filled(layer: CloudLayer, excess: f32, height: f32) -> f32 {
     return min(height, ends.x) + max(ramp.x - ramp.y, 0.0) + anvil;
 }
 
-// Length of cloud at full extinction above and below a place of this excess over the threshold, and horizontal distance
-// to the edge of its cloud, m.
+// Lengths of cloud at full extinction above and below a place of this excess over the threshold, and horizontal
+// distance from the place to the edge of its cloud, m.
 fn cloud_about(layer: CloudLayer, excess: f32, height: f32) -> vec3f {
     let below = cloud_filled(layer, excess, height);
     let above = cloud_filled(layer, excess, 1.0) - below;

@@ -1,5 +1,5 @@
-// Reprojects each square of pixels: its movement since the last frame, and the range to which the last picture is
-// clamped.
+// Computes the movement of each square of pixels since the last frame, and the range to which the last picture is
+// clamped there.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/picture.wgsl"
 //!include "common/frame.wgsl"
@@ -17,13 +17,13 @@ struct FollowedSquare {
     // Smallest and largest radiance and transmittance of the squares around this one.
     @location(0) least: vec4f,
     @location(1) most: vec4f,
-    // Offset to this square's position in the last picture, pixels (x, y); LOST if it was outside. z: weight of the
-    // marched picture in place of the last one.
+    // Offset from this square to its position in the last picture, pixels (x, y); LOST if that position is outside the
+    // picture. Weight of the marched pixels in place of the last picture (z).
     @location(2) back: vec4f,
 }
 
-// Deviation from a plane through neighbouring squares, as a share of their range, up to which a picture counts as
-// smooth.
+// Deviation from a plane through neighbouring squares, as a share of the range of their values, up to which a picture
+// counts as smooth.
 const SMOOTH: f32 = 0.03;
 // Deviation at which a picture counts as fully structured.
 const SHAPED: f32 = 0.1;
@@ -46,7 +46,7 @@ fn light_and_open(seen: vec4f) -> vec2f {
 }
 
 @fragment
-// Reprojects one square by the movement of its cloud's mean distance.
+// Reprojects one square as if all its cloud lay at the cloud's mean distance.
 fn follow(in: FullscreenVarying) -> FollowedSquare {
     let square = vec2u(in.position.xy);
     let own = textureLoad(marched, vec2i(square), 0);

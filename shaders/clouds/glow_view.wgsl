@@ -1,5 +1,5 @@
-// Draws the glow of clouds in the light of lamps and flashes, with fewer rays than the clouds have. It is assembled
-// with lit_lamps.wgsl in place of lit.wgsl.
+// Draws the glow of clouds in the light of lamps and flashes, with fewer rays than the clouds have. This shader is
+// assembled with lit_lamps.wgsl in place of lit.wgsl.
 //!include "common/guarded.wgsl"
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"

@@ -4,7 +4,7 @@
 
 // Smallest deflection by a prism for red, green and blue, rad.
 const HALO_FROM: vec3f = vec3f(0.37984, 0.38249, 0.38779);
-// Phase function at that deflection for red, green and blue, 1/sr.
+// Phase function at the deflection HALO_FROM for red, green and blue, 1/sr.
 const HALO_MOST: vec3f = vec3f(5.1095, 5.0817, 5.0272);
 // Angle over which the halo falls to 1/e, rad.
 const HALO_FALL: f32 = 0.0716;

@@ -9,7 +9,7 @@ struct CloudLamp {
     radius: f32,
     // Ratio of the mean intensity over all directions to that in the middle of the beam.
     even: f32,
-    // Above 0 for a source inside a cloud, whatever lies on the path.
+    // Above 0 for a source that counts as inside a cloud, whatever lies between the source and the lit place.
     buried: f32,
     // Padding.
     pad: f32,

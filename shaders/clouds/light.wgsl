@@ -2,8 +2,8 @@
 // model.
 //!include "clouds/block.wgsl"
 
-// Tables of source terms. Side by side: under the beam on the top, under the beam on the side, under the sky. The media
-// lie one below the other, and the leaks in the third dimension.
+// Tables of source terms. Side by side lie the terms for a beam on the top of a box of cloud, for a beam on its side,
+// and for the sky. The media lie one below the other, the leak rates along the third dimension.
 @group(0) @binding(4) var cloud_tables: texture_3d<f32>;
 // Linear sampler that clamps to the edge.
 @group(0) @binding(6) var cloud_table_sampler: sampler;
@@ -37,7 +37,7 @@ struct CloudDepths {
     right: f32,
 }
 
-// Interval of a ray, and the place on it whose light counts for all of it.
+// Interval of a ray, and the place whose light holds for the whole interval.
 struct CloudStretch {
     // Unit vector along the ray.
     direction: vec3f,
@@ -100,8 +100,8 @@ fn cloud_reach(near: f32, far: f32, turning: f32) -> f32 {
     return max(near + far, 1e-3) + 1.42 / turning;
 }
 
-// Profile of light between two opposite sides of a box, with mean 1, and its slope. `entered` is the depth behind the
-// face that the light falls on.
+// Profile of light between two opposite sides of a box, and its slope along that axis. The mean of the profile is 1.
+// `entered` is the depth of the place behind the face that the light falls on.
 fn cloud_across(near: f32, far: f32, turning: f32, height: f32, entered: f32) -> vec2f {
     let extent = cloud_reach(near, far, turning);
     let b = CLOUD_PI / extent;
@@ -127,7 +127,7 @@ fn cloud_phase(medium: CloudMedium, versine: f32) -> f32 {
 
 // Phase function of the first scattering, 1/sr. `gone` is the scaled depth of cloud on the whole path from the light to
 // the place and on to the eye. A part of the light that counts as going straight on was scattered in the forward peak;
-// this part is added at its angle.
+// this part is added at the angle of its scattering.
 fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     let phase = cloud_phase(medium, versine);
     let forward = medium.rest.x * gone / (1.0 - medium.rest.x);
@@ -135,15 +135,16 @@ fn cloud_first_phase(medium: CloudMedium, versine: f32, gone: f32) -> f32 {
     return (min(phase, medium.rest.y) + max(phase - medium.rest.y, 0.0) * share_forward) / (1.0 - medium.rest.x);
 }
 
-// Sum of a table's terms and of the flux along two more axes. `one` and `other` each have the profile, its slope, and
-// the component of the direction along the axis.
+// Light by the source terms of a table, with the profiles of the light along two more axes and the flux along these
+// axes. `axis` is the component of the direction along the table's axis. `one` and `other` each have the profile, its
+// slope, and the component of the direction along the axis.
 fn cloud_through(terms: vec4f, axis: f32, one: vec3f, other: vec3f, spread: f32) -> f32 {
     let leaves = one.y * other.x * one.z + other.y * one.x * other.z;
     return cloud_legendre(terms, axis) * one.x * other.x - spread * terms.x * leaves;
 }
 
-// Computes the scattered light. Light goes along `direction`, and `to_eye` is the scaled depth of cloud between the
-// place and the eye.
+// Computes the light that a place at these depths scatters into `direction`, the direction in which light travels.
+// `to_eye` is the scaled depth of cloud between the place and the eye.
 fn cloud_scattered(medium_index: f32, at: CloudDepths, direction: vec3f, to_eye: f32) -> CloudScattered {
     let medium = clouds.media[u32(medium_index)];
     let turning = medium.rest.z;

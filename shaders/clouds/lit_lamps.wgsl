@@ -45,9 +45,10 @@ fn cloud_mirrored(shine: CloudShine, direction: vec3f, place: f32, grows: f32, s
     return vec2f(d, toward - 2.0 * d * source * grows / square) * image;
 }
 
-// Light of a lamp inside the cloud that is scattered more than once, per steradian and unit of scaled depth. The lamp
-// has intensity 1 with distances in scaled depths: at a distance d its irradiance is 1 / d^2. `about` has the scaled
-// depths of cloud around the place. `within` has the scaled depths of the layer's cloud above and below the lamp.
+// Light that comes from a lamp inside the cloud and is scattered more than once, per steradian and unit of scaled
+// depth. The lamp has intensity 1 with distances in scaled depths: at a distance d its irradiance is 1 / d^2. `about`
+// has the scaled depths of cloud around the place. `within` has the scaled depths of the layer's cloud above and below
+// the lamp.
 fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: CloudShine, direction: vec3f) -> f32 {
     let turning = medium.rest.z;
     let dark = DARK_AT / turning;
@@ -65,8 +66,8 @@ fn cloud_wandered(medium: CloudMedium, about: vec4f, within: vec2f, shine: Cloud
     var growing = dot(shine.toward, direction) / d;
     for (var i = 0u; i < 6u; i++) {
         let power = select(select(3.0, 2.0, i == (nearest ^ 1u)), 1.0, i == nearest);
-        // A cloud is round: where one face is near, the others are farther away, so that the place counts as no less
-        // deep behind them than the lamp.
+        // A cloud is round: where one face is near, the others are farther away. So the place counts as at least as
+        // deep behind the others as the lamp.
         let depth = select(max(place[i], lamp[i]), place[i], i == nearest);
         let r = cloud_mirrored(shine, direction, depth + dark, grows[i], max(lamp[i], 0.0) + dark);
         let others = pow(r.x, power - 1.0);
@@ -95,8 +96,8 @@ fn cloud_shone_on(medium_index: f32, medium: CloudMedium, about: vec4f, shine: C
     return (often + clamp(kept, -often, often)) / (d * d);
 }
 
-// Part of a ray's interval inside a lamp's beam, m; empty if the second distance is not beyond the first. `to` is the
-// offset from the ray's start to the lamp.
+// Distances, m, between which a ray's interval from `first` to `last` is inside a lamp's beam. The interval misses the
+// beam if the second distance is not larger than the first. `to` is the offset from the ray's start to the lamp.
 fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     if lamp.light.end <= 0.0 {
         return vec2f(first, last);
@@ -114,16 +115,16 @@ fn cloud_in_beam(lamp: CloudLamp, to: vec3f, direction: vec3f, first: f32, last:
     }
     let ends = (vec2f(-b) + vec2f(-1.0, 1.0) * sqrt(root) * sign(a)) / a;
     if a > 0.0 {
-        // A ray along the axis enters the beam and stays in it, or leaves it for good.
+        // A ray at a smaller angle to the axis than the edge enters the beam and stays in it, or leaves it for good.
         return select(vec2f(first, min(last, ends.x)), vec2f(max(first, ends.y), last), on > 0.0);
     }
     let in_front = from_lamp + 0.5 * (ends.x + ends.y) * on > 0.0;
     return select(vec2f(first), vec2f(max(first, min(ends.x, ends.y)), min(last, max(ends.x, ends.y))), in_front);
 }
 
-// Light of a lamp inside the cloud that droplets along an interval scatter once (x), and the mean of its beam over the
-// interval (y). `dense` is the scaled depth per metre on the path to the lamp. Sample places are evenly spaced in the
-// angle seen from the lamp (Kulla and Fajardo 2012, "equiangular").
+// Light from a lamp inside the cloud that droplets along an interval scatter once (x), and the mean of the lamp's beam
+// over the interval (y). `dense` is the scaled depth per metre on the path to the lamp. Sample places are evenly spaced
+// in the angle seen from the lamp (Kulla and Fajardo 2012, "equiangular").
 fn cloud_once(medium: CloudMedium, lamp: CloudLamp, to: vec3f, stretch: CloudStretch, dense: f32) -> vec2f {
     let within = cloud_in_beam(lamp, to, stretch.direction, stretch.begun, stretch.begun + stretch.length);
     if within.y <= within.x {

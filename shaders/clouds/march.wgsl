@@ -1,10 +1,10 @@
-// Marches a ray through the layers of cloud: their radiance, transmittance and distance.
+// Marches a ray through the layers of cloud, and computes the radiance, transmittance and distance of the clouds.
 //!include "between/air.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/halo.wgsl"
 //!include "clouds/lit.wgsl"
 
-// Factor on the number of steps that follows from the limits below.
+// Factor on the number of steps: multiplies CLOUD_STEPS and divides the limits of a step's length.
 override CLOUD_FINENESS: f32 = 1.0;
 // Largest number of steps in one layer.
 override CLOUD_STEPS: u32 = 96u;
@@ -30,7 +30,7 @@ struct CloudSeen {
 }
 
 // Distances at which a ray crosses a sphere `height` above the planet's ground, in order. Both are the same if the ray
-// does not cross it.
+// does not cross the sphere.
 fn cloud_crossings(direction: vec3f, height: f32) -> vec2f {
     let r = clouds.radius + cloud_eye();
     let rise = height - cloud_eye();
@@ -53,12 +53,13 @@ struct CloudMarch {
     light: vec3f,
     // Transmittance so far.
     transmittance: f32,
-    // Distance, m, and its square, km^2, weighted by the visible cloud.
+    // Sums of the distance, m, and of its square, km^2, each times lost transmittance.
     distance: vec2f,
 }
 
 // Position of the mean visible place in a step of this scaled depth, as a share of the step. The extinction is even in
-// the step, or rises linearly from the cloud's face at its start (within 4 % of the integral).
+// the step, or with `at_face` rises linearly from the cloud's face at the start of the step (within 4 % of the
+// integral).
 fn cloud_seen_at(depth: f32, at_face: bool) -> f32 {
     let left = exp(-depth);
     return select(1.0 / depth - left / (1.0 - left), 0.667 / sqrt(sqrt(1.0 + 0.32 * depth * depth)), at_face);
@@ -79,8 +80,9 @@ fn cloud_pixel_width(layer: CloudLayer, t: f32, rise: f32) -> f32 {
 }
 
 // Splits the transmittance of a ray into the part in gaps (x) and the part in cloud (y). `open` is that split at the
-// last place, where the share of cloud was shares.x. At this place, `cells` distances from cloud to cloud farther on,
-// the share of cloud is shares.y. On a steep path cloud stands over cloud; on a level path the ray meets new clouds.
+// previous place, where the share of cloud was shares.x. At this place, `cells` distances from cloud to cloud farther
+// on, the share of cloud is shares.y. On a steep path cloud stands over cloud; on a level path the ray meets new
+// clouds.
 fn cloud_open(open: vec2f, shares: vec2f, cells: f32) -> vec2f {
     let grown = open.x * (shares.y - shares.x) / max(1.0 - shares.x, 1e-6);
     let shrunk = open.y * (shares.y / max(shares.x, 1e-6) - 1.0);
@@ -170,19 +172,19 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     // Distance of the last place without cloud since the last cloud (x), and the excess that was missing for cloud
     // there, or 0 (y).
     var clear = vec2f(first, 0.0);
-    // Transmittance of the ray before gaps and before cloud, where clouds are blurred, and the share of cloud at the
-    // last place.
+    // Transmittance of the ray, split into gaps and cloud where clouds are blurred (cloud_open), and the share of cloud
+    // at the last place.
     var open = vec2f(out.transmittance, 0.0);
     var cloudy_share = 0.0;
     while out.transmittance > CLOUD_LEAST {
-        // Go to the next step with cloud. All rays of a wave look up a place at the same time, each for its own
-        // purpose, and compute light only for steps with cloud.
+        // Goes on to the next step with cloud. All rays of a GPU's wave look up a place at the same time, each for its
+        // own purpose, and compute light only for steps with cloud.
         var step: CloudStep;
         while step.looks_for != CLOUD_FOUND && (step.looks_for != CLOUD_SEEKS || (tried < most && gone < last)) {
             if step.looks_for == CLOUD_SEEKS {
                 step.begun = gone;
-                // A step is longer, the less of it is visible: by the transmittance to the power -1/4, from a chart
-                // (docs/lab/clouds.csv).
+                // The less of a step is visible, the longer the step: its length is multiplied by the transmittance to
+                // the power -1/4, chosen from a chart (docs/lab/clouds.csv).
                 let grown = select(inverseSqrt(sqrt(out.transmittance)), 1.0, clear.y > 0.0);
                 step.length = min(clamp(CLOUD_STEP_ANGLE / CLOUD_FINENESS * gone, fine, coarse) * grown, last - gone);
                 step.at = gone + jitter * step.length;
@@ -221,7 +223,8 @@ fn cloud_layer_along(layer: CloudLayer, direction: vec3f, first: f32, last: f32,
     return out;
 }
 
-// Blends a layer of which only the share `share` is drawn as a volume; the rest is drawn as a deck.
+// Blends the states before and after a layer of which only the share `share` is drawn as a volume. The rest is drawn as
+// a deck.
 fn cloud_part(before: CloudMarch, after: CloudMarch, share: f32) -> CloudMarch {
     return CloudMarch(
         mix(before.light, after.light, share),
@@ -267,7 +270,7 @@ fn cloud_middle(seen: CloudSeen) -> f32 {
     return 0.5 * (seen.reach.x + seen.reach.y);
 }
 
-// Adds the air in front of the clouds to what is seen of them.
+// Applies the air in front of the clouds to their radiance.
 fn clouds_behind(air: Veil, seen: CloudSeen) -> CloudSeen {
     let light = seen.light * air.transmittance + air.light * frame.exposure * (1.0 - seen.transmittance);
     return CloudSeen(light, seen.transmittance, seen.reach);

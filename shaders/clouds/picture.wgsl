@@ -11,8 +11,8 @@ struct CloudsPicture {
     side: u32,
     // Index of the pixel in the square that this frame marches.
     place: u32,
-    // The last frame's clip matrix, for a place relative to the last frame's camera (east, north, up), m. `moved` leads
-    // from a place relative to this frame's camera to it.
+    // Matrix from a place relative to the last frame's camera (east, north, up), m, to that frame's clip space. From a
+    // place relative to this frame's camera, `moved` is subtracted first.
     before: mat4x4f,
     // Movement of a cloud relative to the camera since the last frame, m.
     moved: vec3f,
@@ -20,8 +20,8 @@ struct CloudsPicture {
     exposed: f32,
 }
 
-// log2 of the side, which is 1, 2 or 4. A shift by it replaces a division, because software drivers divide integers one
-// by one.
+// log2 of the side, 1, 2 or 4. A shift by this logarithm replaces a division, because software drivers divide integers
+// one by one.
 fn side_power(picture: CloudsPicture) -> u32 {
     return picture.side >> 1u;
 }

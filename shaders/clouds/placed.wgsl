@@ -1,7 +1,7 @@
 // Local cloud cover that overrides a layer's own. Twin of src/clouds/field/placed.rs, which describes the model.
 //!include "clouds/block.wgsl"
 
-// Layers under a host's map, one below the other: threshold, dome, extinction, 1/m, distance within which the threshold
+// Host's maps of layers, one below the other: threshold, dome, extinction, 1/m, distance within which the threshold
 // stays the same, m.
 @group(0) @binding(8) var cloud_maps: texture_2d<f32>;
 // Linear sampler that repeats.
@@ -19,7 +19,7 @@ struct CloudLocal {
     layer: CloudLayer,
     // Distance within which the layer's threshold stays the same, m.
     steady: f32,
-    // Largest change of the threshold per metre beyond that distance.
+    // Largest change of the threshold per metre beyond the distance `steady`.
     slope: f32,
 }
 
@@ -33,7 +33,7 @@ fn cloud_filled_over(area: CloudArea, level: vec2f) -> vec2f {
     return vec2f(clamp(depth / max(area.extent.z, 1e-6), 0.0, 1.0), max(k1 - 1.0, 0.0) * area.extent.w);
 }
 
-// Returns the layer at `level`: m east and north of the camera, without the lean.
+// Returns the layer with its local cover at `level`, m east and north of the camera, without the lean.
 fn cloud_local(layer: CloudLayer, level: vec2f) -> CloudLocal {
     var here = CloudLocal(layer, 1e9, layer.cells.w);
     if !CLOUD_PLACED {

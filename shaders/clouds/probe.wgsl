@@ -1,11 +1,11 @@
 // Measures the light that leaves a box of even cloud through its sides, with the march of the picture (about_box.wgsl
 // replaces about.wgsl). Six tiles lie side by side, one for each face (x low, x high, y low, y high, base, top), with
-// one ray a pixel. Directions are distributed as the cosine.
+// one ray a pixel. Directions are distributed as the cosine of their angle with the face's normal.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/march.wgsl"
 //!include "clouds/box.wgsl"
 
-// Rays for each face, along each side of its tile.
+// Number of rays along each side of a face's tile.
 const PROBE_SIDE: u32 = 64u;
 
 // Quasirandom points in the unit cube (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").

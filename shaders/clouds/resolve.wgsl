@@ -43,12 +43,14 @@ const NOWHERE: f32 = 24.0;
 // Clouds of a resolved pixel.
 struct ResolvedPixel {
     @location(0) seen: vec4f,
-    // log2 of the distances of the reach, m (x, y); share of direct light at the surface that the host drew (z);
-    // difference of that share in the air before it from the mean (w).
+    // log2 of the distances of the reach, m (x, y); share of direct light at the surface that the host drew (z); share
+    // of direct light in the air in front of the surface, less the mean over all places (w).
     @location(1) reach: vec4f,
 }
 
-// If the depth has several samples a pixel, the first one is used: shadows of clouds have no sharp edges.
+// Share of direct light at the surface that the host drew (x), and share in the air in front of the surface, less the
+// mean over all places (y). If the depth has several samples a pixel, the first one is used, because shadows of clouds
+// have no sharp edges.
 fn shadow_on(pixel: vec2u, ndc: vec2f) -> vec2f {
     if !SHADOWS {
         return vec2f(1.0, 0.0);
@@ -90,8 +92,8 @@ fn resolved(in: FullscreenVarying) -> ResolvedPixel {
     let texel = textureLoad(last, vec2i(pixel), 0, 0);
     let kept = select(filtered, texel, all(to == vec2f(0.0))) * vec4f(vec3f(picture.exposed), 1.0);
     let held = clamp(kept, textureLoad(least, vec2i(square), 0), textureLoad(most, vec2i(square), 0));
-    // Reprojection keeps a cloud's brightness, although it depends on the direction. Where the picture is smooth, the
-    // marched pixels alone are complete, so they are used instead.
+    // Reprojection keeps a cloud's brightness, although the brightness depends on the direction. Where the picture is
+    // smooth, the marched pixels alone are complete, so they are used instead.
     let likely = mix(held, now, followed.z);
     let is_marched = all(marched_pixel(picture, square) == pixel);
     return ResolvedPixel(select(likely, now, lost || is_marched), reach);
@@ -122,7 +124,7 @@ fn resolve_kind(in: FullscreenVarying) -> ResolvedKind {
 }
 
 // Writes the two components of `reach` that the first draw leaves out, and nothing else. Both outputs are declared,
-// because virgl sends the output of a shader without one at location 0 to the first target.
+// because virgl sends the output of a shader that has none at location 0 to the first target.
 @fragment
 fn resolve_shadow(in: FullscreenVarying) -> ResolvedPixel {
     let shadow = shadow_on(vec2u(in.position.xy), frame_ndc(in.uv));

@@ -14,13 +14,13 @@ struct CloudShadows {
     eye: f32,
     // Mean share of the direct light over all places.
     mean: f32,
-    // Weight of the map against that mean, 0 to 1.
+    // Weight of the map against `mean`, 0 to 1.
     map_weight: f32,
-    // Height above the plane from which on the mean holds, m.
+    // Height above the plane, m, at and above which the mean share holds.
     top: f32,
     // Extinction of the air at the camera's height, 1/m.
     haze: f32,
-    // Scale height of that extinction, m.
+    // Scale height of the extinction `haze`, m.
     haze_height: f32,
 }
 

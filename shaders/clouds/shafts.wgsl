@@ -6,11 +6,12 @@
 // these shares.
 //!include "clouds/shadow_map.wgsl"
 
-// Error of the share, as the median and the 95th percentile over rays: 0.025 and 0.079 with 12 steps, 0.019 and 0.049
-// with 16, 0.014 and 0.039 with 24.
+// Number of sample places on a ray. The error of the share, as the median and the 95th percentile over rays, is 0.025
+// and 0.079 with 12 places, 0.019 and 0.049 with 16, 0.014 and 0.039 with 24.
 const SHAFT_STEPS: u32 = 24u;
 
-// Optical depth of the air over a distance `along`. Its extinction falls by the rate `thins` per metre.
+// Optical depth of the air over a distance `along`, m. The extinction of the air is `extinction` at the start and falls
+// by the rate `thins` per metre.
 fn shaft_depth(extinction: f32, thins: f32, along: f32) -> f32 {
     let t = thins * along;
     return extinction * select((1.0 - exp(-clamp(t, -60.0, 60.0))) / thins, along, abs(t) < 1e-3);

@@ -1,8 +1,8 @@
-// Shapes of fog banks on their flat plans: where a ray enters and leaves them, how far a point is from them, and the
-// weight of a region at a point.
+// Shapes of fog banks on flat plans: where a ray enters and leaves a shape, how far a point is from a shape, and the
+// weight of a bank's region at a point.
 //!include "fog/lookup.wgsl"
 
-// Shapes of the banks: bit k stands for kind k.
+// Shapes of banks that the pipeline can draw: bit k is kind k of FogBank.
 override BANK_SHAPES: u32 = 15u;
 
 // Value of FogBank.kind for a rectangle with round corners.
@@ -11,25 +11,26 @@ const BANK_RECTANGLE: u32 = 0u;
 const BANK_ELLIPSE: u32 = 1u;
 // Value of FogBank.kind for a convex polygon. Kind 3 is any other polygon.
 const BANK_CONVEX: u32 = 2u;
-// Least component of a direction on the plan.
+// Smallest absolute value of a direction's component by which a chord divides.
 const LEAST_WAY: f32 = 1e-7;
 
-// Ray over the plan of a bank.
+// Ray, with its projection onto the plan of the bank `bank`.
 struct BankRay {
     bank: u32,
-    // Position at the distance 0, m (east, north) from the camera, and its change per metre.
+    // Position of the ray's start, m (east, north) from the camera, and its change per metre of the ray.
     origin: vec2f,
     direction: vec2f,
-    // Both on the plan.
+    // Position of the start on the bank's plan, m (right, ahead), and its change per metre of the ray.
     start: vec2f,
     way: vec2f,
-    // Altitude of the start, m, cosine with the vertical there, and length, m.
+    // Altitude of the ray's start, m, cosine of the ray with the vertical there, and length of the ray, m.
     h0: f32,
     mu: f32,
     t: f32,
 }
 
-// Distances along a ray between which it is inside a shape, m: none if the last is not beyond the first.
+// Distances along a ray, m, between which it is inside a rectangle. The ray misses the rectangle if the second distance
+// is not larger than the first.
 fn box_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     let v = select(way, select(vec2f(-LEAST_WAY), vec2f(LEAST_WAY), way >= vec2f(0.0)), abs(way) < vec2f(LEAST_WAY));
     let a = (-half - start) / v;
@@ -39,7 +40,7 @@ fn box_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     return vec2f(max(first.x, first.y), min(last.x, last.y));
 }
 
-// Chord of an ellipse with these half axes, in the form of box_chord.
+// Chord of an ellipse with the half axes `half`, in the form of box_chord.
 fn ellipse_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     let e = start / half;
     let v = way / half;
@@ -51,8 +52,8 @@ fn ellipse_chord(start: vec2f, way: vec2f, half: vec2f) -> vec2f {
     return select(vec2f(0.0, -1.0), vec2f(middle - reach, middle + reach), left > 0.0);
 }
 
-// Chord of a rectangle with round corners, in the form of box_chord: where the ray passes a corner, the corner's circle
-// bounds it.
+// Chord of a rectangle with round corners, in the form of box_chord. An end of the chord that lies in a corner is moved
+// to the corner's circle.
 fn rounded_chord(start: vec2f, way: vec2f, half: vec2f, radius: f32) -> vec2f {
     var chord = box_chord(start, way, half);
     if chord.y <= chord.x || radius <= 0.0 {
@@ -97,13 +98,13 @@ fn convex_chord(ray: BankRay, grown: f32) -> vec2f {
     return chord;
 }
 
-// Whether the share of a bank is sampled along its chord: its polygon is not convex.
+// Whether the share of a bank is sampled along its chord, because the bank's polygon is not convex.
 fn is_sampled(k: u32) -> bool {
     return (BANK_SHAPES & 8u) != 0u && low_air.banks[k].kind > BANK_CONVEX;
 }
 
-// Distances along a ray between which it is inside the shape grown by `grown` metres on all sides. For a polygon that
-// is not convex, those of a circle about it.
+// Distances along a ray, m, between which it is inside the bank's shape, grown outwards by `grown` metres. An ellipse
+// grows by its half axes. For a polygon that is not convex, the distances are those of a circle about the polygon.
 fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
     let half = low_air.banks[ray.bank].half + grown;
     let kind = low_air.banks[ray.bank].kind;
@@ -119,7 +120,8 @@ fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
     return rounded_chord(ray.start, ray.way, half, low_air.banks[ray.bank].corner + grown);
 }
 
-// Signed distance of a point of the plan from an ellipse, m: three steps along the ellipse's evolute.
+// Signed distance of a point of the plan from an ellipse, m, negative inside. Each of the three steps finds the nearest
+// point of the circle that touches and curves as the ellipse does at the last estimate.
 fn ellipse_distance(half: vec2f, p: vec2f) -> f32 {
     let q = abs(p);
     let spread = half.x * half.x - half.y * half.y;
@@ -135,7 +137,7 @@ fn ellipse_distance(half: vec2f, p: vec2f) -> f32 {
     return select(-1.0, 1.0, outside) * length(q - t * half);
 }
 
-// Signed distance of a point of the plan from a bank's polygon, m.
+// Signed distance of a point of the plan from a bank's polygon, m, negative inside.
 fn polygon_distance(k: u32, p: vec2f) -> f32 {
     let count = min(low_air.banks[k].count, 16u);
     var nearest = 1e30;
@@ -148,7 +150,7 @@ fn polygon_distance(k: u32, p: vec2f) -> f32 {
         let along = clamp(dot(away, side) / max(dot(side, side), 1e-6), 0.0, 1.0);
         let off = away - side * along;
         nearest = min(nearest, dot(off, off));
-        // A ray to the right of the point crosses this side.
+        // The point is inside if a line from the point to the right crosses an odd number of sides.
         let crosses = (b.y > p.y) != (a.y > p.y);
         if crosses && p.x < a.x + side.x * (p.y - a.y) / select(side.y, 1.0, side.y == 0.0) {
             inside = !inside;
@@ -158,7 +160,7 @@ fn polygon_distance(k: u32, p: vec2f) -> f32 {
     return select(1.0, -1.0, inside) * sqrt(nearest);
 }
 
-// Signed distance of a point of the plan from a bank's shape, m.
+// Signed distance of a point of the plan from a bank's shape, m, negative inside.
 fn bank_distance(k: u32, p: vec2f) -> f32 {
     let half = low_air.banks[k].half;
     let kind = low_air.banks[k].kind;

@@ -1,26 +1,27 @@
 // Fog banks along a ray: the low layers of weather regions, seen from outside and from inside. src/fog/banks.rs
 // describes the method and has the f64 reference.
 //
-// Inside its shape a bank has the layer's whole density, whose integral is exact but for the third order of the
-// planet's curvature. In its perimeter the depth is a sum over Gauss points of the bank's share there times the layer's
-// density. Banks whose regions overlap are integrated together: each point has the shares of all.
+// Inside its shape a bank has the layer's whole density. The integral of this density is exact except for terms of the
+// third order in the planet's curvature. In its perimeter the depth is a sum over Gauss points of the bank's share
+// there times the layer's density. Banks whose regions overlap are integrated together, with the shares of all at each
+// point.
 //!include "fog/bank_shapes.wgsl"
 
-// Whether the veil differs from place to place: there are banks.
+// Whether there are fog banks, so that the fog differs from place to place.
 override BY_PLACE: bool = false;
 // Whether regions of banks overlap.
 override BANKS_OVERLAP: bool = true;
-// Slab of the fog outside all banks, where slabs are numbered: the others have their bank's number.
+// Number of the slab of the fog outside all banks. The slab of a bank has the number of the bank.
 const OUTER_SLAB: u32 = 8u;
 
-// Depth of each bank along the pixel's ray, and the distances between which the ray is in it: measure_banks() writes
-// them.
+// Optical depth of each bank along the pixel's ray, and the distances between which the ray is in the bank.
+// measure_banks() writes the paths of banks whose regions overlap.
 var<private> bank_paths: array<LayerPath, 8>;
-// Share of each bank in the fog at a point: write_shares() writes them.
+// Share of each bank in the fog at the point for which write_shares() was last called.
 var<private> bank_shares: array<f32, 8>;
 
-// Writes the shares in the fog of the banks `banks` (bit j: bank j) at a point that lies `at` metres (east, north) from
-// the camera (src/regions/mod.rs).
+// Writes the shares that the banks `banks` (bit j: bank j) have in the fog at a point that lies `at` metres (east,
+// north) from the camera. src/regions/mod.rs defines the shares.
 fn write_shares(banks: u32, at: vec2f) {
     var shares: array<f32, 8>;
     var weights: array<f32, 8>;
@@ -51,7 +52,7 @@ fn write_shares(banks: u32, at: vec2f) {
     bank_shares = shares;
 }
 
-// Density of a slab at an altitude, as a share of its extinction.
+// Density of the slab `u` at the altitude `h`, as a share of the slab's full density.
 fn slab_density(u: FogUniform, h: f32) -> f32 {
     let below = clamp((u.knots.w - h) * u.pair.y, 0.0, 1.0);
     if !FOG_LIFTED {
@@ -60,12 +61,13 @@ fn slab_density(u: FogUniform, h: f32) -> f32 {
     return below * clamp((h - u.knots.x) * u.pair.x, 0.0, 1.0);
 }
 
-// Altitude of a ray at a distance, m. Terms of the third order in the distance over the planet's radius are left out.
+// Altitude of a ray at the distance `s`, m. Terms of the third order in s / planet radius are left out.
 fn bank_height(u: FogUniform, ray: BankRay, s: f32) -> f32 {
     return ray.h0 + s * (ray.mu + 0.5 * u.curvature * (1.0 - ray.mu * ray.mu) * s);
 }
 
-// Integral of the density of the slab `u` over a piece of a ray, m, that is full between the distances `full`.
+// Integral of the density of the slab `u` along a ray from the distance `first` to `last`, m. The density is full
+// between the distances `full`.
 fn slab_length(u: FogUniform, ray: BankRay, first: f32, last: f32, full: vec2f) -> f32 {
     let a = clamp(full.x, first, last);
     let b = clamp(full.y, a, last);
@@ -76,8 +78,8 @@ fn slab_length(u: FogUniform, ray: BankRay, first: f32, last: f32, full: vec2f) 
     return b - a + 0.5 * (before * (a - first) + after * (last - b));
 }
 
-// Gauss point of a part of a ray, and its weight: points 0 to 2 and 7 to 9 are those of a rule of three points, the
-// others those of a rule of four.
+// Position of Gauss point `i` in a piece of a ray, 0 to 1, and its weight. Points 0 to 2 and 7 to 9 belong to rules of
+// three points, points 3 to 6 to a rule of four.
 fn gauss_point(i: u32) -> vec2f {
     let k = select(i, i - 7u, i > 6u) & 3u;
     let three = vec2f(
@@ -91,10 +93,11 @@ fn gauss_point(i: u32) -> vec2f {
     return select(three, four, i > 2u && i < 7u);
 }
 
-// Integral of a bank's share times the density of the slab `u` over a piece of a ray, m: four Gauss points where the
-// density is full, between the distances `full`, and three in each flank. Drivers put a function's code wherever it is
-// called, so that a call for each point would make a shader that some compile for ten seconds. Software drivers run
-// loops only as long as a pixel of their group needs, and both sides of every branch: a flank is a part of the loop.
+// Integral of a bank's share times the density of the slab `u` along a ray from the distance `first` to `last`, m.
+// There are four Gauss points where the density is full, between the distances `full`, and three in each flank. Drivers
+// copy a function's code to every call. With a call for each point, some drivers would compile the shader for ten
+// seconds, so one loop runs over all points. The flanks are passes of this loop, not branches: software drivers run
+// both sides of every branch, but a loop only as long as some pixel of a group needs.
 fn shared_piece(u: FogUniform, ray: BankRay, first: f32, last: f32, full: vec2f) -> f32 {
     let a = clamp(full.x, first, last);
     let b = clamp(full.y, a, last);
@@ -109,22 +112,24 @@ fn shared_piece(u: FogUniform, ray: BankRay, first: f32, last: f32, full: vec2f)
     return sum;
 }
 
-// Ray over the plan of bank `k`.
+// Ray from `origin` along `direction` to an object at the distance `range`, with its projection onto the plan of bank
+// `k`.
 fn bank_ray(k: u32, origin: vec3f, direction: vec3f, range: f32) -> BankRay {
     let reach = fog_reach(low_air.fog, origin, direction, range);
     let mu = clamp(direction.z, -1.0, 1.0);
     return over_bank(k, BankRay(k, origin.xy, direction.xy, vec2f(0.0), vec2f(0.0), reach.x, mu, reach.y));
 }
 
-// A ray over the plan of bank `k`.
+// The ray `ray` with its projection onto the plan of bank `k`.
 fn over_bank(k: u32, ray: BankRay) -> BankRay {
     let axes = low_air.banks[k].axes;
     let way = vec2f(dot(axes.xy, ray.direction), dot(axes.zw, ray.direction));
     return BankRay(k, ray.origin, ray.direction, bank_plan(k, ray.origin), way, ray.h0, ray.mu, ray.t);
 }
 
-// Distances along a ray between which it is inside the shape: for a polygon that is not convex, the middle third of the
-// chord `outer`; for a ray that misses the shape, its middle.
+// Distances along a ray, m, between which it is inside the bank's shape. For a polygon that is not convex, these are
+// the ends of the middle third of the chord `outer` on the ray. For a ray that misses the shape, both are the middle of
+// `outer`.
 fn inner_chord(ray: BankRay, outer: vec2f) -> vec2f {
     if is_sampled(ray.bank) {
         let begin = max(outer.x, 0.0);
@@ -135,8 +140,8 @@ fn inner_chord(ray: BankRay, outer: vec2f) -> vec2f {
     return select(vec2f(0.5 * (outer.x + outer.y)), inner, inner.y > inner.x);
 }
 
-// Four distances along a ray, m: it enters a slab, enters the part with the whole density, leaves that part, and leaves
-// the slab.
+// Four distances along a ray, m, at which it enters the slab `u`, enters the slab's full density, leaves the full
+// density, and leaves the slab.
 fn slab_levels(u: FogUniform, ray: BankRay) -> vec4f {
     let course = ray_course(u, ray.h0, ray.mu, ray.t);
     var base = vec2f(0.0);
@@ -149,7 +154,8 @@ fn slab_levels(u: FogUniform, ray: BankRay) -> vec4f {
     return vec4f(ends.x, full.x, full.y, ends.y);
 }
 
-// Path of a ray through the slab `u`, which its bank shares with no other.
+// Path of a ray through the slab `u` where the ray is in its bank, whose region no other overlaps. `inner` is the chord
+// of the bank's shape, `outer` that of the shape with its perimeter.
 fn own_path(u: FogUniform, ray: BankRay, inner: vec2f, outer: vec2f) -> LayerPath {
     let levels = slab_levels(u, ray);
     let first = max(max(outer.x, levels.x), 0.0);
@@ -172,7 +178,7 @@ fn own_path(u: FogUniform, ray: BankRay, inner: vec2f, outer: vec2f) -> LayerPat
     return LayerPath(u.extinction * length, first, last);
 }
 
-// The slab of bank `k`, or with OUTER_SLAB the fog outside all banks.
+// Slab of bank `k`, or the fog outside all banks if `k` is OUTER_SLAB.
 fn slab_of(k: u32) -> FogUniform {
     var u = low_air.fog;
     if k < OUTER_SLAB {
@@ -181,9 +187,9 @@ fn slab_of(k: u32) -> FogUniform {
     return u;
 }
 
-// Adds the paths of a ray through the banks `banks` (bit k: bank k), whose regions overlap, and the depth that they
-// replace of the fog outside all banks where `outer`. The ray is cut where it enters and leaves a region, its perimeter
-// and a slab's flanks, and each piece has three Gauss points.
+// Adds to `bank_paths` the paths of a ray through the banks `banks` (bit k: bank k), whose regions overlap. If `outer`,
+// adds to `replaced_fog` the optical depth of the fog outside all banks that the regions replace. The ray is cut where
+// it enters or leaves a shape, a perimeter or a slab's flank. Each piece has three Gauss points.
 fn add_together(banks: u32, ray: BankRay, outer: bool) {
     var cuts: array<vec4f, 8>;
     var levels: array<vec4f, 9>;
@@ -249,7 +255,8 @@ fn add_together(banks: u32, ray: BankRay, outer: bool) {
     }
 }
 
-// Banks that a ray may meet in front of `range`: bit i stands for the i-th bank from afar.
+// Banks that a ray may meet before the distance `range`. Bit i is the bank at place i of `bank_order`, in which the
+// farthest bank comes first.
 fn banks_met(origin: vec3f, direction: vec3f, range: f32) -> u32 {
     let reach = fog_reach(low_air.fog, origin, direction, range);
     let mu = clamp(direction.z, -1.0, 1.0);
@@ -274,14 +281,15 @@ fn banks_met(origin: vec3f, direction: vec3f, range: f32) -> u32 {
     return met;
 }
 
-// Index of the bank whose bit is the lowest of `met`, which is not 0.
+// Index of the bank of the lowest bit that is set in `met`, a result of banks_met other than 0.
 fn first_bank(met: u32) -> u32 {
     let lowest = met & (~met + 1u);
     let place = (u32((lowest & 0xAAu) != 0u) | (u32((lowest & 0xCCu) != 0u) << 1u)) | (u32((lowest & 0xF0u) != 0u) << 2u);
     return (low_air.bank_order >> (4u * place)) & 7u;
 }
 
-// Path of a ray through the slab `slab` (slab_of) where it belongs to bank `k`, whose region no other overlaps.
+// Path of a ray through the slab with the number `slab` (slab_of) where the ray is in bank `k`, whose region no other
+// overlaps.
 fn path_apart(k: u32, slab: u32, origin: vec3f, direction: vec3f, range: f32) -> LayerPath {
     let ray = bank_ray(k, origin, direction, range);
     let outer = bank_chord(ray, low_air.banks[k].perimeter);
@@ -291,8 +299,8 @@ fn path_apart(k: u32, slab: u32, origin: vec3f, direction: vec3f, range: f32) ->
     return own_path(slab_of(slab), ray, inner_chord(ray, outer), outer);
 }
 
-// Measures what the banks `met` replace of the fog outside them along a ray (`replaced_fog`), and where `paths`, the
-// paths through banks whose regions overlap.
+// Writes to `replaced_fog` the optical depth along a ray that the banks `met` replace of the fog outside all banks. If
+// `paths`, also writes to `bank_paths` the paths through those of these banks whose regions overlap.
 fn measure_banks(met: u32, origin: vec3f, direction: vec3f, range: f32, paths: bool) {
     replaced_fog = 0.0;
     let outer = has_own_layer() && low_air.fog.kind == FOG_SLAB;
@@ -314,7 +322,7 @@ fn measure_banks(met: u32, origin: vec3f, direction: vec3f, range: f32, paths: b
     }
 }
 
-// Path of a ray through bank `k`; `paths` are those that measure_banks() measured.
+// Path of a ray through bank `k`. `paths` are the paths that measure_banks() wrote to `bank_paths`.
 fn bank_path(k: u32, paths: array<LayerPath, 8>, origin: vec3f, direction: vec3f, range: f32) -> LayerPath {
     if BANKS_OVERLAP && low_air.banks[k].overlaps != 0u {
         var measured = paths;
@@ -323,7 +331,7 @@ fn bank_path(k: u32, paths: array<LayerPath, 8>, origin: vec3f, direction: vec3f
     return path_apart(k, k, origin, direction, range);
 }
 
-// Returns the effect of bank `k` along a ray that has this path through it. Without a depth the transmittance is 1.
+// Returns the effect of bank `k` along a ray with the path `path` through the bank. A path without depth has no effect.
 fn bank_along(k: u32, path: LayerPath, origin: vec3f, direction: vec3f, range: f32) -> Fog {
     var fog = Fog(vec3f(0.0), 0.0, vec3f(1.0), 1.0, vec3f(0.0));
     if path.depth <= 0.0 {

@@ -1,7 +1,7 @@
 // Replaces banks.wgsl in pipelines that draw no fog banks.
 //!include "fog/lookup.wgsl"
 
-// Constants of banks.wgsl. None is used but the first, which is false.
+// Constants of banks.wgsl. Only BY_PLACE is read in these pipelines, and it is false.
 override BY_PLACE: bool = false;
 override BANKS_OVERLAP: bool = true;
 override BANK_SHAPES: u32 = 15u;

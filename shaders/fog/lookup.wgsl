@@ -2,19 +2,19 @@
 // twin and the derivations are in src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on
 // the CPU) and src/fog/phase.rs.
 //
-// Axes: east, north, up at the camera. In the composition, with `behind` the pixel after the sky's aerial perspective
-// over its full distance:
+// Axes: east, north, up at the camera. In the composition, `behind` is the pixel with the sky's aerial perspective over
+// the pixel's full distance:
 //     let fog = fog_along(u, ray.origin, ray.direction, range, plane);
 //     out = air_radiance + air_transmittance * fog.radiance + fog.transmittance * (fog.shade * behind - air_radiance)
-// where air_* are the sky's aerial perspective at fog.distance (0 and 1 if the fog is near or has no air in front of
-// it), and `behind` has that of the whole distance. Air therefore lies in front of a far fog bank and behind the fog
-// around the camera, without a seam between them.
+// air_radiance and air_transmittance are the sky's aerial perspective up to fog.distance: 0 and 1 if the fog is near or
+// has no air in front of it. Air therefore lies in front of a distant fog bank and behind the fog around the camera,
+// without a seam between the two cases.
 //!include "common/depth.wgsl"
 //!include "fog/patterns.wgsl"
 
-// Features that a pipeline can draw; FogVariant::constants() gives them. GPUs skip branches that the uniform does not
-// select. Software drivers execute them, so a pipeline with few features is several times as fast there.
-// Kinds of fog: bit k stands for kind k of FogUniform.
+// Features that a pipeline can draw, set by FogVariant::constants(). GPUs skip branches that the uniform does not
+// select. Software drivers execute every branch, so a pipeline with few features is several times as fast there.
+// Kinds of fog: bit k is the value k of FogUniform.kind.
 override FOG_KINDS: u32 = 63u;
 // Whether layers may absorb.
 override FOG_ABSORBING: bool = true;
@@ -24,9 +24,9 @@ override FOG_PATCHES: bool = true;
 override FOG_FALLING: bool = true;
 // Whether rain may have curtains.
 override FOG_CURTAINS: bool = true;
-// Whether all channels have one extinction and one albedo (water).
+// Whether all channels of a layer are equal, as in fog of water.
 override FOG_NEUTRAL: bool = false;
-// Whether the slab has a lower edge above the ground.
+// Whether slabs may have a lower edge.
 override FOG_LIFTED: bool = true;
 
 // Value of FogUniform.kind for no layer.
@@ -39,11 +39,12 @@ const FOG_EXPONENTIAL: u32 = 2u;
 const FOG_LINEAR_LAW: u32 = 3u;
 // Value of FogUniform.kind for the exponential law.
 const FOG_EXPONENTIAL_LAW: u32 = 4u;
-// Kind 5, the exponential-squared law, needs no constant: it is drawn where no other law is.
-// Height of the sky band, rad, from which on it covers all of the sky.
+// Kind 5, the exponential-squared law, needs no constant: fog_compatible draws it as the default case.
+// Smallest height of the compatibility laws' sky band, rad, with which the band covers the whole sky: pi less a margin
+// for f32 rounding.
 const FOG_WHOLE_SKY: f32 = 3.13845;
 
-// Optical depth at 550 nm of the fog outside all banks that banks replace along the ray (fog/banks.wgsl).
+// Optical depth at 550 nm along the ray that banks replace of the fog outside all banks (fog/banks.wgsl).
 var<private> replaced_fog: f32 = 0.0;
 
 // Whether this pipeline can draw a kind of fog.
@@ -88,7 +89,7 @@ struct RayCourse {
     end_mu: f32,
     // Distance at which the ray is level, m.
     level: f32,
-    // Whether that distance is within the ray's length.
+    // Whether the distance `level` is within the ray's length.
     passes: bool,
     // Whether the ray only descends.
     falls: bool,
@@ -107,7 +108,8 @@ struct RayCourse {
 }
 
 // Returns the share of the delta-scaled beam that is really unscattered after the optical path s = `slant`: (1 - e^(-f
-// s)) / (f s) with f = `forward`. src/fog/phase.rs has the derivation.
+// s)) / (f s). f = `forward` is the share of scattering that counts as going straight on. src/fog/phase.rs has the
+// derivation.
 fn share_unscattered(forward: f32, slant: f32) -> f32 {
     let fs = min(forward * slant, 1e4);
     return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
@@ -183,8 +185,9 @@ fn layer_reach(curvature: f32, mu: f32, lift: vec2f) -> vec2f {
     return c / max(mu + sqrt(mu * mu + curvature * c), vec2f(1e-20));
 }
 
-// Returns the length of a ray's part between the two knots of a flank, m, and the mean of (altitude - first knot) /
-// height of the flank over it, 0 to 1. The ray passes the knots at the distances `reach`; `inverse` is 1/height.
+// Returns the length of a ray's part between the two knots of a flank, m, and the mean over this part of (altitude -
+// first knot) / height of the flank, 0 to 1. The ray passes the knots at the distances `reach`. `inverse` is 1/height
+// of the flank, 1/m.
 fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f32) -> vec2f {
     let l = reach.y - reach.x;
     let h = clamp(knots, vec2f(low), vec2f(high));
@@ -326,7 +329,7 @@ fn both_paths(fog: LayerPath, falling: LayerPath) -> LayerPath {
     return LayerPath(depth, mix(fog.first, falling.first, share), mix(fog.last, falling.last, share));
 }
 
-// Returns 1 - e^-x, given e^-x.
+// Returns 1 - e^-x, where `through` = e^-x.
 fn filled_by(x: vec3f, through: vec3f) -> vec3f {
     return select(1.0 - through, x * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667))), x < vec3f(0.03));
 }
@@ -385,6 +388,7 @@ fn source_at(u: FogUniform, mu: f32, beam: vec3f, a: vec3f) -> vec3f {
 }
 
 // Returns the integral of the source over the optical path `path` between the scaled depths a0 and a1 below the top.
+// `transmitted` is the transmittance of the path; `slant` is the decrease of the depth per unit of path.
 fn source_along(
     u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: vec3f, path: vec3f, transmitted: vec3f,
 ) -> vec3f {
@@ -405,8 +409,8 @@ fn source_along(
     return l;
 }
 
-// Returns the light in a ray near the level, whose forward lobe reaches above and below the horizon;
-// src/fog/reference.rs describes the model.
+// Returns the light in a ray near the level, whose forward lobe reaches above and below the horizon. `path` is the
+// unscaled optical path, `left` its transmittance. src/fog/reference.rs describes the model.
 fn grazing_light(
     u: FogUniform, mu: f32, beam: vec3f, a0: vec3f, a1: vec3f, slant: f32, path: vec3f, left: vec3f,
 ) -> vec3f {
@@ -427,7 +431,7 @@ fn grazing_light(
 
 // Light scattered into a ray.
 struct LayerLight {
-    // Radiance of all of it.
+    // Radiance of all light scattered into the ray.
     radiance: vec3f,
     // Light scattered exactly once, divided by the phase function (Fog.once).
     once: vec3f,
@@ -477,7 +481,8 @@ fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec
     return LayerLight(max(l + aureole, vec3f(0.0)), u.first * share_unscattered(u.scattering.z, sunlight) * met);
 }
 
-// Returns the altitude at which a ray starts, m, and its length in fog, m. A ray without an object ends at the ground.
+// Returns the altitude at which a ray starts, m, and its length in fog, m. A ray without an object ends at the ground
+// if it meets the ground.
 fn fog_reach(u: FogUniform, origin: vec3f, direction: vec3f, range: f32) -> vec2f {
     let mu = clamp(direction.z, -1.0, 1.0);
     let lift = origin.z;
@@ -548,9 +553,9 @@ fn fog_compatible(u: FogUniform, direction: vec3f, range: f32, plane: f32) -> Fo
     return Fog(u.first * (1.0 - v), 0.0, vec3f(v), 1.0, vec3f(0.0));
 }
 
-// Returns the effect of fog on the pixel whose ray starts at `origin` (relative to the camera) along `direction`
-// (unit), with an object at the distance `range`, m, along the ray and `plane`, m, from the camera's plane. Both are
-// RANGE_SKY for sky.
+// Returns the effect of fog on the pixel whose ray starts at `origin`, relative to the camera, along the unit vector
+// `direction`. The object that the pixel shows lies at the distance `range`, m, along the ray and `plane`, m, from the
+// camera's plane. Both are RANGE_SKY for sky.
 fn fog_along(u: FogUniform, origin: vec3f, direction: vec3f, range: f32, plane: f32) -> Fog {
     return fog_beside_drops(u, origin, direction, range, plane, 0.0);
 }

@@ -1,12 +1,12 @@
-// Patches of fog and curtains of rain. They read the bound `low_air`, because indexing a copy of it would copy all of
-// it. src/fog/patterns.rs has the f64 twin and the derivation.
+// Patches of fog and curtains of rain. The functions read the bound `low_air`, because indexing a copy would copy the
+// whole block. src/fog/patterns.rs has the f64 twin and the derivation.
 //!include "fog/binding.wgsl"
 
-// Half-length of a path over which a wave of a pattern fades to one half, in units of its wavelength / (2 pi).
+// Half-length of a path over which a wave of a pattern fades to one half, in units of the wave's wavelength / (2 pi).
 const PATCH_ROW: f32 = 8.0;
 // Whether patches flow round obstacles to the wind.
 override FOG_DETOUR: bool = false;
-// Number of parts of a ray over a map of detours.
+// Number of parts into which a ray is cut where it crosses the map of detours.
 const DETOUR_PARTS: u32 = 8u;
 // Distance at which curtains of rain begin, m.
 const CURTAIN_START: f32 = 30.0;
@@ -21,12 +21,13 @@ fn wave_sinc(x: f32) -> f32 {
 fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> vec2f {
     let along = dot(wave.xyz, direction);
     let x = along * half;
-    // Rows of the pattern do not go on for ever: a long ray along one row meets others, so the wave fades with length.
+    // Rows of the pattern are of finite length: a long ray along one row meets other rows, so its mean fades with
+    // length.
     let size = wave_sinc(x) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
 
-// Returns the lag of the air at a node of the map, m east and north.
+// Returns the lag of the air at a node of the map of detours, m east and north.
 fn detour_node(x: u32, y: u32) -> vec2f {
     let node = y * DETOUR_SIDE + x;
     let two = low_air.lags[node / 2u];
@@ -45,7 +46,7 @@ fn detour_lag(place: vec3f) -> vec2f {
     return mix(south, north, part.y) * (1.0 - smoothstep(0.0, 1.0, (place.z - low_air.detour_floor) * low_air.detour_fade));
 }
 
-// Returns the change of the sum of the patches' waves by the lags along a ray.
+// Returns by how much the lags along a ray change the sum of the means of the patches' waves.
 fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let at = low_air.detour_camera + origin.xy * low_air.detour_scale;
     let flat_way = direction.xy * low_air.detour_scale;
@@ -81,9 +82,9 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return sum * 2.0 * h / (last - first);
 }
 
-// Returns the mean of the patches' pattern along a ray. Here and in curtain_mean, no compiler can know the end of the
-// loop. If it unrolled the loop, a software driver would take longer to compile its sines than all the rest of the
-// shader.
+// Returns the mean of the patches' pattern along a ray. Here and in curtain_mean, the number of waves comes from the
+// block, so that no compiler unrolls the loop. A software driver would take longer to compile the sines of an unrolled
+// loop than all the rest of the shader.
 fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);
@@ -97,8 +98,8 @@ fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return max(1.0 + low_air.fog.patch_amount * 0.5 * sum, 0.0);
 }
 
-// Returns the change of the optical depth by curtains between two distances, relative to that of even rain, and the
-// variance of this change.
+// Returns the change that curtains make to the optical depth between two distances, relative to the depth of even rain,
+// and the variance of this change.
 fn curtain_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> vec2f {
     let start = max(first, CURTAIN_START);
     let m = 0.5 * (start + last);

@@ -20,13 +20,13 @@ struct FogUniform {
     pair: vec2f,
     // Height of the band of sky that the compatibility laws cover, rad.
     sky_band: f32,
-    // 1 if the compatibility laws measure from the camera's plane.
+    // 1 if the compatibility laws measure from the camera's plane, otherwise 0.
     plane_distance: u32,
     // Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
     lobes: vec4f,
     // Distance of the camera from the planet's centre, m; 1e30 for a flat world.
     radius: f32,
-    // 1/(planet radius + altitude), 1/m.
+    // 1/(planet radius + altitude), 1/m; 0 for a flat world.
     curvature: f32,
     // Altitude at which rays without an object end, m.
     ground: f32,
@@ -34,7 +34,7 @@ struct FogUniform {
     inverse_mu0: f32,
     // Diffusion exponent per channel of absorbing layers.
     k: vec3f,
-    // 1 if the exponential terms `rise` and `fall` are used.
+    // 1 if the exponential terms `rise` and `fall` are used, otherwise 0.
     absorbing: u32,
     // First scattering, to be multiplied by the phase function and e^(-depth/mu0); colour of the compatibility laws.
     first: vec3f,
@@ -51,10 +51,10 @@ struct FogUniform {
     // ln(1 - weight of Draine); sign of the Henyey-Greenstein g; share of scattering that counts as forward; asymmetry
     // of the rest.
     scattering: vec4f,
-    // Source terms of scattered light at a scaled depth below the top. Each is c(mu) = [0] + mu [1], where mu is the
-    // cosine between the view direction and up. This one is constant.
+    // Constant source term c(mu) = [0] + mu [1] of scattered light, where mu is the cosine between the view direction
+    // and up.
     constant: array<vec4f, 2>,
-    // Source term per unit of scaled depth.
+    // Source term per unit of scaled depth below the top.
     slope: array<vec4f, 2>,
     // Source term times e^(-depth/mu0).
     beam: array<vec4f, 2>,
@@ -68,7 +68,7 @@ struct FogUniform {
     curtain_waves: array<vec4f, 8>,
     // Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     falling: vec4f,
-    // Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
+    // Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
     lit: f32,
     // Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     curtain_amount: f32,
@@ -86,7 +86,7 @@ const MOST_BANKS: u32 = 8u;
 struct FogBank {
     // Layer, and its light.
     fog: FogUniform,
-    // Right and ahead on the plan, (east, north) each.
+    // Unit vectors to the right and ahead on the plan, each (east, north).
     axes: vec4f,
     // Position of the camera on the plan, m (right, ahead).
     camera: vec2f,
@@ -100,15 +100,15 @@ struct FogBank {
     strength: f32,
     // Distance of the shape's farthest point from its centre, m.
     radius: f32,
-    // Kind of the shape (BANK_RECTANGLE and the following).
+    // Kind of the shape: 0 a rectangle, 1 an ellipse, 2 a convex polygon, 3 another polygon.
     kind: u32,
     // Number of a polygon's corners.
     count: u32,
-    // Bit j: the region may overlap that of bank j.
+    // Banks whose regions may overlap that of this bank: bit j for bank j.
     overlaps: u32,
     // 1 if the region is averaged with earlier regions, 0 if it covers them.
     merges: u32,
-    // Corners of a polygon, two to a vector, against the clock where it is convex.
+    // Corners of a polygon, two to a vector, counter-clockwise if the polygon is convex.
     corners: array<vec4f, 8>,
 }
 
@@ -130,7 +130,8 @@ struct LowAir {
     // Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south to
     // north.
     lags: array<vec4f, 288>,
-    // Indices of the banks that the camera may see, from far to near: four bits each, the farthest lowest.
+    // Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
+    // lowest bits.
     bank_order: u32,
     // Banks in the order of the world's regions.
     banks: array<FogBank, MOST_BANKS>,

@@ -2,7 +2,7 @@
 //!
 //! The published series cost some microseconds a call, but the bodies move slowly. An [`Ephemeris`] evaluates the
 //! series at knots half an hour apart and interpolates between the four nearest by a cubic (Lagrange). The fast
-//! rotation of the Earth is not interpolated: it is a rotation per call.
+//! rotation of the Earth is not interpolated: each call computes it.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,8 +1,9 @@
 //! Series for the position of the moon relative to the Earth's centre.
 //!
-//! After Meeus, Astronomical Algorithms (2nd ed., 1998), chapter 47, with the leading terms of Chapront's ELP 2000-82;
-//! the terms left out add up to less than 0.01 degrees and 60 km. The arguments of the series are D, the moon's mean
-//! elongation from the sun, M and M', the mean anomalies of sun and moon, and F, the moon's argument of latitude.
+//! The series follow Meeus, Astronomical Algorithms (2nd ed., 1998), chapter 47, with the leading terms of Chapront's
+//! ELP 2000-82. The terms left out add up to less than 0.01 degrees and 60 km. The series have four arguments. D is the
+//! moon's mean elongation from the sun. M and M' are the mean anomalies of sun and moon. F is the moon's argument of
+//! latitude.
 
 use std::f64::consts::TAU;
 
@@ -131,7 +132,7 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
 }
 
 /// Returns the moon's position relative to the Earth's centre in the true equator and equinox of date, m, at `t`
-/// centuries of TT since J2000 with nutation in longitude and true obliquity, rad.
+/// centuries of TT since J2000. `nutation` is the nutation in longitude and `obliquity` the true obliquity, rad.
 pub(super) fn geocentric_equatorial(t: f64, nutation: f64, obliquity: f64) -> DVec3 {
     let (longitude, latitude, distance) = geocentric_ecliptic(t);
     let (sb, cb) = libm::sincos(latitude);

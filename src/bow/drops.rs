@@ -24,9 +24,9 @@ pub(super) fn in_rain(falling: &Falling, factor: f64) -> [f64; CLASSES] {
 /// Asymmetry of the phase function of fog droplets. Dust and sand have less, lifted snow has more
 /// (`weather::particles`).
 const DROPLETS: f64 = 0.85;
-/// Distance below [`DROPLETS`] at which a layer is dust or sand alone, without droplets.
+/// Difference below the asymmetry [`DROPLETS`] at which a layer is dust or sand alone, without droplets.
 const DUST_BELOW: f64 = 0.05;
-/// Distance above [`DROPLETS`] at which a layer is lifted snow alone, without droplets.
+/// Difference above the asymmetry [`DROPLETS`] at which a layer is lifted snow alone, without droplets.
 const SNOW_ABOVE: f64 = 0.03;
 
 /// Share of droplets in a layer at the ground, 0 to 1. Dust, sand, lifted snow, and fine particles whose extinction

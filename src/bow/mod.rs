@@ -14,11 +14,11 @@
 //! with Mie's theory. A [`Table`] over the angle from the antisolar point sums this light over drop sizes, wavelengths
 //! and the disc of the sun or the moon.
 //!
-//! The smooth phase functions of the veil already contain the light of both bows. The table therefore holds the bows
-//! less a smooth function with the same sum over all directions: a bow moves light and adds none. Fog and rain compute
-//! the light that they scatter once, before the phase function. The composition adds that light times the table's
-//! value, and the columns under rain areas do the same with their own light. Clouds, air and fog in front of a bow
-//! therefore dim it like everything else there.
+//! The smooth phase functions of fog and rain already contain the light of both bows. The table therefore holds the
+//! bows less a smooth function with the same sum over all directions: a bow moves light and adds none. Fog and rain
+//! compute the light that they scatter once, before the phase function. The composition adds that light times the
+//! table's value, and the columns under rain areas do the same with their own light. Clouds, air and fog in front of a
+//! bow therefore dim it like everything else there.
 //!
 //! * *Drops*: rain by its drop sizes ([`crate::falling::sizes`]); fog by droplets with a mean diameter of 15
 //!   micrometres, whose bow is white and wide. Snow, hail and dust make no bow.

@@ -22,8 +22,8 @@ pub struct Rays {
 /// Amplitudes and path difference of the two rays that leave a drop in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pair {
-    /// Amplitudes in both polarisations of the ray nearer to the drop's edge and of the other. Their squares are the
-    /// ratio of the scattered light to the light on a square whose side is the drop's radius, 1/sr.
+    /// Amplitudes of the ray nearer to the drop's edge, then of the other ray, each in both polarisations. Their
+    /// squares are the ratio of the scattered light to the light on a square whose side is the drop's radius, 1/sr.
     pub amplitudes: [[f64; 2]; 2],
     /// Optical path of the first ray less that of the second, in radii.
     pub ahead: f64,
@@ -121,8 +121,8 @@ impl Rays {
     }
 
     /// Returns the light that a drop of `size` (its circumference divided by the wavelength) scatters to an angle from
-    /// the antisolar point, relative to the light on a square whose side is its radius, 1/sr. `pair` is [`Rays::pair`]
-    /// of that angle.
+    /// the antisolar point, relative to the light on a square whose side is the drop's radius, 1/sr. `pair` is
+    /// [`Rays::pair`] of that angle.
     ///
     /// The bright side uses the uniform approximation of two rays that merge (Berry 1966, equation 28; Khare and
     /// Nussenzveig 1974). Near the bow and on its dark side Airy's approximation (1838) is used.

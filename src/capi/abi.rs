@@ -1,5 +1,5 @@
-//! Tables of the C interface for its tests, which compare them with those of a C compiler and with the committed lists.
-//! Not part of the API.
+//! Tables of the C interface for its tests. The tests compare the tables with those of a C compiler and with the
+//! committed lists. Not part of the API.
 
 use super::boundary::{
     call,

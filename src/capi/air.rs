@@ -28,8 +28,8 @@ pub struct wk_air {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Temperature, degrees Celsius. From that of the station it falls by 6.5 K/km up to 11 km above sea level, and is
-    /// constant above.
+    /// Temperature, degrees Celsius. It equals the station's temperature at the station's altitude, falls by 6.5 K/km
+    /// from there up to 11 km above sea level, and is constant above 11 km.
     pub temperature_c: f64,
     /// Relative humidity over water, 0 to 1. The density of water vapour falls by a factor e every 2 km (ITU-R P.835).
     pub relative_humidity: f64,
@@ -52,8 +52,8 @@ impl wk_air {
 }
 
 /// Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
-/// there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; positions below
-/// that have the air of 1 km below the station.
+/// there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; lower positions
+/// have the air at 1 km below the station.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

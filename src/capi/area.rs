@@ -3,11 +3,11 @@
 //! Rain areas have rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside an area its
 //! rain replaces the weather's rain and drizzle. The change is smooth over the rim, a band inside the area's border.
 //! Where areas overlap, a later one in the list covers the earlier ones. Around a camera in or near a rim, the number
-//! of drops varies from place to place with the rain rate. From outside, an area is a shaft with falling curtains; it
-//! leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so
-//! does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area
-//! with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save keeps the
-//! areas.
+//! of drops varies from place to place with the rain rate. Seen from outside, an area is a shaft with falling curtains.
+//! The shaft leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas,
+//! and so does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME),
+//! an area with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save
+//! keeps the areas.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -86,7 +86,8 @@ pub struct wk_rain_area {
     /// Altitude of the cloud base above mean sea level (not above the ground), m. Above it no rain falls inside the
     /// area: neither the area's nor, except in the rim, the weather's. Range [-1000, 20 000], default 1500.
     pub top_m: f64,
-    /// Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0.
+    /// Velocity of the area towards the east and towards the north, m/s, each within [-200, 200]. It is used with
+    /// WK_AREA_MOTION_OWN. Default 0, 0.
     pub velocity_m_s: [f64; 2],
     /// Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. With
     /// WK_AREA_MOTION_WITH_WIND it must be 0 or a time that the timeline still knows.
@@ -147,7 +148,7 @@ impl wk_rain_area {
 }
 
 /// Replaces the list of rain areas, at most 16; count 0 removes all. Areas move by themselves: set them again only to
-/// change them. Unchanged after an error.
+/// change them. A failed call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
 #[unsafe(no_mangle)]

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{context::Context, frame::View, gpu::Device};
 
-/// Bytes of a struct, aligned for any.
+/// Bytes of a struct, aligned for every struct.
 pub type StructBytes = Vec<u64>;
 
 /// Refusal of a call.
@@ -35,17 +35,17 @@ pub struct Refusal {
 /// Kind of a field.
 #[derive(Clone, Copy, Debug)]
 pub enum NamedKind {
-    /// An integer of so many bytes.
+    /// An integer, with its size in bytes.
     Integer(usize),
-    /// A float of so many bytes.
+    /// A float, with its size in bytes.
     Float(usize),
-    /// A constant or, if `union`, a union of constants, of so many bytes.
+    /// A constant or, if `union`, a union of constants.
     Choice {
         /// Bytes of the number.
         bytes: usize,
-        /// Whether any union of the values is accepted.
+        /// Whether any union of the constants is accepted.
         union: bool,
-        /// Names and numbers.
+        /// Names and numbers of the constants.
         values: &'static [(&'static str, u64)],
     },
     /// A pointer, which a tool cannot set.
@@ -83,7 +83,8 @@ fn kind(kind: FieldKind) -> NamedKind {
     }
 }
 
-/// Returns the fields of a struct that begins with its size, without its head; `None` for another name.
+/// Returns the fields of a struct that begins with struct_size, without the three fields of its head; `None` for an
+/// unknown name.
 pub fn fields(name: &str) -> Option<Vec<NamedField>> {
     let own = info(name)?.fields.iter().skip(3);
     let field =
@@ -100,7 +101,8 @@ pub fn default_of(name: &str) -> Option<StructBytes> {
     (done == status::WK_OK).then_some(bytes)
 }
 
-/// Returns a copy of a struct's bytes that a call may read: the head of the default, and no pointers.
+/// Returns a copy of a struct's bytes that a call may read. The copy has the head of the default struct, and its
+/// pointers are NULL.
 fn sealed(name: &str, bytes: &[u64]) -> Result<StructBytes, Refusal> {
     let refused = |message: String| Refusal { message, field: String::new() };
     let (info, default) =
@@ -132,7 +134,7 @@ fn done(status: status::wk_status) -> Result<(), Refusal> {
     if status >= status::WK_OK { Ok(()) } else { Err(refusal()) }
 }
 
-/// A weather as C has it: the struct, its overrides if there are any, and its cloud layers.
+/// A weather in the structs of C: the weather itself, its overrides if there are any, and its cloud layers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedWeather {
     /// Bytes of a `wk_weather`.
@@ -200,14 +202,14 @@ pub struct NamedCalls {
 }
 
 impl NamedCalls {
-    /// Creates them. `desc` has the bytes of a `wk_context_desc`.
+    /// Creates a context and a view on a device. `desc` has the bytes of a `wk_context_desc`.
     ///
     /// # Errors
     /// The errors of `wk_context_create` and `wk_view_create`.
     pub fn new(gpu: &Arc<Device>, desc: &[u64]) -> Result<Self, Refusal> {
         let device = device::issue(gpu.clone(), Host::Own)
             .map_err(|e| Refusal { message: e.to_string(), field: String::new() })?;
-        // From here on `drop` destroys what there is.
+        // From here on `drop` destroys whatever has been created.
         let mut calls = Self { device, context: null_mut(), view: null_mut() };
         let desc = sealed("wk_context_desc", desc)?;
         // SAFETY: the bytes are those of the struct, and the places are this function's.
@@ -297,7 +299,8 @@ impl NamedCalls {
         self.with(|_, context| context.time_s()).unwrap_or(0.0)
     }
 
-    /// Gives the view and its context as the Rust API has them; `None` if a call has panicked before.
+    /// Calls `read` with the view and the context of the Rust API, and returns its result; `None` if an earlier call
+    /// has panicked.
     pub fn with<R>(&self, read: impl FnOnce(&mut View, &mut Context) -> R) -> Option<R> {
         let object = handles::get::<ViewObject>("view", self.view).ok()?;
         object.cell.check_alive().ok()?;
@@ -317,7 +320,7 @@ impl Drop for NamedCalls {
     }
 }
 
-/// Calls that take one struct, and its name.
+/// Calls that take one struct, each with the name of the struct.
 pub const SETTERS: [(&str, &str); 14] = [
     ("wk_context_set_sun", "wk_given_direction"),
     ("wk_context_set_moon", "wk_given_direction"),
@@ -335,6 +338,6 @@ pub const SETTERS: [(&str, &str); 14] = [
     ("wk_view_set_budget", "wk_budget"),
 ];
 
-/// Calls that fill one struct of answers, and its name.
+/// Calls that fill one struct of answers, each with the name of the struct.
 pub const GETTERS: [(&str, &str); 2] =
     [("wk_context_get_conditions", "wk_conditions"), ("wk_view_get_report", "wk_report")];

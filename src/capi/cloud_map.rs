@@ -22,8 +22,8 @@ include!(concat!(env!("OUT_DIR"), "/init_cloud_map.rs"));
 
 /// Cover of cloud layers over each place of the ground, as a share of the cover that the weather gives the layers. For
 /// a layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
-/// Clouds drift across the map with their wind, and grow and dissolve until the cover is that of the map. Values are
-/// interpolated linearly between the centres of cells, and constant beyond the outermost centres.
+/// Clouds drift across the map with their wind, and grow and dissolve on the way so that the cover stays that of the
+/// map. Values are interpolated linearly between the centres of cells, and constant beyond the outermost centres.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_map {
@@ -66,8 +66,8 @@ impl wk_cloud_map {
     };
 }
 
-/// Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. Part of the
-/// saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+/// Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. The map is
+/// part of the saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. A failed call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

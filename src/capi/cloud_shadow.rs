@@ -86,9 +86,9 @@ impl wk_cloud_shadows {
 
 /// Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame
 /// updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
-/// and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
-/// calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
-/// last frame, or record WK_STAGE_PREPARE first.
+/// and stays the same until the view is destroyed. In Vulkan the texture is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+/// between calls. Call this function after each frame to get the placement of the map. If you draw before Welkin, use
+/// the placement of the last frame, or record WK_STAGE_PREPARE first.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_UNSUPPORTED on a device that Welkin made itself (wk_device_create), on which the host's shaders
 /// cannot run.
@@ -123,6 +123,7 @@ pub unsafe extern "C" fn wk_view_get_cloud_shadows(
 
 /// Gets the text of the sampling function: NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_cloud_shadow_snippet(
     language: wk_shading_language,

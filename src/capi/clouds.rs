@@ -1,8 +1,8 @@
 //! Clouds
 //!
 //! Cloud layers come with the weather: from wk_cloud_layer, a report or a preset. wk_context_set_cloud_model sets how
-//! views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
-//! and errors.
+//! views draw them. Conditions, precipitation and the mean light are the same for both models, deck and volume.
+//! docs/clouds.md has costs and errors.
 //!
 //! Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). The
 //! stage SURFACE then finds the place of each pixel from the host's depth, and multiplies the pixel by the ratio of the
@@ -37,8 +37,8 @@ pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 /// increase it by one in every frame.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
-/// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
-/// Part of the saved state.
+/// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in place of the volume
+/// (WK_PART_CLOUDS). The model is part of the saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
 #[unsafe(no_mangle)]
@@ -86,8 +86,8 @@ pub unsafe extern "C" fn wk_context_get_sun_share(
 pub type wk_clouds_flags = u32;
 /// Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
 /// shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
-/// itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without this flag the air has its mean brightness
-/// everywhere.
+/// itself (wk_view_get_cloud_shadows). The flag costs 24 texture look-ups a pixel. Without this flag the air has its
+/// mean brightness everywhere.
 pub const WK_CLOUDS_SHAFTS: wk_clouds_flags = 1;
 
 /// Quality of clouds that a view draws as a volume.
@@ -100,7 +100,8 @@ pub struct wk_clouds {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2.
+    /// Relative number of steps along each ray: twice the value means twice as many steps. Range [0.125, 32], default
+    /// 2.
     pub fineness: f64,
     /// Side of a square block of pixels: each frame computes one pixel of a block and takes the others from earlier
     /// frames. 1, 2 or 4, default 4. Frames with WK_FRAME_NO_HISTORY compute all.
@@ -120,8 +121,8 @@ impl wk_clouds {
     };
 }
 
-/// Sets the quality of the clouds in a view; NULL returns to the default. Unchanged after an error. docs/lab/README.md
-/// has the cost and error of some choices.
+/// Sets the quality of the clouds in a view; NULL returns to the default. A failed call changes nothing.
+/// docs/lab/README.md has the cost and error of some choices.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

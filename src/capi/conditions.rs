@@ -1,8 +1,9 @@
 //! Queries: conditions
 //!
-//! The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
-//! answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
-//! is continuous in time while the weather changes, even the heights of a layer that appears or dissolves.
+//! The weather as physical quantities, at any place, at any future time, and at any past time whose weather the
+//! timeline (see Weather over time) still knows. The answers are in closed form and need no device. Heights are above
+//! the station unless stated otherwise. Every number is continuous in time while the weather changes, even the heights
+//! of a layer that appears or dissolves.
 //!
 //! Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
 //! [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
@@ -52,7 +53,7 @@ pub struct wk_conditions {
     pub station_altitude_m: f64,
     /// Air density at sea level, divided by that at 15 C and 1013.25 hPa.
     pub rayleigh_density_ratio: f64,
-    /// Scale height of the air, m: over it the density falls to 1/e.
+    /// Scale height of the air, m: the rise in height over which the air's density falls to 1/e.
     pub rayleigh_scale_height_m: f64,
     /// Extinction by air, at 550 nm and station height, 1/m.
     pub rayleigh_extinction_per_m: f64,
@@ -64,7 +65,7 @@ pub struct wk_conditions {
     pub aerosol_single_scattering_albedo: f64,
     /// Mean cosine of the particles' phase function.
     pub aerosol_asymmetry: f64,
-    /// Scale height of the particles, m: over it the density falls to 1/e.
+    /// Scale height of the particles, m: the rise in height over which their density falls to 1/e.
     pub aerosol_scale_height_m: f64,
     /// Extinction inside the layer at the ground (fog, mist, lifted matter), at 550 nm, 1/m; 0 if there is none.
     pub fog_extinction_per_m: f64,
@@ -302,8 +303,8 @@ impl wk_cloud_slab {
 /// visibility_m include that precipitation. All other fields are for the station's height unless their descriptions say
 /// otherwise.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
-/// before the end of the latest change of weather that had ended by the last update.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. The last
+/// wk_context_update forgot all times before the end of the latest change of weather that was over by then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_conditions(
     context: *const wk_context,
@@ -323,8 +324,8 @@ pub unsafe extern "C" fn wk_context_get_conditions(
 }
 
 /// Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
-/// The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets their number, at most 16. With
-/// capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
+/// The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets the number of layers, at most 16.
+/// With capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
 /// number and fails. `slab_size` is sizeof(wk_cloud_slab) of your header.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.

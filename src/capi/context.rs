@@ -1,7 +1,8 @@
 //! Contexts
 //!
-//! A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
-//! description, its timeline and its time: two contexts with the same input give the same answers on every machine.
+//! A wk_context has the weather, the time and the place that all views of a simulator share. Its answers depend only on
+//! its description (wk_context_desc), its changes of weather (the timeline), its other settings and its time. Two
+//! contexts with the same input therefore give the same answers on every machine.
 //!
 //! There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
 //! east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
@@ -78,9 +79,9 @@ pub const WK_EXPOSURE_OF_CONTEXT: wk_exposure_mode = 3;
 pub type wk_tone_curve = u32;
 /// Identity, clamped to the display's range.
 pub const WK_TONE_LINEAR: wk_tone_curve = 0;
-/// 1 - exp(-x) in each channel: bright skies never clip to white.
+/// 1 - exp(-x) in each channel, with the exposed luminance x: bright skies never clip to white.
 pub const WK_TONE_EXPONENTIAL: wk_tone_curve = 1;
-/// Hable's filmic curve, white at 11.2.
+/// Hable's filmic curve with his exposure bias of 2 and white at 11.2: an exposed luminance of 5.6 is shown as white.
 pub const WK_TONE_FILMIC: wk_tone_curve = 2;
 
 /// Settings for a new context.
@@ -122,15 +123,16 @@ pub struct wk_context_desc {
     /// Range: the years -2000 to 6000. Default 2026-06-21 10:00.
     pub utc_at_zero_s: f64,
     /// Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
-    /// planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
-    /// drawn weather and those of wk_context_build_sky, 2 MB each. The newest 32 stay in the directory, whichever
-    /// program wrote them. If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read
-    /// during the call. Default NULL: no files.
+    /// planet, sky settings and weather reads the tables instead of building them. Welkin writes a file of 2 MB for the
+    /// tables of the first drawn weather, and one for each weather that wk_context_build_sky built. The newest 32 files
+    /// stay in the directory, whichever program wrote them. If a file is damaged or cannot be written, Welkin logs that
+    /// and builds the tables. Read during the call. Default NULL: no files.
     pub cache_dir: *const c_char,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
-    /// m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature it varies by some
-    /// metres over 100 km. Only WK_WORLD_ECEF uses it, because its coordinates refer to the ellipsoid, while altitudes,
-    /// tops of fog and bases of clouds count from mean sea level. Range [-120, 120], default 0.
+    /// m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature the height varies by
+    /// some metres over 100 km. Only WK_WORLD_ECEF uses the number: the coordinates of that world refer to the
+    /// ellipsoid, but altitudes refer to mean sea level. Heights of fog and clouds are above the station, whose
+    /// altitude refers to mean sea level too. Range [-120, 120], default 0.
     pub geoid_height_m: f64,
 }
 
@@ -263,8 +265,8 @@ pub unsafe extern "C" fn wk_context_create(
 /// as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
 /// top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
 /// Thread: exclusive.
-/// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
-/// stays as it was.
+/// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. After an
+/// error the planet stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_planet(context: *mut wk_context, planet_toml: *const c_char) -> wk_status {
     guard("wk_context_set_planet", |call| {
@@ -278,6 +280,7 @@ pub unsafe extern "C" fn wk_context_set_planet(context: *mut wk_context, planet_
 
 /// Sets the curve from luminance to display values for the next frames, in place of tone_curve of wk_context_desc.
 /// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown curve.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, curve: wk_tone_curve) -> wk_status {
     guard("wk_context_set_tone_curve", |call| {
@@ -294,11 +297,12 @@ pub unsafe extern "C" fn wk_context_set_tone_curve(context: *mut wk_context, cur
 pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: f64) -> i32>;
 
 /// Builds the sky's tables completely for the context's planet and present weather, so that no frame has to build them.
-/// Call it at load time, behind a progress bar. It reuses tables that another context of the device already shows or
-/// that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of
-/// the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
-/// in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
-/// sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
+/// Call this function at load time, behind a progress bar. The call reuses tables that another context of the device
+/// already shows or that lie in the context's cache_dir, and writes new tables to cache_dir. Without this call the
+/// first frame shows a draft of the sky, which differs from the finished sky by at most 3 of 255 display steps, and 120
+/// frames refine it without a visible step. A frame with WK_FRAME_NO_HISTORY builds all tables itself
+/// (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen times, the last time with 1. An
+/// aborted build leaves the context as it was and writes no file.
 /// Thread: exclusive on the context; with an OpenGL host, the thread where its OpenGL context is (or can be made)
 /// current. While `progress` runs, the host may use that OpenGL context.
 /// Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.

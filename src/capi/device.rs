@@ -2,13 +2,15 @@
 //!
 //! A wk_device is one native queue or OpenGL context, with everything that the wk_contexts on it share: pipelines,
 //! tables, caches. Create one here (an own device, which Welkin makes itself), from the host's OpenGL context, from the
-//! host's Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all four.
+//! host's Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for these four kinds of
+//! device.
 //!
-//! Create one device per native queue or OpenGL context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is
-//! lost (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or
-//! draw, calls that read or write GPU resources, and wk_context_get_ambient. A wk_context's weather, time, settings,
-//! state and other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the
-//! views, the contexts and the device, create them again, and load the state.
+//! Create one device per native queue or OpenGL context: a call that would create a second one returns
+//! WK_ERROR_ALREADY_WRAPPED. When the GPU is lost (driver reset, unplugged), every call that needs the GPU returns
+//! WK_ERROR_DEVICE_LOST: calls that create, build or draw, calls that read or write GPU resources, and
+//! wk_context_get_ambient. A wk_context's weather, time, settings, state and other queries need no GPU and go on
+//! working. To recover, save the state with wk_context_save, destroy the views, the contexts and the device, create
+//! them again, and load the state.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -90,8 +92,8 @@ pub struct wk_caps {
     pub next: *const c_void,
     /// Native interface that the device uses.
     pub backend: wk_backend_flags,
-    /// Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0
-    /// features that need tier 1 answer WK_ERROR_UNSUPPORTED, with a message that names the feature.
+    /// Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0 a call
+    /// for a feature that needs tier 1 returns WK_ERROR_UNSUPPORTED, with a message that names the feature.
     pub tier: u32,
     /// 1 for a software driver, which draws on the CPU, else 0.
     pub software: u32,
@@ -132,7 +134,7 @@ pub(super) fn issue(gpu: Arc<Device>, host: Host) -> Result<*mut wk_device> {
 }
 
 /// Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
-/// handle, which you destroy with `wk_device_destroy`; else it stays untouched.
+/// handle, which you destroy with `wk_device_destroy`; on failure `*out_device` stays untouched.
 /// Thread: any.
 /// Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels
 /// wrong or does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
@@ -151,7 +153,7 @@ pub unsafe extern "C" fn wk_device_create(desc: *const wk_device_desc, out_devic
     })
 }
 
-/// Converts the flags to the options of the Rust side.
+/// Converts the settings of an own device to those of the Rust side.
 pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
     let pairs = [
         (WK_BACKEND_NOOP, wgpu::Backends::NOOP),

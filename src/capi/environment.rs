@@ -2,14 +2,14 @@
 //!
 //! For reflections in the host's own objects: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
 //! clouds, fog and rain as far as the horizon, and the planet's ground below. They leave out the discs of the sun and
-//! the moon (the host lights its objects by those itself), the stars and the host's objects; the night's glow is
-//! uniform. The axes are those of the host's world: a shader samples with the reflected direction as it is. Level m of
-//! the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and Reitz, alpha =
-//! roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
-//! specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
-//! filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
-//! with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. A view draws the cube map only if its
-//! host has asked for it.
+//! the moon (the host itself lights its objects by the sun and the moon), the stars and the host's objects. The glow of
+//! the night sky is uniform. The axes are those of the host's world: a shader samples with the reflected direction as
+//! it is. Level m of the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and
+//! Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 *
+//! roughness) is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS
+//! and set their filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first
+//! frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and when light or weather jump. A view draws the cube map
+//! only after the first wk_view_get_environment.
 
 use std::{ffi::c_void, ptr::null};
 

@@ -38,7 +38,7 @@ pub const WK_FOG_CURVE_EXPONENTIAL_SQUARED: wk_fog_curve = 3;
 pub type wk_fog_distance = u32;
 /// Distance from the camera's centre: turning the camera changes nothing.
 pub const WK_FOG_DISTANCE_RANGE: wk_fog_distance = 0;
-/// Distance from the camera's plane, as in the oldest systems.
+/// Distance from the plane through the camera at right angles to its viewing direction, as in the oldest systems.
 pub const WK_FOG_DISTANCE_PLANE: wk_fog_distance = 1;
 
 /// Flags that name the optional fields of a wk_fog_law that the host has set.
@@ -108,7 +108,7 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
         WK_FOG_CURVE_LINEAR => Curve::Linear { start_m: c.start_m, end_m: c.end_m },
         WK_FOG_CURVE_EXPONENTIAL => Curve::Exponential { density_per_m: c.density_per_m },
         WK_FOG_CURVE_EXPONENTIAL_SQUARED => Curve::ExponentialSquared { density_per_m: c.density_per_m },
-        // The clear law draws no curve. Its unused figures must still be in range.
+        // The clear law draws no curve. Its figures must still be in range.
         _ => Curve::Exponential { density_per_m: c.density_per_m },
     };
     let plane = c.distance == WK_FOG_DISTANCE_PLANE;
@@ -123,8 +123,8 @@ unsafe fn law(p: *const wk_fog_law) -> Result<Law> {
     Ok(if c.curve == WK_FOG_CURVE_CLEAR { Law::Clear } else { Law::Compatibility(law) })
 }
 
-/// Checks the figures of the curves that `law` does not name. They are not drawn, but a host that sets one out of range
-/// has made a mistake.
+/// Checks the figures of the curves that `law` does not use. These figures are not drawn, but a host that sets one out
+/// of range has made a mistake.
 fn check_unused(law: &wk_fog_law) -> Result<()> {
     check_range("fog.start_m", law.start_m, 0.0, 1e9, "m")?;
     check_range("fog.end_m", law.end_m, 0.0, 1e9, "m")?;
@@ -138,6 +138,7 @@ fn in_law(e: Error) -> Error {
 
 /// Draws a fog law in place of the weather's fog; NULL returns to the weather's fog.
 /// Thread: exclusive.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_law: *const wk_fog_law) -> wk_status {
     guard("wk_context_set_fog_law", |call| {
@@ -153,6 +154,7 @@ pub unsafe extern "C" fn wk_context_set_fog_law(context: *mut wk_context, fog_la
 /// farther away. The distance is measured as the law says (wk_fog_distance). It is infinite if the law always leaves
 /// more.
 /// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, out_distance_m: *mut f64) -> wk_status {
     guard("wk_fog_law_cull_distance", |_| {
@@ -171,6 +173,7 @@ pub unsafe extern "C" fn wk_fog_law_cull_distance(fog_law: *const wk_fog_law, ou
 /// Gets the distance beyond which air of a given visibility leaves less than 1/255 of an object's contrast, m: about
 /// 1.85 times the visibility. visibility_m is the meteorological optical range, m, [1, 1e6].
 /// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter and its range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_visibility_cull_distance(visibility_m: f64, out_distance_m: *mut f64) -> wk_status {
     guard("wk_visibility_cull_distance", |_| {

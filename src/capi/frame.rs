@@ -6,8 +6,9 @@
 //! position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
 //! works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far plane, reversed depth.
 //!
-//! Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
-//! the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+//! Welkin reads depth as the projection gives it: z / w, mapped to the depth buffer's range of 0 to 1. With
+//! WK_DEPTH_LOGARITHMIC the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead, with w of clip space,
+//! C = logarithmic_c and far = logarithmic_far_m. Pixels at the far depth show the sky.
 //!
 //! `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target or
 //! wk_vulkan_target.
@@ -35,9 +36,10 @@ include!(concat!(env!("OUT_DIR"), "/init_frame.rs"));
 
 /// Relation of depth to distance.
 pub type wk_depth_kind = u32;
-/// Depth of the projection matrix: perspective (with a finite or infinite far plane) or orthographic.
+/// Depth as the projection matrix gives it: perspective (with a finite or infinite far plane) or orthographic.
 pub const WK_DEPTH_PROJECTION: wk_depth_kind = 0;
-/// ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders.
+/// ln(C w + 1) / ln(C far + 1), written by the host's shaders, with w of clip space, C = logarithmic_c and far =
+/// logarithmic_far_m.
 pub const WK_DEPTH_LOGARITHMIC: wk_depth_kind = 1;
 
 /// Range of clip-space z.
@@ -53,10 +55,10 @@ pub type wk_color_space = u32;
 pub const WK_COLOR_SCENE_LINEAR: wk_color_space = 0;
 /// Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly.
 pub const WK_COLOR_DISPLAY_LINEAR: wk_color_space = 1;
-/// Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes.
+/// Already tone-mapped, and encoded by the sRGB curve: by the host, or by the hardware in an sRGB format.
 pub const WK_COLOR_DISPLAY_SRGB: wk_color_space = 2;
 
-/// Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
+/// Welkin's access to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
 /// depth that may be written. Without sea and terrain, both values give the same picture.
 pub type wk_depth_access = u32;
 /// Welkin reads the depth, leaves every bit of it as it is, and draws nothing opaque of its own.
@@ -83,15 +85,15 @@ pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
 pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
 /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
 pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;
-/// Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see wk_budget), on a
-/// logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage MEDIUM.
+/// Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see Plan and budget
+/// of a view), on a logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
+/// MEDIUM.
 pub const WK_DIAGNOSTIC_PLAN_ERROR: wk_diagnostic = 4;
-/// Number of times that drops, flakes or stones were drawn over a pixel: black 0, 4 a step, white 20 or more. Stage
-/// PARTICLES.
+/// Number of times that precipitation was drawn over a pixel: black 0, 4 a step, white 20 or more. Stage PARTICLES.
 pub const WK_DIAGNOSTIC_OVERDRAW: wk_diagnostic = 5;
 /// Speed of the wind that carries the precipitation, 2 m above the host's surfaces: black a calm, 4 m/s a step, white
-/// 20 m/s or more. Each square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The
-/// sky is black. Stage MEDIUM.
+/// 20 m/s or more. The ground is divided into squares. Each square has an arrow along the wind, or a dot where the wind
+/// is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_WIND: wk_diagnostic = 6;
 
 /// Flags of a frame.
@@ -100,17 +102,19 @@ pub type wk_frame_flags = u32;
 /// builds them, as with WK_FRAME_NO_HISTORY.
 pub const WK_FRAME_CUT: wk_frame_flags = 1;
 /// Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
-/// yet, this frame builds them, which takes as long as many frames. Use it for stills and comparisons, not for every
-/// frame of a changing weather.
+/// yet, this frame builds them, and takes as long as many ordinary frames. Use it for stills and comparisons, not for
+/// every frame of a changing weather.
 pub const WK_FRAME_NO_HISTORY: wk_frame_flags = 2;
 /// Depth is reversed: 1 is near, 0 is far.
 pub const WK_FRAME_DEPTH_REVERSED: wk_frame_flags = 4;
-/// The first row of the images lies at clip y = -1. This is always so in OpenGL (there the flag need not be set), and
-/// in Vulkan with a viewport of positive height. Without the flag the first row lies at clip y = +1.
+/// The first row of the images lies at clip y = -1. This is always so in OpenGL, where the flag need not be set. In
+/// Vulkan it is so with a viewport of positive height, where the flag must be set. Without the flag the first row lies
+/// at clip y = +1.
 pub const WK_FRAME_FIRST_ROW_AT_MINUS_Y: wk_frame_flags = 8;
-/// Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
-/// so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
-/// WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
+/// Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for the
+/// GPU after each, so the frame is slower and its picture may differ by rounding. Use the flag now and then, not in
+/// every frame. On a Vulkan host the call returns WK_ERROR_UNSUPPORTED, because the host lends its images for one
+/// submission only.
 pub const WK_FRAME_MEASURE: wk_frame_flags = 16;
 /// The target's normals are in the axes of the camera (x right, y up, z towards the viewer: gl_NormalMatrix *
 /// gl_Normal), not in those of the host's world.
@@ -138,9 +142,10 @@ pub struct wk_frame {
     pub depth_kind: wk_depth_kind,
     /// Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE.
     pub clip_space: wk_clip_space,
-    /// Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1.
+    /// Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is WK_DEPTH_LOGARITHMIC. Default 1.
     pub logarithmic_c: f64,
-    /// Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
+    /// Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is WK_DEPTH_LOGARITHMIC.
+    /// Default 1e7.
     pub logarithmic_far_m: f64,
     /// Flags of the frame. Default 0.
     pub flags: wk_frame_flags,
@@ -154,13 +159,13 @@ pub struct wk_frame {
     pub reserved0: u32,
     /// Value of the exposure, as wk_exposure_mode says. Default 0.
     pub exposure_value: f64,
-    /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
-    /// PREPARE alone.
+    /// The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL if the
+    /// call's only stage is WK_STAGE_PREPARE.
     pub target: *const c_void,
-    /// Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lean against it.
-    /// Default 0, 0, 0.
+    /// Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lie along the drops'
+    /// velocity relative to the camera. Default 0, 0, 0.
     pub velocity_m_s: [f64; 3],
-    /// Access of Welkin to the target's depth. Default WK_DEPTH_ACCESS_READ.
+    /// Welkin's access to the target's depth. Default WK_DEPTH_ACCESS_READ.
     pub depth_access: wk_depth_access,
     /// False-colour picture to draw in place of the frame's. Default WK_DIAGNOSTIC_NONE.
     pub diagnostic: wk_diagnostic,
@@ -206,10 +211,11 @@ pub struct wk_own_target {
     pub color: *const wk_texture,
     /// Surface to draw into if `color` is NULL: Welkin draws into its acquired image. Default NULL.
     pub surface: *const wk_surface,
-    /// Depth of the host's picture, as large as `color`; with NULL (the default) every pixel shows the sky.
+    /// Depth of the host's picture, WK_FORMAT_R32_FLOAT, as large as `color`. With NULL (the default) every pixel shows
+    /// the sky.
     pub depth: *const wk_texture,
-    /// Mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
-    /// `color`. Default NULL.
+    /// Mask: where its red is 1, the host's pixel stays (cab, HUD); where its red is 0, Welkin draws weather. As large
+    /// as `color`. Default NULL.
     pub mask: *const wk_texture,
     /// Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
     /// or the context's default. WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM or WK_FORMAT_BGRA8_UNORM, as large as
@@ -235,12 +241,12 @@ impl wk_own_target {
     };
 }
 
-/// Light for the host's own shading of a frame, in the units of the frame's color_space. A surface of colour c with
-/// normal n shows c * (ambient + direct * max(dot(n, direction), 0)).
+/// Light for the host's own shading of a frame, in the units of the frame's color_space. The host shows a surface of
+/// colour c with normal n as c * (ambient + direct * max(dot(n, direction), 0)).
 ///
 /// In scene-linear space this is exact for matt surfaces. In display spaces the light includes the tone curve at the
-/// frame's exposure, so one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, both
-/// in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
+/// frame's exposure, so `ambient` and `direct` cannot be right for every surface. They are right for an 18 % grey card,
+/// both in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
 /// encodes the result. With WK_COLOR_DISPLAY_SRGB c and the light are both encoded numbers, as fixed-function OpenGL
 /// multiplies them.
 #[repr(C)]
@@ -252,11 +258,11 @@ pub struct wk_frame_light {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Unit vector in the host's world towards the sun, or towards the moon where that is brighter.
+    /// Unit vector in the host's world towards the sun, or towards the moon when the moon is brighter.
     pub direction: [f64; 3],
     /// Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 below the horizon.
     pub direct: [f64; 3],
-    /// Light from sky, clouds and fog on level ground.
+    /// Light from sky, clouds and fog on level ground, and direct light from the fainter of sun and moon.
     pub ambient: [f64; 3],
     /// Light from the ground on a surface that faces down, for hosts with one ambient light above and one below.
     pub ambient_below: [f64; 3],
@@ -278,8 +284,8 @@ impl wk_frame_light {
 }
 
 /// Gets the light with which the host should light its own objects in a frame. Call this function before you draw the
-/// objects. It reads the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the
-/// target.
+/// objects. Of `frame`, the call uses the camera's position, color_space, cd_m2_per_unit and the exposure, and ignores
+/// the target.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
 #[unsafe(no_mangle)]

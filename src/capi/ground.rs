@@ -7,8 +7,8 @@
 //! the host's objects, only shelters and occluder maps appear in it, as dark shapes.
 //!
 //! Wetness follows the present weather (wk_conditions.wetness, .puddles). With WK_GROUND_SIMULATED, set by a
-//! wk_simulation_desc in wk_context_desc.next, it is instead a state that fills, drains and dries over time, and that
-//! wk_context_save keeps.
+//! wk_simulation_desc in wk_context_desc.next, the water on the ground is instead a state that fills, drains and dries
+//! over time. wk_context_save keeps this state.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -32,13 +32,13 @@ include!(concat!(env!("OUT_DIR"), "/init_ground.rs"));
 
 /// Source of the ground's wetness.
 pub type wk_ground_model = u32;
-/// The present weather: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as the
-/// rain ends.
+/// The present weather: the ground is as wet as the weather reports, or as the present rain keeps it. Ground that only
+/// the rain keeps wet is dry as soon as the rain ends.
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
-/// A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills pores,
-/// film and hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. After a leap of more
-/// than a day only the last day is simulated, which starts with the wetness of the weather at that time. See
-/// wk_context_update for leaps that take more than one call.
+/// A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills the
+/// ground's pores, the film on it and its hollows. The water drains and dries by wind, sun and humidity (Penman 1948)
+/// in steps of 10 s. After a leap of more than a day only the last day is simulated, which starts with the wetness of
+/// the weather at that time. See wk_context_update for leaps that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
 /// Source of the lying snow.
@@ -46,16 +46,17 @@ pub type wk_lying_snow_model = u32;
 /// The present weather: snow as deep as reported (wk_conditions.snow_depth_m), everywhere.
 pub const WK_LYING_SNOW_REPORTED: wk_lying_snow_model = 0;
 /// A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
-/// and refreezes in steps of 60 s. It is simulated on level, open ground and on each cell of the host's terrain
-/// (wk_context_set_ground_grid). An update that moves time by more than a day runs as a fast-forward
-/// (wk_context_accumulate); after one of more than 30 days only the last 30 are simulated.
+/// and refreezes in steps of 60 s. The state has the snow on level, open ground and on each cell of the host's terrain
+/// (wk_context_set_ground_grid, wk_context_set_terrain). An update that moves time by more than a day runs as a
+/// fast-forward (wk_context_accumulate). Of an update by more than 30 days only the last 30 days are simulated.
 pub const WK_LYING_SNOW_SIMULATED: wk_lying_snow_model = 1;
 
-/// Material of the ground. The first source that names one decides: an image of the target (the byte of red), then the
-/// wk_ground_grid or the tiles of the wk_terrain, then the context's default.
+/// Material of the ground; each value says how the material looks when it is wet. The first source that names a
+/// material decides: an image of the target (the byte of red), then the wk_ground_grid or the tiles of the wk_terrain,
+/// then the context's default.
 pub type wk_surface_class = u32;
-/// No material. In an image or a grid the next source then decides. As the context's default it means natural ground:
-/// vegetation where the host's colour is green, soil elsewhere.
+/// No material. In an image, a grid or a tile this value leaves the decision to the next source. As the context's
+/// default it means natural ground: vegetation where the host's colour is green, soil elsewhere.
 pub const WK_SURFACE_CLASS_UNSPECIFIED: wk_surface_class = 0;
 /// Earth, sand, gravel: darkens and hardly mirrors.
 pub const WK_SURFACE_CLASS_SOIL: wk_surface_class = 1;
@@ -128,11 +129,12 @@ pub struct wk_ground {
     pub next: *const c_void,
     /// Depth of the water on the ground, mm, as a tyre meets it: the film, plus standing water in a hollow.
     pub water_mm: f64,
-    /// Depth of the film on level ground outside hollows, mm; on the host's terrain, depth of the film at the place.
+    /// Depth of the film, mm: at the place if it lies on the host's terrain, else on level ground outside hollows.
     pub film_mm: f64,
-    /// Wetness of level, open ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+    /// Wetness, of the place if it lies on the host's terrain, else of level, open ground: 0 dry, 0.3 damp, 1 under a
+    /// closed film.
     pub wetness: f64,
-    /// Share of all ground, or of the host's terrain, that is under standing water.
+    /// Share of the host's terrain that is under standing water; for a place off the terrain, share of all ground.
     pub puddles: f64,
     /// 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles.
     pub in_puddle: u32,
@@ -196,7 +198,7 @@ pub unsafe extern "C" fn wk_context_get_ground(
 }
 
 /// Sets the surface class of ground that has none from the target's image or the host's terrain. Default
-/// WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
+/// WK_SURFACE_CLASS_UNSPECIFIED: natural ground. The class is part of the saved state.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
 #[unsafe(no_mangle)]

@@ -4,8 +4,8 @@
 //! boxes that stand still (wk_context_set_shelters), determine the rain that each cell receives. Water runs off and
 //! fills the terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the
 //! water, and wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a
-//! state, which wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the
-//! hollows.
+//! state, which wk_context_save keeps together with the heights. Otherwise the water follows from the weather's
+//! wetness, spread over the hollows.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -38,15 +38,15 @@ pub struct wk_ground_grid {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Position of the south-western node in the host's world, m, within 1e12 m of the origin. The values of heights_m
-    /// are above its height. Default 0, 0, 0.
+    /// Position of the south-western node in the host's world, m, within 1e12 m of the world's origin. heights_m are
+    /// measured upwards from this position. Default 0, 0, 0.
     pub origin_m: [f64; 3],
     /// Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear.
     pub cell_m: f64,
     /// Number of nodes east and north. Range [2, 512] each, default 2, 2.
     pub nodes: [u32; 2],
-    /// Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
-    /// call.
+    /// Heights of the nodes above origin_m, m, within 1e5. Nodes run from west to east, rows from south to north.
+    /// Copied by the call.
     pub heights_m: *const f32,
     /// Number of values in heights_m: the product of `nodes`.
     pub height_count: u32,
@@ -102,8 +102,8 @@ impl wk_ground_cell {
 
 /// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. With NULL
 /// the ground is level everywhere. Setting the same grid again keeps its water, even with other classes; a different
-/// grid starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an
-/// error.
+/// grid starts as wet as level ground is. For the largest grids the call may take some tenths of a second. A failed
+/// call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

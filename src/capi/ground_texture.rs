@@ -3,8 +3,8 @@
 //! A native texture for the host's own materials, with the water of the terrain's cells. The cells of a grid
 //! (wk_context_set_ground_grid) are uploaded once for both the host and the stage SURFACE. For tiles
 //! (wk_context_set_terrain) the texture covers a window around a place. Each cell is one texel; the first one is the
-//! south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
-//! how the wet surface looks.
+//! south-western cell, and rows go north, in every graphics interface. The functions from wk_get_ground_snippet, in
+//! GLSL and WGSL, compute how the wet surface looks.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -62,8 +62,8 @@ pub struct wk_ground_texture {
     /// see uv_from_world of wk_cloud_shadows.
     pub uv_from_world: [[f64; 4]; 2],
     /// Texture of the snow on the same grid, an object like `texture`; its channels are depth_m, density_kg_m3, wetness
-    /// and albedo of wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation
-    /// time.
+    /// and albedo of wk_lying_snow. The field is 0 without WK_LYING_SNOW_SIMULATED. The snow in the texture changes at
+    /// most once every 60 s of simulation time.
     pub snow_texture: u64,
 }
 
@@ -83,10 +83,10 @@ impl wk_ground_texture {
 }
 
 /// Gets the native texture of the water on a wk_ground_grid, up to date. Call this function after each
-/// wk_context_update; the call costs nothing if nothing has changed. Changes come at most once every 10 s of simulation
-/// time. This call, or a wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue
-/// or context. The texture belongs to the context and stays the same until you set or load another grid, or none;
-/// before you do so, wait for GPU work that samples the texture. In Vulkan it is in
+/// wk_context_update; the call costs nothing if nothing has changed. The water changes at most once every 10 s of
+/// simulation time. This call, or a wk_view_record with SURFACE, uploads the changes in order with the host's work on
+/// the device's queue or context. The texture belongs to the context and stays the same until you set or load another
+/// grid, or remove the grid. Before you do so, wait for GPU work that samples the texture. In Vulkan it is in
 /// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It has no mipmaps; choose filter
 /// and wrap yourself.
 /// Thread: exclusive.
@@ -111,11 +111,11 @@ pub unsafe extern "C" fn wk_context_get_ground_texture(
 }
 
 /// Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
-/// The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
-/// middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
-/// neither water nor snow. Call this function after each wk_context_update; with several cameras, call it before you
-/// draw the picture of each one. The call costs nothing if nothing has changed; after a move it uploads the whole
-/// window. Both textures stay the same as long as the context lives.
+/// The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays within the
+/// middle 64 x 64 cells of the window. `uv_from_world` is the present placement of the window. Where no tile has
+/// ground, the textures have neither water nor snow. Call this function after each wk_context_update; with several
+/// cameras, call it before you draw the picture of each one. The call costs nothing if nothing has changed; after a
+/// move it uploads the whole window. Both textures stay the same as long as the context lives.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
 /// window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
@@ -158,6 +158,7 @@ fn native(object: &ContextObject, ground: &GroundTexture) -> Result<wk_ground_te
 /// Gets the text of the functions that compute how a texel's surface looks: how dark it is, how much of it mirrors, and
 /// how rough it is. NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_ground_snippet(
     language: wk_shading_language,

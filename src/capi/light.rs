@@ -38,10 +38,10 @@ pub struct wk_light {
     /// Luminous intensity in the middle of the beam, cd per channel of linear Rec. 709. Range [0, 1e9], default 1000
     /// each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
     pub intensity_cd: [f64; 3],
-    /// Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10.
+    /// Angle from the middle of the beam up to which it has full intensity, degrees. Range [0, 180], default 10.
     pub inner_deg: f64,
-    /// Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30. If both angles are
-    /// 180, the lamp shines to all sides.
+    /// Angle from the middle of the beam at which it ends, degrees. Range [inner_deg, 180], default 30. If both angles
+    /// are 180, the lamp shines to all sides.
     pub outer_deg: f64,
 }
 
@@ -58,8 +58,8 @@ impl wk_light {
     };
 }
 
-/// Sets the host's lamps, at most 64, and replaces those set before; count 0 removes all. Set moving lamps again in
-/// every frame. Unchanged after an error.
+/// Sets the host's lamps, at most 64, and replaces all lamps set before; count 0 removes all. Set moving lamps again in
+/// every frame. A failed call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
 #[unsafe(no_mangle)]

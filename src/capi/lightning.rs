@@ -86,7 +86,7 @@ pub struct wk_lightning {
     /// 1e5]. The fifth is the number of flashes a minute, in [0, 60]. Copied by the call. Default NULL.
     pub cells: *const f64,
     /// Three numbers for each mast: its tip in the host's world, m. Masts and the tops of shelters
-    /// (wk_context_set_shelters) attract ground flashes, except those that the host triggers. Copied by the call.
+    /// (wk_context_set_shelters) attract ground flashes, except flashes that the host triggers. Copied by the call.
     /// Default NULL.
     pub masts: *const f64,
 }
@@ -254,8 +254,8 @@ unsafe fn settings(p: *const wk_lightning) -> Result<LightningSettings> {
     })
 }
 
-/// Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. Part of the saved
-/// state. Unchanged after an error.
+/// Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. The settings are part
+/// of the saved state. A failed call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn wk_context_set_lightning(
 }
 
 /// Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after its time_s. At most
-/// 64 triggered flashes are kept at a time. Unchanged after an error.
+/// 64 triggered flashes are kept at a time. A failed call triggers nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or if there are too many flashes;
 /// WK_ERROR_WRONG_ORDER for a time before the present.

@@ -1,7 +1,7 @@
 //! Welkin: weather for simulators, drawn into the host's own picture.
 //!
-//! This header is the whole C API, in reading order; CONTENTS below names its sections. It is C99 and C++11 and later;
-//! welkin.hpp wraps it for C++.
+//! This header is the whole C API, in reading order; CONTENTS below names its sections. It compiles as C99 or C++11,
+//! and as later versions of both. welkin.hpp wraps it for C++.
 //!
 //! IN SHORT
 //!
@@ -42,10 +42,11 @@
 //! bulk, such as wk_flash. They have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init,
 //! which writes the same bytes) and change fields. Later versions append fields for which zero means "as before". A
 //! library therefore accepts structs of older headers, whose missing fields get their defaults, and structs of newer
-//! headers if the fields that it does not know are zero. `next` points to extension structs where a call names them; an
-//! unknown one is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An
-//! optional field has a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your
-//! header. Reals are doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+//! headers if the fields that it does not know are zero. `next` points to extension structs, of the types that a call
+//! names; an extension of another type is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm),
+//! never "default". An optional field has a bit in `has`, which you set together with the field. Lists are (pointer,
+//! count, stride): stride is the size of an element in your header. Reals are doubles, or floats in some fields and
+//! lists, and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
 //!
 //! THREADS
 //!

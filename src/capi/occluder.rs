@@ -8,8 +8,8 @@
 //! Where objects stand below others (a pier below a deck), add maps along the paths of slower drops, with the same wind
 //! and fall speeds of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
 //!
-//! Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
-//! issued) before the call. Afterwards the image is yours again.
+//! Welkin copies a map during the call. The copy includes the results of work that you submitted to the queue (or, with
+//! OpenGL, issued) before the call. Afterwards the image is yours again.
 
 pub use super::occluder_map::*;
 use super::{

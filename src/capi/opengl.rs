@@ -33,7 +33,7 @@ use crate::error::Status;
 include!(concat!(env!("OUT_DIR"), "/init_opengl.rs"));
 
 /// Wraps the host's OpenGL context, which must be current on this thread. On success `*out_device` is a new handle for
-/// `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
+/// `wk_device_destroy`; call that function while the contexts live. Welkin never deletes the host's objects.
 /// Thread: the one on which the host's context is current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
 /// or the wrong one is current, or, in WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples

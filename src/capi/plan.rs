@@ -3,9 +3,9 @@
 //! With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
 //! with everything, and again without each part of the weather. It reads the differences back some frames later,
 //! without waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again
-//! when they matter. Under a budget of time, further parts fade out until the reported times fit, starting with the
-//! parts that save the most time for the least visible loss. They come back when there is time again. After a jump of
-//! camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+//! when they matter. Under a budget of time, further parts fade out until the reported times fit the budget, starting
+//! with the parts that save the most time for the least visible loss. These parts come back when there is time again.
+//! After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
 //!
 //! A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
 //! rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
@@ -92,13 +92,14 @@ pub const WK_PLAN_REASON_PINNED: wk_plan_reason = 5;
 /// The budget of time allows no more of the part.
 pub const WK_PLAN_REASON_OUT_OF_TIME: wk_plan_reason = 6;
 
-/// Limit of a budget that the picture exceeds, according to the estimates.
+/// A budget's limit that the picture exceeds, according to the estimates.
 pub type wk_gave_way = u32;
 /// Nothing had to give way.
 pub const WK_GAVE_WAY_NOTHING: wk_gave_way = 0;
-/// The tolerance: a better picture would take longer than the budget.
+/// The tolerance: a better picture would take longer than the budget allows.
 pub const WK_GAVE_WAY_TOLERANCE: wk_gave_way = 1;
-/// Time and the tolerance: the picture takes longer than the budget even with all parts left out that are not pinned.
+/// Time and the tolerance: the picture takes longer than the budget allows, even if all parts that are not pinned are
+/// left out.
 pub const WK_GAVE_WAY_TIME: wk_gave_way = 2;
 
 /// A host's wish for one part.
@@ -181,8 +182,8 @@ impl wk_budget {
     };
 }
 
-/// Plan of a view's last frame: the errors due to the parts that it left out, and its cost. Errors are estimates from
-/// the gauged pixels.
+/// Plan of a view's last frame: the errors due to the parts that the frame left out, and the frame's cost. Errors are
+/// estimates from the gauged pixels.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_plan {
@@ -194,11 +195,11 @@ pub struct wk_plan {
     pub next: *const c_void,
     /// Number of parts. Parts are numbered from 0.
     pub part_count: u32,
-    /// Limit of the budget that could not be kept.
+    /// The budget's limit that could not be kept.
     pub gave_way: wk_gave_way,
     /// Error of everything left out together: 95th percentile over the gauged pixels.
     pub error: f64,
-    /// Upper end of the 95 % confidence interval of the percentile in `error` over all pixels.
+    /// Upper bound, with 95 % confidence, of the 95th percentile over all pixels.
     pub error_bound: f64,
     /// Error of the worst gauged pixel.
     pub worst: f64,
@@ -251,14 +252,15 @@ pub struct wk_part_plan {
     pub rung_name: *const c_char,
     /// Reason in a few words of English.
     pub reason_text: *const c_char,
-    /// Importance of the part where a budget does not set it.
+    /// Importance that the part has unless a budget sets another.
     pub importance: f64,
-    /// Share of the part that is drawn: 1 all of it, 0 its last rung; between these while the part fades, or on a rung
-    /// in between.
+    /// Share of the part that is drawn: 1 all of it, 0 its last rung; between 0 and 1 while the part fades, or on a
+    /// rung between the first and the last.
     pub share: f64,
-    /// Error of the picture with this part alone at its last rung, as of the last gauge.
+    /// Error that the picture would have if this part alone were drawn at its last rung, as of the last gauge.
     pub error: f64,
-    /// Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge.
+    /// Error that the worst gauged pixel would have if this part alone were drawn at its last rung, as of the last
+    /// gauge.
     pub worst: f64,
     /// Work that the whole part adds, or would add, to this picture with everything, in the units of wk_plan.work.
     pub work: f64,
@@ -311,7 +313,8 @@ impl wk_part_plan {
     }
 }
 
-/// Sets the limits for the view's pictures: tolerance and time. NULL draws everything again. Unchanged after an error.
+/// Sets the limits for the view's pictures: tolerance and time. NULL removes them, and everything is drawn again.
+/// Unchanged after an error.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -400,8 +403,8 @@ pub unsafe extern "C" fn wk_view_get_part_plan(
 }
 
 /// Writes the view's plan as UTF-8 text: the rung of each part, and the settings of the sky. wk_view_load_plan reads
-/// the text, on other channels or on another day. `*out_size` gets the bytes needed in any case. If `capacity` is too
-/// small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
+/// the text, also in other views or on another day. `*out_size` always gets the number of bytes needed. If `capacity`
+/// is too small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
 /// each jump of camera, sun or weather.
@@ -421,12 +424,12 @@ pub unsafe extern "C" fn wk_view_save_plan(
     })
 }
 
-/// Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
-/// budget stays; wk_view_set_budget removes the pins.
+/// Pins every part at its rung in a plan that wk_view_save_plan wrote, as wishes with WK_PART_WISH_HAS_RUNG do. The
+/// rest of the view's budget stays; wk_view_set_budget removes the pins.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_PARSE for bytes that are no saved plan, or that are a plan of another version, naming line and
-/// column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs.
-/// After an error the view's plan stays as it was.
+/// column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky that differs between the plan and the
+/// view's context. After an error the view's plan stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_load_plan(view: *mut wk_view, plan: *const c_void, size: usize) -> wk_status {
     guard("wk_view_load_plan", |call| {
@@ -453,7 +456,7 @@ fn in_list(parts: &[usize], e: Error) -> Error {
     place.map_or(e.clone(), |i| e.renamed(&of(parts[i]), &of(i)))
 }
 
-/// Returns the wishes for the parts, by number, and the part of each element of the host's list.
+/// Returns the wishes by the number of their part, and the part of each element of the host's list.
 fn wishes(c: &wk_budget) -> Result<(Vec<PartWish>, Vec<usize>)> {
     let mut wishes = vec![PartWish::default(); if c.wish_count > 0 { PARTS.len() } else { 0 }];
     let mut parts = Vec::new();

@@ -43,9 +43,9 @@ pub struct wk_celestial {
     pub direction: [f64; 3],
     /// Direction to the body as it appears, lifted by refraction.
     pub apparent: [f64; 3],
-    /// Direction in the plane of the disc towards the middle of the lit limb; for the moon.
+    /// For the moon: direction in the plane of the disc towards the middle of the lit limb. For the sun: (0, 0, 1).
     pub bright_limb: [f64; 3],
-    /// Illuminance above the air on a surface facing the body, lux per channel.
+    /// Illuminance that a surface facing the body would receive above the air, lux per channel.
     pub illuminance_lux: [f64; 3],
     /// Azimuth, degrees clockwise from true north, [0, 360).
     pub azimuth_deg: f64,
@@ -265,9 +265,9 @@ pub(super) fn time_or_now(context: &Context, time_s: Option<f64>) -> Result<f64>
 }
 
 /// Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
-/// a place dim its light, by their mean over all places at the same height. `position_size` and `light_size` are the
-/// distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
-/// lights.
+/// the height of a place dim its light, by their mean effect on all places at that height. `position_size` and
+/// `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
+/// sizeof(wk_ground_light) of your header for lights.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_light(
@@ -302,7 +302,7 @@ pub unsafe extern "C" fn wk_context_get_light_at(
 }
 
 /// # Safety
-/// The lists are NULL or as long as they say.
+/// Each list is NULL or as long as its count says.
 unsafe fn light(
     function: &'static str,
     context: *const wk_context,
@@ -333,9 +333,9 @@ unsafe fn light(
     })
 }
 
-/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
-/// haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the host's objects.
-/// `segment_size` and `between_size` are the sizes of an element in your header.
+/// Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. The answers
+/// include air, haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the
+/// host's objects. `segment_size` and `between_size` are sizeof(wk_segment) and sizeof(wk_between) of your header.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_between(
@@ -370,7 +370,7 @@ pub unsafe extern "C" fn wk_context_get_between_at(
 }
 
 /// # Safety
-/// The lists are NULL or as long as they say.
+/// Each list is NULL or as long as its count says.
 unsafe fn way(
     function: &'static str,
     context: *const wk_context,
@@ -434,7 +434,7 @@ pub unsafe extern "C" fn wk_context_get_visibility_at(
 }
 
 /// Gets the sky's light on surfaces of any orientation at a place. The call reads the sky's tables. It builds them if
-/// no frame has done so yet, and waits for the GPU once after every change of the air.
+/// no frame has done so yet. The first call after each change of the tables waits for the GPU.
 /// Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

@@ -9,7 +9,7 @@
 //! The double-precision reference of the sky computes the answers on the calling thread, without work of the GPU. The
 //! first query in a new state of the air solves the reference, which takes a second or two; other threads that query
 //! meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
-//! states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
+//! states are kept for all contexts of a device. docs/reflections.md has the cost for each direction and the difference
 //! from pictures.
 
 use glam::DVec3;
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn wk_context_get_sky_radiance_at(
 }
 
 /// # Safety
-/// The position is NULL or three numbers, the lists NULL or as long as they say.
+/// The position is NULL or three numbers. Each list is NULL or as long as its count says.
 unsafe fn radiance(
     function: &'static str,
     point: QueryPoint,

@@ -30,16 +30,16 @@ include!(concat!(env!("OUT_DIR"), "/init_rain.rs"));
 
 /// Way in which a view draws rain. The rain that falls does not depend on it.
 pub type wk_rain_model = u32;
-/// Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget it draws less where the picture does not
-/// need it or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
-/// wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
+/// Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget, Welkin draws less rain where the
+/// picture does not need more or the time does not allow more (WK_PART_RAIN). Near a wind that varies in space
+/// (wk_context_set_wind_grid, wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
 /// Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
 /// rain without compute shaders (wk_caps.tier 0). No splashes.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
-/// Single drops to 4 m, each at a place that seed and time give; cones beyond only where lamps light the rain.
+/// Single drops to 4 m, each at a place that seed and time give; cones beyond 4 m only where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
 /// Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1).
 pub const WK_RAIN_MODEL_INTEGRATED: wk_rain_model = 4;
@@ -76,7 +76,7 @@ pub struct wk_rain {
     /// Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, one
     /// streak, stone or splash hides as much of the background as g of them one behind another would. This departs from
     /// physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
-    /// water and queries do not depend on it. Set the same value on all channels of a simulator.
+    /// water and queries do not depend on the gain. Set the same value on all channels of a simulator.
     pub contrast_gain: f64,
 }
 
@@ -140,7 +140,8 @@ pub struct wk_shelter_shape {
     /// Must be 0.
     pub reserved0: u32,
     /// Four numbers for each plane: a unit normal in the box's axes that points out of the shape, and the plane's
-    /// distance along it from the box's centre, m, within 1e6. The planes must leave some of the box. Default 0.
+    /// distance from the box's centre along this normal, m, within 1e6. The planes must leave some of the box. Default
+    /// 0.
     pub planes: [f64; 64],
 }
 

@@ -1,11 +1,12 @@
 //! Weather regions
 //!
 //! Weather regions have a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a
-//! shape on the ground plan, a perimeter outside it over which its weather fades into the weather around, and a
-//! wk_weather. The region's field `has` lists the parts of that weather that hold in the region. At each place, every
-//! query and the picture of a camera there see the merged weather. Queries between two points integrate the extinction
-//! of all regions on the way. Regions move at their own velocity, never with the wind; a host may also set them again
-//! in every frame. wk_context_save keeps them, and they are the same on all channels of a simulator.
+//! shape on the ground plan, a wk_weather, and a perimeter outside the shape, over which the region's weather fades
+//! into the weather around it. The region's field `has` lists the parts of that weather that hold in the region. At
+//! each place, every query and the picture of a camera there see the merged weather. Queries between two points
+//! integrate the extinction of all regions on the way. Regions move at their own velocity, never with the wind; a host
+//! may also set them again in every frame. wk_context_save keeps them, and they are the same on all channels of a
+//! simulator.
 //!
 //! Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that both
 //! regions merge are averaged by the regions' weights. The averages are those of extinction (not visibility), rates,
@@ -83,9 +84,9 @@ pub struct wk_weather_region {
     /// Parts that are averaged with those of earlier regions that merge them too. In all other parts the region
     /// replaces the earlier regions of the list. Default 0.
     pub merges: wk_weather_part_flags,
-    /// Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights are
-    /// above the station of the weather outside; station_altitude_m, the runway visual range and the ozone column have
-    /// no effect. Read during the call only.
+    /// Weather inside the region, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its
+    /// heights are above the station of the weather outside; station_altitude_m, the runway visual range and the ozone
+    /// column have no effect. Read during the call only.
     pub weather: *const wk_weather,
     /// Centre in the host's world at the time at_s, m, within 1e12 m of the origin; its height has no effect. Default
     /// 0, 0, 0.
@@ -114,8 +115,8 @@ pub struct wk_weather_region {
     pub at_s: f64,
     /// Share by which the region acts, to fade it in and out. Range [0, 1], default 1.
     pub strength: f64,
-    /// Upward velocity of the wind above 100 m, m/s; it decreases linearly to 0 at the station's height. Needs
-    /// WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
+    /// Upward velocity of the wind 100 m or more above the station, m/s. Lower down it decreases linearly to 0 at the
+    /// station's height. Needs WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
     pub vertical_wind_m_s: f64,
 }
 
@@ -197,8 +198,8 @@ impl wk_weather_region {
 /// Set them again to change them; you may also do so in every frame, at their new places. Unchanged after an error.
 /// Copied during the call.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
-/// corner radius beyond the smaller half extent.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, also for a polygon whose sides cross or a
+/// corner radius larger than the smaller half extent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_weather_regions(
     context: *mut wk_context,

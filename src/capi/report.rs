@@ -48,7 +48,8 @@ pub type wk_metar_assumed_flags = u32;
 pub const WK_METAR_ASSUMED_WIND: wk_metar_assumed_flags = 0x1;
 /// wind_from_deg: 0 is assumed.
 pub const WK_METAR_ASSUMED_WIND_DIRECTION: wk_metar_assumed_flags = 0x2;
-/// visibility_m: as humidity and precipitation allow, at most 1 km in fog and 5 km in mist or haze.
+/// visibility_m: the visibility that humidity and precipitation allow is assumed, at most 1 km in fog and 5 km in mist
+/// or haze.
 pub const WK_METAR_ASSUMED_VISIBILITY: wk_metar_assumed_flags = 0x4;
 /// Present weather (`//`): neither precipitation nor fog nor haze is assumed.
 pub const WK_METAR_ASSUMED_PRECIPITATION: wk_metar_assumed_flags = 0x8;
@@ -60,14 +61,15 @@ pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
 pub const WK_METAR_ASSUMED_CLOUD_COVER: wk_metar_assumed_flags = 0x40;
 /// vertical_visibility_m (`VV///`): 60 m is assumed.
 pub const WK_METAR_ASSUMED_VERTICAL_VISIBILITY: wk_metar_assumed_flags = 0x80;
-/// temperature_c: 15; at most -1 in snow or freezing precipitation; at most 1 where rain and snow fall together or the
-/// precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative humidity.
+/// temperature_c: 15 is assumed, but at most -1 in snow or freezing precipitation, and at most 1 where rain and snow
+/// fall together or the precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative
+/// humidity is assumed.
 pub const WK_METAR_ASSUMED_TEMPERATURE: wk_metar_assumed_flags = 0x100;
-/// relative_humidity: 0.7, or what a dew point gives at the assumed temperature.
+/// relative_humidity: 0.7 is assumed, or the humidity that a reported dew point gives at the assumed temperature.
 pub const WK_METAR_ASSUMED_HUMIDITY: wk_metar_assumed_flags = 0x200;
 /// pressure_hpa: 1013.25 is assumed.
 pub const WK_METAR_ASSUMED_PRESSURE: wk_metar_assumed_flags = 0x400;
-/// wk_metar.day, hour and minute: 0.
+/// wk_metar.day, hour and minute: 0 is assumed.
 pub const WK_METAR_ASSUMED_TIME: wk_metar_assumed_flags = 0x800;
 
 /// Meaning of the amounts in cloud groups. Nations differ, and a report does not say which practice it follows.
@@ -221,10 +223,10 @@ impl wk_metar {
 }
 
 /// Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
-/// the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
-/// `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
-/// there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
-/// from a list of airports.
+/// the station's rule. The weather's cloud layers are written to `layers`, which has room for `layer_capacity` elements
+/// of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds
+/// points there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0:
+/// set it from a list of airports.
 /// Thread: any.
 /// Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
 /// weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
@@ -313,8 +315,8 @@ fn answer(text: &str, options: &MetarOptions, (weather, metar): ReportRoom) -> R
     Ok(Status::Ok)
 }
 
-/// Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
-/// names.
+/// Writes the weather of a named preset to `*out_weather`, and its cloud layers as wk_weather_from_metar does.
+/// wk_get_preset gives the names.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown name; the message lists the known ones.
 #[unsafe(no_mangle)]

@@ -1,11 +1,12 @@
 //! The sea: settings and queries
 //!
-//! Describe your sea, and query for any time the height and slope of its surface and the motion of the water; a hull
-//! can float by the answers. Without settings a context has no sea. A wave height or swell that you set here replaces
-//! that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else follows the weather:
-//! its wind raises waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
-//! repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
-//! places, sheltered harbours, and lakes with a level of their own. Hulls (wk_context_set_sea_hulls) raise wakes.
+//! Describe your sea. Queries then give the height and slope of its surface and the motion of the water at any time, so
+//! that a hull can float by the answers. Without settings a context has no sea. A wave height or swell that you set
+//! here replaces that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else
+//! follows the weather: its wind raises waves by fetch and duration. The waves have the requested height within 1 %,
+//! their pattern does not repeat, and the same time gives the same bits on every machine. Regions
+//! (wk_context_set_sea_regions) describe dry places, sheltered harbours, and lakes with a level of their own. Hulls
+//! (wk_context_set_sea_hulls) raise wakes.
 //!
 //! ```text
 //! wk_sea sea = WK_SEA_INIT;
@@ -236,10 +237,10 @@ pub struct wk_sea_state {
     /// Mean direction that the waves come from, degrees clockwise from true north, weighted by variance; 0 without
     /// waves.
     pub mean_from_deg: f64,
-    /// Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
+    /// Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if theirs is larger.
     pub mean_square_slope: f64,
     /// Part of mean_square_slope that belongs to the waves in the computed surface. The rest belongs to waves too short
-    /// for it.
+    /// for that surface.
     pub drawn_square_slope: f64,
     /// Height of the largest wave expected in an hour, m, crest to trough (Longuet-Higgins 1952), plus the heights of
     /// all single waves.

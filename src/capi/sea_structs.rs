@@ -189,7 +189,7 @@ pub struct wk_sea {
     pub significant_height_m: f64,
     /// Optional: peak period of the wind sea, s. Range [0.5, 30]; else that of a fully developed sea of this height.
     pub peak_period_s: f64,
-    /// Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without.
+    /// Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 if peak_period_s is set, and 1 if it is not.
     pub peak_gamma: f64,
     /// Optional: Beaufort number B. Range [0, 12]. The sea is the one that a steady wind of 0.836 B^1.5 m/s sustains
     /// over the fetch.
@@ -204,19 +204,19 @@ pub struct wk_sea {
     /// Optional: share of downward blue light (450 nm) that passes a metre of water, percent. Range [41.1, 98.1]: from
     /// type 7C to type I; else by water_type.
     pub clarity_percent: f64,
-    /// Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice.
+    /// Optional, with ice_floe_m and ice_width_m: share of the surface under ice floes. Range [0, 1]; else no ice.
     pub ice_cover: f64,
-    /// Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than this do not lift them.
+    /// Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than a floe do not lift it.
     pub ice_floe_m: f64,
-    /// Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. They decay along it
-    /// (Meylan, Bennetts and Kohout 2014).
+    /// Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. The waves decay along
+    /// this distance (Meylan, Bennetts and Kohout 2014).
     pub ice_width_m: f64,
     /// Optional: WMO sea state, code table 3700. Range 0 to 9. The sea is fully developed, with the middle of the
     /// code's range of heights.
     pub sea_state: u32,
     /// Optical type of the water. Default WK_WATER_TYPE_IB.
     pub water_type: wk_water_type,
-    /// Optional: the swells; may be NULL if there are none. Read during the call only. Else the weather's swell.
+    /// Optional: the swells; else the weather's swell. May be NULL if there are none. Read during the call only.
     pub swells: *const wk_sea_swell,
     /// Number of swells, at most 4. Default 0.
     pub swell_count: u32,
@@ -399,8 +399,8 @@ impl wk_sea_region {
 }
 
 /// A hull that moves through the water and raises a wake. The waves of its bow and stern follow from its length, beam,
-/// draught and speed (Michell 1898); the wake also has the foam of its wash. The hull goes on at its speed and rate of
-/// turn until it is set anew.
+/// draught and speed (Michell 1898); the wake also contains the foam of the hull's wash. The hull goes on at its speed
+/// and rate of turn until it is set anew.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_sea_hull {

@@ -63,10 +63,11 @@ pub struct wk_sky_settings {
     /// Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64.
     pub march_cells: u32,
     /// Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
-    /// the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
-    /// the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
-    /// time to build tables grows in proportion, both for a change of air and for a moving sun: with 15 wavelengths it
-    /// is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+    /// the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel,
+    /// relative to the luminance, is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result
+    /// with 40. The time to build tables grows in proportion, both for a change of air and for a moving sun: with 15
+    /// wavelengths it is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and
+    /// WK_SKY_ISOTROPIC only.
     pub wavelengths: u32,
 }
 
@@ -111,10 +112,10 @@ impl wk_sky_settings {
     }
 }
 
-/// Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
-/// WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
-/// first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
-/// model are compiled in that frame. Setting the same values again changes nothing.
+/// Changes how the sky is drawn, as a wk_sky_settings in wk_context_desc.next does for a new context. `settings` NULL
+/// means WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky,
+/// as a first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of
+/// another model are compiled in that frame. Setting the same values again changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they
 /// were.

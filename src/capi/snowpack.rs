@@ -48,7 +48,7 @@ pub struct wk_lying_snow {
     pub mass_kg_m2: f64,
     /// Density, kg/m^3; 0 without snow.
     pub density_kg_m3: f64,
-    /// Liquid water in the snow over the most that it can hold, 0 to 1.
+    /// Ratio of the liquid water in the snow to the most that the snow can hold, 0 to 1.
     pub wetness: f64,
     /// Albedo for visible light; 0 without snow.
     pub albedo: f64,
@@ -113,7 +113,7 @@ impl wk_snow_strip {
 }
 
 /// # Safety
-/// `strip` is NULL or a struct of its size, whose list is NULL or as long as it says.
+/// `strip` is NULL or a struct of its size, whose list is NULL or as long as the struct says.
 unsafe fn strip_of(strip: *const wk_snow_strip) -> Result<SnowStrip> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"strip", strip)? };
@@ -165,8 +165,8 @@ pub unsafe extern "C" fn wk_context_get_lying_snow(
     })
 }
 
-/// Removes the snow of a strip of the host's terrain except the lowest `left_m` (range [0, 100]), as a plough or a
-/// shovel does. `out_mass_kg` gets the removed mass and may be NULL.
+/// Removes the snow of a strip of the host's terrain except the lowest `left_m` metres (range [0, 100]), as a plough or
+/// a shovel does. `out_mass_kg` gets the removed mass and may be NULL.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
 /// WK_LYING_SNOW_SIMULATED, and while steps of an update remain.

@@ -181,8 +181,8 @@ pub unsafe extern "C" fn wk_context_add_soil_tool(
 }
 
 /// Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
-/// with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
-/// after the last one. Its edge must stay over tiles. Unchanged after an error.
+/// with each point at most 20 m from its place in the last pose. The tool moves at constant speed between its poses,
+/// and stands still after the last one. Its edge must stay over tiles. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for a pose that is not
 /// later than the last pose and the last update, for a tool that has ended, without soil, and while steps of an update
@@ -237,7 +237,7 @@ pub unsafe extern "C" fn wk_context_get_soil_tool(
 /// Gets the force of the soil on the edge of a tool, for the depth of the cut and the soil of the last step: P = w
 /// (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
 /// depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
-/// the physics of your machine; 0 where the tool does not cut.
+/// the physics of your machine. It is 0 where the tool does not cut.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
@@ -333,10 +333,11 @@ pub unsafe extern "C" fn wk_context_get_soil_points(
 }
 
 /// Gets the rectangles in which soil has changed heights since a revision of the terrain
-/// (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` gets their number
-/// in any case. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds.
-/// `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns their heights and kinds.
-/// Do not pass these heights to wk_context_update_terrain: the tiles are the undug ground.
+/// (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` always gets the
+/// number of rectangles. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it
+/// succeeds. `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns the heights and
+/// kinds of a rectangle's cells. Do not pass these heights to wk_context_update_terrain: the tiles are the undug
+/// ground.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]

@@ -116,7 +116,7 @@ pub struct wk_soil {
     pub horizon_count: u32,
     /// Must be 0.
     pub reserved0: u32,
-    /// Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
+    /// Depth of each layer's upper side below the undug surface, m: 0 for the first layer, then increasing, up to
     /// 1000. Copied by the call. Default NULL.
     pub horizon_tops_m: *const f64,
     /// Kind of each layer, a wk_soil_kind_id. Copied by the call. Default NULL.
@@ -197,12 +197,12 @@ pub struct wk_soil_pose {
     /// Left end of the cutting edge, or of the line of contact of a wheel or track, in the host's world, m. Default 0,
     /// 0, 0.
     pub edge_left_m: [f64; 3],
-    /// Right end of this edge or line, 0.05 to 20 m from the left end. Default 0, 0, 0.
+    /// Right end of the cutting edge or line of contact, 0.05 to 20 m from its left end. Default 0, 0, 0.
     pub edge_right_m: [f64; 3],
     /// Left end of the upper edge of the opening, opposite to the cutting edge and 0.02 to 20 m from it. Not used for
     /// wheels and tracks. Default 0, 0, 0.
     pub upper_left_m: [f64; 3],
-    /// Right end of the upper edge, 0.05 to 20 m from the left end. Default 0, 0, 0.
+    /// Right end of the opening's upper edge, 0.05 to 20 m from its left end. Default 0, 0, 0.
     pub upper_right_m: [f64; 3],
     /// Direction out of the opening in the host's world; any length in [1e-6, 1e6]. Not used for wheels and tracks.
     /// Default 0, 0, 0; must be given for other tools.
@@ -382,8 +382,8 @@ impl wk_cutting_force {
     }
 }
 
-/// Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every
-/// call.
+/// Balance of the soil's mass, in whole micrograms. After every call, dug + brought equals lying + held + taken
+/// exactly.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_balance {
@@ -444,9 +444,9 @@ pub struct wk_soil_point {
     pub kind: wk_soil_kind_id,
     /// 1 if the cell has ground; all other fields are 0 otherwise.
     pub has_ground: u32,
-    /// Colour of the soil that shows, linear Rec. 709 albedo.
+    /// Colour of the dug, loose or pressed soil that shows, linear Rec. 709 albedo.
     pub albedo: [f32; 3],
-    /// Share of the cell that this soil covers, 0 to 1; the undug surface shows in the rest.
+    /// Share of the cell in which that soil shows, 0 to 1; the undug surface shows in the rest.
     pub covered: f32,
 }
 

@@ -1,8 +1,8 @@
 //! Stars
 //!
 //! At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
-//! zodiacal light and the Milky Way behind its sky, at their positions over the context's place and time. By day, in
-//! fog and under closed clouds none of them is drawn. A budget may leave them out (WK_PART_STARS).
+//! zodiacal light and the Milky Way behind its sky, at their positions for the context's place and time. By day, in fog
+//! and under closed clouds none of them is drawn. A budget may leave all of these lights out (WK_PART_STARS).
 
 use std::{ffi::c_void, ptr::null};
 
@@ -117,8 +117,8 @@ pub unsafe extern "C" fn wk_context_set_stars(context: *mut wk_context, stars: *
 }
 
 /// Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
-/// a simulation time. It decreases with the brightness of the sky, and with the extinction of the star's light in air,
-/// fog and clouds. Where no starlight gets through it is minus infinity.
+/// a simulation time. This magnitude decreases with the brightness of the sky, and with the extinction of the star's
+/// light in air, fog and clouds. It is minus infinity where no starlight gets through.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions.
 #[unsafe(no_mangle)]

@@ -92,7 +92,7 @@ pub const WK_SURFACE_DISPLAY_SRGB: wk_surface_encoding = 1;
 
 /// Time at which images reach the screen.
 pub type wk_pacing = u32;
-/// With the screen's refresh; acquire waits for it.
+/// With the screen's refresh; wk_surface_acquire waits for the refresh.
 pub const WK_PACING_REFRESH: wk_pacing = 0;
 /// As soon as possible; may tear.
 pub const WK_PACING_IMMEDIATE: wk_pacing = 1;
@@ -227,8 +227,8 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
 }
 
 /// Configures a surface, the first time or after its window changed. An image that was acquired and not yet presented
-/// is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
-/// surface is configured with an area.
+/// is discarded. With a width or height of 0 the call succeeds, and wk_surface_acquire returns
+/// WK_ERROR_SURFACE_OUTDATED until the surface is configured with an area.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the window has no format
 /// for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone.

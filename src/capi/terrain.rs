@@ -7,11 +7,11 @@
 //! WK_GROUND_SIMULATED each cell has its own water, and hollows join across the borders of tiles; with
 //! WK_GROUND_REPORTED tiles are as wet as level ground. A context has either tiles or one wk_ground_grid.
 //!
-//! The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
-//! queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
-//! heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and the
-//! functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a change
-//! takes effect after the last of them.
+//! The host's heights are the undug ground. With wk_context_set_soil the library adds what the soil's tools dig and
+//! heap, and queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the
+//! host's heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and
+//! the functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a
+//! change takes effect after the last of them.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -83,9 +83,9 @@ pub struct wk_terrain_drawing {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
-    /// default 1. It sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the
-    /// level's squares. Ground so rough that it would need a longer reach is drawn with a larger error.
+    /// Largest vertical error of the drawn triangles on 99.7 % of the ground, pixels. Range [0.25, 16], default 1. It
+    /// sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the level's squares.
+    /// Ground so rough that it would need a longer distance is drawn with a larger error.
     pub error_px: f64,
     /// Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
     /// [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to 34 MB
@@ -172,7 +172,7 @@ pub struct wk_terrain_point {
     /// Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells: each square of
     /// four cells is split from its south-western to its north-eastern cell. 0 where there is no ground.
     pub height_m: f64,
-    /// Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground.
+    /// Unit normal of the ground's triangle in the host's axes, upwards; 0, 0, 0 where there is no ground.
     pub normal: [f64; 3],
     /// Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground.
     pub revision: u64,

@@ -171,8 +171,8 @@ pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_stat
     })
 }
 
-/// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
-/// the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
+/// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, from the top of the picture down. `data_size`
+/// is the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
@@ -201,8 +201,8 @@ pub unsafe extern "C" fn wk_texture_write(
     })
 }
 
-/// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
-/// picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
+/// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, from the top of the
+/// picture down. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
 /// Slow: do not call it in every frame.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.

@@ -84,7 +84,7 @@ pub unsafe extern "C" fn wk_context_set_weather(
 /// leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
 /// returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
 /// later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
-/// After a leap of more than a day, only the last day of the water is simulated. The ground starts that day as wet as
+/// After a leap of more than a day, the water is simulated for the last day only. The ground starts that day as wet as
 /// the weather of that time reports.
 /// Thread: exclusive.
 /// Returns WK_PENDING, which is no error, while steps remain.
@@ -97,8 +97,8 @@ pub unsafe extern "C" fn wk_context_update(context: *mut wk_context, time_s: f64
 }
 
 /// Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while
-/// wk_context_update returns WK_PENDING. The difference between the two is the lag of the state. The state's time never
-/// decreases, except by wk_context_load.
+/// wk_context_update returns WK_PENDING. The difference from the time of the last wk_context_update is the lag of the
+/// state. The state's time never decreases, except by wk_context_load.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_state_time(
@@ -129,9 +129,9 @@ pub unsafe extern "C" fn wk_context_set_clock(context: *mut wk_context, utc_s: f
     })
 }
 
-/// Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
-/// `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
-/// next day, as in Unix time.
+/// Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` lies in [-2000, 6000].
+/// `second` lies in [0, 60), or in [0, 61) in the last minute of a day: the leap second 23:59:60 is the first second of
+/// the next day, as in Unix time.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_utc_from_calendar(
@@ -226,7 +226,7 @@ pub unsafe extern "C" fn wk_context_set_exposure(
 /// water, snow and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
 /// wk_terrain_drawing), the host's own list of stars, and the images of wk_context_set_occluder_maps, because each
 /// channel may have its own.
-/// `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
+/// `*out_size` always gets the number of bytes needed. If `capacity` is too small, nothing else is written and the call
 /// fails; with `buffer` NULL and `capacity` 0 it succeeds.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
@@ -249,8 +249,9 @@ pub unsafe extern "C" fn wk_context_save(
 /// Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
 /// same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
 /// geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. If a state of an earlier version
-/// lacks the planet and the tone curve, these must be equal too. Occluder maps stay as they are. Tiles of a wk_terrain
-/// stay too: before the call, set them as they were when the state was saved.
+/// lacks the planet and the tone curve, the context must also have the planet and the tone curve with which that state
+/// was saved. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before the call, set them as they were
+/// when the state was saved.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
 /// another format, which the message names (this version reads format 2; save states of format 1 again, because they

@@ -109,12 +109,12 @@ pub struct wk_report {
     pub next: *const c_void,
     /// The host's frame number; UINT64_MAX before the first frame.
     pub frame_id: u64,
-    /// Number of full-screen draws recorded for this frame so far.
+    /// Number of render passes recorded for this frame so far, without those that build tables.
     pub passes: u32,
     /// Number of tables built, refined or blended for this frame so far; 0 when only the camera turned and the sky has
     /// its final quality.
     pub tables_rebuilt: u32,
-    /// Display units per cd/m^2 that were applied; 0 if nothing was drawn.
+    /// Exposure that was applied, display units per cd/m^2; 0 if nothing was drawn.
     pub exposure: f64,
     /// GPU memory that the view uses for itself, bytes.
     pub bytes: u64,
@@ -125,32 +125,32 @@ pub struct wk_report {
     /// Time of the frame's calls so far, including the wait for the GPU, ms. Set if the frame was measured
     /// (WK_FRAME_MEASURE).
     pub ms: f64,
-    /// Predicted time of the weather in this frame, ms, from the times reported before this frame.
+    /// Time that the weather in this frame was predicted to take, ms, from the times that the host had reported before.
     pub predicted_ms: f64,
     /// Time that the host reported for this frame, ms.
     pub reported_ms: f64,
-    /// Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
-    /// pixels.
+    /// Estimated error due to the parts that this frame left out, except those that were still fading: 95th percentile
+    /// over the gauged pixels.
     pub predicted_error: f64,
-    /// Upper end of the 95 % confidence interval of the percentile in predicted_error over all pixels.
+    /// Upper bound, with 95 % confidence, of the error's 95th percentile over all pixels.
     pub predicted_error_bound: f64,
     /// Error bound that was predicted for the last gauged picture.
     pub checked_error_bound: f64,
-    /// Error that the gauge measured in the picture of checked_error_bound.
+    /// Error that the gauge measured in the picture for which checked_error_bound was predicted.
     pub checked_error: f64,
     /// Number of drops and hailstones around the camera; those inside the picture were drawn.
     pub drops: u32,
-    /// Number of flakes around the camera; those inside the picture were drawn. 0 if none were.
+    /// Number of flakes around the camera; those inside the picture were drawn. 0 if no flakes were drawn.
     pub flakes: u32,
     /// Number of drops that each drawn drop represented: 1 unless more fell than wk_rain.most_drops; 0 without drops.
     pub drop_weight: f64,
-    /// Rate of splashes, 1/(m^2 s) on level ground, that were left out because the largest number of splashes was
-    /// reached. They are those of the smallest drops.
+    /// Rate of the splashes left out on level ground because the largest number of splashes was reached, 1/(m^2 s). The
+    /// splashes of the smallest drops are left out first.
     pub splashes_left_out_per_m2_s: f64,
-    /// Rate of stones, 1/(m^2 s) on level ground, that did not bounce because the largest number of bouncing stones was
-    /// reached. They are the smallest ones.
+    /// Rate of the stones that did not bounce on level ground because the largest number of bouncing stones was
+    /// reached, 1/(m^2 s). The smallest stones are left out first.
     pub stones_left_out_per_m2_s: f64,
-    /// Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn.
+    /// Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if no rain was drawn.
     pub contrast_gain: f64,
     /// Distance up to which flakes were drawn, m; farther away snow is extinction alone. 0 if no flakes were drawn.
     pub flakes_to_m: f64,
@@ -187,9 +187,9 @@ impl wk_report {
 
 /// Effect whose cost is measured.
 pub type wk_effect = u32;
-/// Tables over the planet: built when the air changes.
+/// Tables of the sky for the whole planet: built when the air changes.
 pub const WK_EFFECT_SKY_TABLES: wk_effect = 0;
-/// The sky and the air as seen from the camera's height: built when height, sun or air change.
+/// Tables of the sky and the air as seen from the camera's height: built when height, sun or air change.
 pub const WK_EFFECT_SKY_VIEW: wk_effect = 1;
 /// Sky behind everything.
 pub const WK_EFFECT_BACKGROUND: wk_effect = 2;
@@ -207,7 +207,7 @@ pub const WK_EFFECT_HAND_OVER: wk_effect = 7;
 pub const WK_EFFECT_PARTICLES: wk_effect = 8;
 /// Water and snow on surfaces, and the sea and terrain that Welkin draws.
 pub const WK_EFFECT_SURFACE: wk_effect = 9;
-/// Water on the windscreen: its simulation steps, which run after the sky's tables, and the stage LENS.
+/// Water on the windscreen: its simulation steps, which run after the sky's tables are built, and the stage LENS.
 pub const WK_EFFECT_WINDSCREEN: wk_effect = 10;
 
 /// Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead.
@@ -251,7 +251,8 @@ pub unsafe extern "C" fn wk_view_create(
 }
 
 /// Destroys a view. NULL does nothing.
-/// Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
+/// Thread: any. GPU objects that need the host's OpenGL context are released at once if that context can be made
+/// current on this thread, else at the next call that uses the GPU of this device.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_view_destroy(view: *mut wk_view) -> wk_status {
     guard("wk_view_destroy", |_| {
@@ -355,8 +356,8 @@ pub unsafe extern "C" fn wk_view_prepare(
     })
 }
 
-/// Draws the context's present moment in frames of a rehearsal, until a frame creates no pipeline, at most
-/// [`MOST_FRAMES`].
+/// Draws the context's present state in frames of a rehearsal until a frame creates no pipeline, but in at most
+/// [`MOST_FRAMES`] frames.
 ///
 /// # Safety
 /// As `host::record`.
@@ -386,7 +387,7 @@ unsafe fn stages_of_calls(calls: *const wk_stage_flags, count: u32) -> Result<Ve
     if given.is_empty() { Ok(vec![Stages::ALL]) } else { given.iter().enumerate().map(one).collect() }
 }
 
-/// Most weathers of a rehearsal.
+/// Largest number of weathers in a rehearsal.
 const MOST_WEATHERS: usize = 64;
 
 /// Reads the weathers of a rehearsal.
@@ -459,8 +460,8 @@ pub unsafe extern "C" fn wk_view_get_report(view: *mut wk_view, out_report: *mut
     })
 }
 
-/// Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` gets
-/// their number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
+/// Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` always
+/// gets the number of effects, which is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
 /// nothing else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of
 /// your header. Later versions may have more effects.
 /// Thread: exclusive on the view.

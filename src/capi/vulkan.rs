@@ -68,10 +68,10 @@ pub unsafe extern "C" fn wk_device_create_vulkan(
     })
 }
 
-/// Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
-/// after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
-/// may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
-/// when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
+/// Waits until the GPU no longer uses a VkImage, and forgets it. Call this function for each image that you handed
+/// over, before or after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a
+/// new one: Vulkan may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy
+/// an image only when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
 /// vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
 /// Thread: exclusive on the device.
 /// Errors: WK_ERROR_UNSUPPORTED on a device that is not on a Vulkan host.

@@ -14,7 +14,7 @@ pub type wk_vulkan_get_proc_fn =
 /// Takes or releases the host's lock on its queue.
 pub type wk_vulkan_queue_fn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
-/// The host's Vulkan device. All handles stay the host's and outlive the wk_device.
+/// The host's Vulkan device. All handles stay the host's and must outlive the wk_device.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_vulkan_host_desc {
@@ -112,8 +112,8 @@ pub struct wk_vulkan_image {
     /// Array layer that is handed over, such as one eye of a stereo or multiview host; the others stay untouched.
     /// Default 0.
     pub layer: u32,
-    /// VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be discarded; colour
-    /// only).
+    /// VkImageLayout in which the host left the image's handed-over layer. Default 0 (UNDEFINED: its content may be
+    /// discarded; colour only).
     pub layout: u32,
     /// VkImageLayout in which Welkin returns the layer. Default 0; must be given. PRESENT_SRC_KHR, here and in
     /// `layout`, needs VK_KHR_swapchain in enabled_device_extensions of the wk_vulkan_host_desc.
@@ -196,8 +196,8 @@ pub struct wk_vulkan_target {
     /// depth may have more; the first sample of each pixel is then used. With NULL (the default) every pixel shows the
     /// sky.
     pub depth: *const wk_vulkan_image,
-    /// A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
-    /// sample, another image. Default NULL.
+    /// A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. It is another image, as
+    /// large as `color`, with one sample. Default NULL.
     pub mask: *const wk_vulkan_image,
     /// Semaphores to wait for before drawing, at most 16. The submission that signals a binary one must come before
     /// this call.

@@ -105,10 +105,11 @@ pub struct wk_cloud_layer {
     /// Optional: effective radius of droplets or crystals, um. Range [1, 500]; else by kind.
     pub droplet_radius_um: f64,
     /// Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
-    /// middle of the layer, which grows and veers with height (docs/clouds.md). Changing it does not displace any
-    /// cloud.
+    /// middle of the layer, which grows and veers with height (docs/clouds.md). Changing this speed does not displace
+    /// any cloud.
     pub wind_m_s: f64,
-    /// Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
+    /// Optional, with wind_m_s: direction that the wind of wind_m_s comes from, degrees clockwise from true north.
+    /// Range [0, 360].
     pub wind_from_deg: f64,
     /// Typical distance between clouds, m. Range [50, 200000]; 0, the default, lets kind and thickness decide.
     pub spacing_m: f64,
@@ -178,8 +179,8 @@ pub struct wk_weather {
     /// Optional: mean cosine of the phase function. Range [-0.99, 0.99]; else by kind and humidity.
     pub aerosol_asymmetry: f64,
     /// Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
-    /// kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky is computed
-    /// from the density at sea level, which is limited to 100 times that at the station.
+    /// kind. The value used is at least the station's altitude divided by 4.6 (435 m for a station at 2000 m), because
+    /// the sky is computed from the density at sea level, which is limited to 100 times that at the station.
     pub aerosol_scale_height_m: f64,
     /// Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility.
     pub fog_top_m: f64,
@@ -204,21 +205,21 @@ pub struct wk_weather {
     pub wind_from_deg: f64,
     /// Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence.
     pub wind_gust_m_s: f64,
-    /// Optional, together with the next field: start of the range within which the direction varies, degrees; the range
-    /// runs clockwise. Range [0, 360].
+    /// Optional, together with wind_variable_to_deg: start of the range within which the direction varies, degrees; the
+    /// range runs clockwise. Range [0, 360].
     pub wind_variable_from_deg: f64,
     /// End of the range within which the direction varies, degrees. Range [0, 360]. 0 to 360 means all directions
     /// (VRB).
     pub wind_variable_to_deg: f64,
-    /// Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
-    /// roughness.
+    /// Optional: turbulence intensity, the ratio of the speed's standard deviation to its mean. Range [0, 1]; else from
+    /// the roughness.
     pub wind_turbulence_intensity: f64,
 
     /// Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind.
     pub sea_significant_wave_height_m: f64,
     /// Optional: water temperature, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8.
     pub sea_temperature_c: f64,
-    /// Optional, together with the next two fields: significant height of the swell, m. Range [0, 20].
+    /// Optional, together with swell_period_s and swell_from_deg: significant height of the swell, m. Range [0, 20].
     pub swell_height_m: f64,
     /// Peak period of the swell, s. Range [1, 30] if the swell is set.
     pub swell_period_s: f64,
@@ -314,7 +315,8 @@ pub const WK_OVERRIDE_HUMIDITY_GROWTH: wk_override_flags = 0x10;
 pub const WK_OVERRIDE_RAYLEIGH_DENSITY: wk_override_flags = 0x20;
 /// rayleigh_scale_height_m
 pub const WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT: wk_override_flags = 0x40;
-/// No field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls from.
+/// A flag without a field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls
+/// from.
 pub const WK_OVERRIDE_RAIN_WITHOUT_CLOUD: wk_override_flags = 0x80;
 /// cloud_direct and cloud_diffuse
 pub const WK_OVERRIDE_CLOUD_LIGHT: wk_override_flags = 0x100;
@@ -344,20 +346,20 @@ pub struct wk_weather_overrides {
     /// Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of that which follows
     /// from the visibility. Range [0, 10].
     pub fog_extinction_per_m: f64,
-    /// Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10].
+    /// Extinction of precipitation, 1/m, in place of that from the spectra of drops and flakes. Range [0, 10].
     pub precipitation_extinction_per_m: f64,
     /// Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog.
     pub visibility_above_fog_m: f64,
     /// Growth of the particles' extinction with humidity, relative to that at 80 %. Range [0.1, 20]; law: Haenel
     /// (1976); 1 switches growth off.
     pub humidity_growth: f64,
-    /// Ratio of the air density at sea level to the standard's. Range [0, 10].
+    /// Ratio of the air density at sea level to that of the standard atmosphere. Range [0, 10].
     pub rayleigh_density_ratio: f64,
     /// Scale height of the air, m. Range [100, 50000].
     pub rayleigh_scale_height_m: f64,
     /// Fraction of the sun's direct beam that passes the clouds. Range [0, 1].
     pub cloud_direct: f64,
-    /// Diffuse light below the clouds as a fraction of the light above. Range [0, 1].
+    /// Diffuse light below the clouds as a fraction of the light above them. Range [0, 1].
     pub cloud_diffuse: f64,
     /// Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30].
     pub wave_height_m: f64,

@@ -50,7 +50,8 @@ pub(super) unsafe fn from_c(param: &str, p: *const wk_weather) -> Result<Weather
     Ok(weather)
 }
 
-/// Returns the overrides in a weather's chain, which [`from_c`] has checked; none set if there are none.
+/// Returns the overrides in a weather's chain, which [`from_c`] has checked; without overrides in the chain, none is
+/// set.
 ///
 /// # Safety
 /// As [`from_c`].

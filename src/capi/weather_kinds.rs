@@ -27,7 +27,7 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 
 /// Fog and mist: suspended droplets at the ground.
 pub type wk_fog_kind = u32;
-/// No fog: the reported visibility requires more extinction than clean air has, and all of the difference is aerosol.
+/// No fog: if the reported visibility requires more extinction than clean air has, all of the difference is aerosol.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
 /// Mist (METAR BR): droplets, visibility 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;
@@ -69,9 +69,9 @@ pub const WK_CLOUD_CIRROSTRATUS: wk_cloud_kind = 10;
 /// High ripples of ice.
 pub const WK_CLOUD_CIRROCUMULUS: wk_cloud_kind = 11;
 
-/// Kind of precipitation. For the types of rain choose: frontal (stratiform) rain: RAIN, usually 1 to 10 mm/h;
-/// convective rain: RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic) rain, with many small
-/// drops: DRIZZLE, 0.5 to 3 mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
+/// Kind of precipitation. Choose RAIN for frontal (stratiform) rain, usually 1 to 10 mm/h, and RAIN with
+/// WK_PRECIPITATION_SHOWERS for convective rain, 10 to 100 mm/h. Choose DRIZZLE for relief (orographic) rain, which has
+/// many small drops, 0.5 to 3 mm/h, and for drizzle, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each type.
 pub type wk_precipitation_kind = u32;
 /// Nothing falls; the rate must be 0.
 pub const WK_PRECIPITATION_NONE: wk_precipitation_kind = 0;

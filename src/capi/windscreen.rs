@@ -60,8 +60,8 @@ pub struct wk_wiper_arm {
     pub parked_deg: f64,
     /// Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90.
     pub far_deg: f64,
-    /// Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. Between two frames the
-    /// blade moves at constant speed.
+    /// Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. The blade moves at
+    /// constant speed from one frame to the next.
     pub position: f64,
     /// Width of the rubber on the glass, m. Range [0, 0.1], default 0.006.
     pub blade_width_m: f64,
@@ -110,8 +110,9 @@ pub struct wk_windscreen {
     /// About 0.7 of the vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
-    /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
-    /// not count: a box that holds the camera and ends within 3 m in front of the glass. Range [0, 1], default 1.
+    /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box keeps
+    /// no rain off: that is a box that contains the camera and ends within 3 m in front of the glass. Range [0, 1],
+    /// default 1.
     pub exposed: f64,
     /// Amount of mist on the inside. Range [0, 1], default 0.
     pub fogging: f64,

@@ -35,7 +35,7 @@ pub struct CloudMethod {
 
 /// Work of a marched ray at fineness 1: each step reads the map and the noise, and the light where there is cloud.
 const RAY: Units = Units { samples: 60.0, texels: 120.0, bytes: 0.0 };
-/// Work of a pixel that is reprojected from the frame before and laid over the sky.
+/// Work of a pixel that is reprojected from the previous frame and laid over the sky.
 const FOLLOWED: Units = Units { samples: 3.0, texels: 10.0, bytes: 32.0 };
 
 /// Work of a pixel of the deck, which is computed in closed form.

@@ -8,8 +8,8 @@
 //!   phase function. Light scattered more than once is computed as if the place stood in a box of uniform cloud with
 //!   the same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
 //!   [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
-//! * A picture marches the ray of one pixel in sixteen in each frame and takes the other pixels over from the frame
-//!   before.
+//! * A picture marches the ray of one pixel in sixteen in each frame and reprojects the other pixels from the previous
+//!   frame.
 //! * Mirrors and cube maps show clouds from `maps::panorama`, a small map of all directions.
 //! * A host's map of cover and the cloud over rain areas: `field::placed`, `field::layer_map`, `field::cells`.
 //! * Lamps and lightning flashes light clouds by [`lamp_light`], in a small picture of its own (`light::lamps`).
@@ -19,7 +19,7 @@
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
 //! # Folders
-//! Each folder uses only those before it. [`field`] says where cloud is: shape, threshold, cells and maps of cover, and
+//! Each folder uses only those named before it. [`field`] says where cloud is: shape, threshold, cells, cover maps and
 //! `field::overhead`, the one query for the layers over a place. [`light`] says how bright cloud is. `drawn` marches
 //! rays and holds the GPU resources of a picture. `maps` has the shadow map and the panorama. `view` and `passes`
 //! combine them for a frame, `held` for a host's queries.

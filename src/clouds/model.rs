@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CloudModel {
-    /// A grey deck in closed form where more than half of the sky is covered; broken clouds only dim the light. The
-    /// cheapest model.
+    /// A grey deck, computed in closed form, if more than half of the sky is covered. Broken clouds only dim the light.
+    /// The cheapest model.
     Deck,
     /// Layers drawn as volumes, marched ray by ray. A closed layer seen from below is drawn as a deck. The default.
     #[default]

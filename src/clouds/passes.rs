@@ -142,7 +142,8 @@ impl CloudPasses {
         })
     }
 
-    /// Writes the hosts' cover maps into the tables, and drops bindings that depend on them if they have changed.
+    /// Writes the hosts' cover maps into the tables. Drops the bindings and pipelines that depend on local cover, if
+    /// the maps' texture was created again or local cover has begun or ended.
     pub fn place(&mut self, device: &Device, overhead: &CloudLayers) -> Result<()> {
         let is_other = self.tables.place(device, overhead.maps.iter().flatten());
         if !is_other && self.is_placed == overhead.is_placed() {
@@ -456,7 +457,7 @@ impl CloudPasses {
     }
 }
 
-/// Copies the texture of stars and glow, which stand behind the sky's own light, into its layer.
+/// Copies the texture of stars and glow, which stand behind the sky's own light, into layer [`BEHIND`] of `target`.
 fn copy_layer(encoder: &mut wgpu::CommandEncoder, source: &wgpu::Texture, target: &wgpu::Texture) {
     let origin = wgpu::Origin3d { x: 0, y: 0, z: BEHIND };
     let size = wgpu::Extent3d { depth_or_array_layers: 1, ..source.size() };

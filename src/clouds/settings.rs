@@ -6,9 +6,9 @@ use crate::error::{Error, Result, check_range};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudSettings {
     /// Fineness of the steps along a ray: twice the value takes twice as many steps. Range \[0.125, 32\], default 2.
-    /// Half the default errs more than twice as much and costs hardly less (`lab chart clouds`).
+    /// At half the default the error is more than twice as large and the cost hardly lower (`lab chart clouds`).
     pub fineness: f64,
-    /// Side of a square of pixels. Each frame marches one pixel of every square and takes the others over from earlier
+    /// Side of a square of pixels. Each frame marches one pixel of every square and reprojects the others from earlier
     /// frames. 1, 2 or 4, default 4. Frames without history march all pixels.
     pub square_side: u32,
     /// Whether shafts of light are drawn: the air between clouds and ground is brighter where the sun shines through,

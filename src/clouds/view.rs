@@ -29,8 +29,8 @@ use crate::{
     wind::LayerDrifts,
 };
 
-/// Order in which the pixels of a square are marched, each far from the pixels marched before it: indices row by row in
-/// squares of 4 x 4. Smaller squares use each index modulo their number of pixels.
+/// Pixels of a square of 4 x 4 in the order in which they are marched, each far from the pixels marched before it. A
+/// pixel's index counts from 0, row by row. Smaller squares use each index modulo their number of pixels.
 const ORDER: [u32; 16] = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12];
 /// Stages whose draws show clouds directly.
 const SHOWN: Stages = Stages::BACKGROUND.with(Stages::MEDIUM);
@@ -68,7 +68,7 @@ struct FrameProgress {
 pub(crate) struct CloudsView {
     /// Settings of the clouds in this view.
     pub settings: CloudSettings,
-    /// Layers over the camera in this frame; `None` without clouds or volumes.
+    /// Layers above and below the camera in this frame; `None` without clouds or volumes.
     overhead: Option<CloudLayers>,
     /// Shapes of the layers; most frames have the same ones as the last.
     shapes: LruCache<CloudSlab, Shape, MAX_CLOUD_LAYERS>,
@@ -142,7 +142,7 @@ impl CloudsView {
     }
 }
 
-/// Returns for each channel the ratio of the direct light without clouds to the mean of all light, both on level
+/// Returns for red, green and blue the ratio of the direct light without clouds to the mean of all light, both on level
 /// ground. The fourth number is the mean share of the direct light that clouds let through.
 fn shadow_strength(scene: &Scene) -> [f32; 4] {
     let light = scene.brighter();
@@ -155,8 +155,8 @@ fn shadow_strength(scene: &Scene) -> [f32; 4] {
 }
 
 impl CloudsView {
-    /// Returns the shadow map for a host's own materials. From the first call on, the first call of each frame updates
-    /// it.
+    /// Returns the shadow map for a host's own materials. After the first request, the first draw of each frame
+    /// updates the map.
     pub fn shadows(&mut self, device: &Device) -> CloudShadows {
         let made = self.passes.as_ref().and_then(|passes| passes.shadow_texture().cloned());
         let handed = self

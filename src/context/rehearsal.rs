@@ -1,5 +1,5 @@
-//! Rehearsal of weathers to come: the moments in which views draw them ahead of time, so that nothing has to be
-//! compiled once they come.
+//! Rehearsal of weathers to come: views draw each weather ahead of time, so that nothing has to be compiled when it
+//! comes. A moment of a rehearsal is one weather at one time of its change, or under one elevation of the sun.
 
 use super::shared_world::Context;
 use crate::{
@@ -21,7 +21,7 @@ const SUNS_DEG: [f64; 5] = [40.0, 4.0, -4.0, -9.0, -30.0];
 /// Number of moments of each weather.
 const MOMENTS: usize = SHARES.len() + SETTLED_S.len() + SUNS_DEG.len();
 
-/// Weathers to rehearse, and the state to which the context returns.
+/// Weathers to rehearse, and the state to which the context returns afterwards.
 pub(crate) struct Rehearsal {
     saved: Vec<u8>,
     weathers: Vec<Conditions>,

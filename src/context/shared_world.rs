@@ -109,7 +109,8 @@ impl Context {
         self.refresh()
     }
 
-    /// Changes the weather as [`Context::set_weather`] does, with the host's own figures in place of some couplings.
+    /// Changes the weather as [`Context::set_weather`] does, with the host's own values in place of some of the laws
+    /// that derive one part of the weather from another.
     ///
     /// # Errors
     /// As [`derive_with`] and [`Timeline::change`](crate::weather::Timeline::change); the weather stays as it was.
@@ -263,8 +264,8 @@ impl Context {
     /// there ([`Context::set_weather_regions`]). Precipitation is that at the position itself: it includes the rain
     /// areas there ([`Context::set_rain_areas`]), weighted by their rims, and is zero above the cloud that it falls
     /// from. Rain and drizzle are those of [`Context::rain_at`]. The extinction of the precipitation, the total
-    /// extinction and the visibility are those with this precipitation. Everything else is that of the station's height
-    /// (each field says so).
+    /// extinction and the visibility are those with this precipitation. All other fields hold at the station's height,
+    /// as the doc of each says.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid, or if the time is not finite, out of range, or

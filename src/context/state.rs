@@ -1,9 +1,10 @@
 //! Saving and loading of a context, and a hash by which channels compare their contexts.
 //!
 //! A state is text: a line with the format and a checksum of everything after it, then TOML. Settings that the
-//! description of a context fixes are compared on load. Everything that was set or simulated since is restored, by the
-//! world and by each effect that holds a part of it. New keys may be added within a format if a state without them
-//! keeps its meaning. A key whose meaning changes requires a new format.
+//! description of a context fixes are compared on load with those of the loading context. Everything that was set or
+//! simulated after the creation of the context is restored: by the world, and by each effect for its own state. New
+//! keys may be added within a format if a state without them keeps its meaning. A key whose meaning changes requires a
+//! new format.
 
 use super::shared_world::Context;
 use crate::{
@@ -29,7 +30,7 @@ fn sealed(body: &str) -> String {
     format!("{MAGIC}{FORMAT} {:016x}\n{body}", checksum(body))
 }
 
-/// Returns the text below the first line, if the checksum there is right.
+/// Returns the text below the first line, if the checksum in the first line is right.
 fn unsealed(bytes: &[u8]) -> Result<&str> {
     let text = std::str::from_utf8(bytes).map_err(|_| parse_error("the bytes are no UTF-8 text"))?;
     let (head, body) = text.split_once('\n').ok_or_else(|| parse_error("the first line is missing"))?;
@@ -64,7 +65,7 @@ impl Context {
         table
     }
 
-    /// Writes the state as text. `for_hash`: the text is only hashed, never loaded.
+    /// Writes the state as text. `for_hash` says that the text is only hashed, never loaded.
     fn saved(&self, for_hash: bool) -> Result<String> {
         if self.behind.is_some() {
             let wanted = "a state comes after wk_context_update has answered WK_OK: steps of the simulation remain";
@@ -78,9 +79,9 @@ impl Context {
 
     /// Saves everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights,
     /// exposure, tone curve, planet, shelters, lamps, rain areas, maps, wind, fog law, the settings of single effects,
-    /// and the simulated water, snow and wind. It also contains the place, seed and ground model for which it is valid.
-    /// Not saved are settings of drawing (sky settings, views), the list of stars, heights of terrain tiles, and the
-    /// images of [`Context::set_occluder_maps`], of which each channel has its own.
+    /// and the simulated water, snow and wind. The text also contains the place, seed and ground model for which it is
+    /// valid. Not saved are settings of drawing (sky settings, views), the list of stars, heights of terrain tiles, and
+    /// the images of [`Context::set_occluder_maps`], because each channel may have its own images.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot

@@ -35,8 +35,8 @@ impl Context {
 
     /// Sets a wind that varies in space. It replaces a solved field ([`Context::set_wind_field`]), and it replaces the
     /// weather's wind or is added to it, by its kind. `None` removes the grid. The grid affects [`Context::wind_at`],
-    /// the rain that lands on a surface or a windscreen, and drops and flakes near a camera. It does not affect
-    /// [`Context::wind_displacement`] and everything that moves by it.
+    /// the rain that lands on a surface or a windscreen, and drops and flakes near a camera. It affects neither
+    /// [`Context::wind_displacement`] nor anything that moves by that displacement.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.

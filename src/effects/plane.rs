@@ -16,9 +16,9 @@ use crate::{
 
 /// Half the side of the plane, which is centred below the camera, m.
 pub(crate) const HALF_SIZE_M: f64 = 400.0;
-/// Side of its squares, m.
+/// Side of the plane's squares, m.
 pub(crate) const SQUARE_M: f64 = 8.0;
-/// Luminances of its squares, cd/m^2.
+/// Luminances of the plane's squares, cd/m^2.
 pub(crate) const CD_M2: [f64; 2] = [3000.0, 500.0];
 
 const SHADER: &str = "

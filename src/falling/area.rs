@@ -18,7 +18,7 @@ use crate::{
 
 /// Largest number of corners of a polygon.
 pub const MAX_CORNERS: usize = 8;
-/// Largest distance from a query point to an area's centre, less the area's radius, m. A point farther away counts as
+/// Largest distance from a query point to an area's centre, minus the area's radius, m. A point farther away counts as
 /// outside the area.
 const FARTHEST_M: f64 = 3e5;
 
@@ -278,7 +278,7 @@ pub(crate) struct Shaft {
     pub rim_m: f64,
     /// Horizontal shift of the column per metre of height, (east, north).
     pub lean: DVec2,
-    /// Altitude at which the column's plan is the area's, m.
+    /// Altitude at which the column's plan equals the area's plan, m.
     pub ground_m: f64,
     /// Altitude of the cloud's base, m.
     pub top_m: f64,

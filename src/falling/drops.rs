@@ -42,8 +42,8 @@ pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
 }
 
 /// Returns the slope of the interpolant at entry `i` of the table, m/s per mm: the weighted harmonic mean of the slopes
-/// of the two neighbouring intervals (Fritsch and Butland 1984), which never overshoots. At the ends it is the slope of
-/// the only interval.
+/// of the two neighbouring intervals (Fritsch and Butland 1984). With it the interpolant never overshoots. At the ends
+/// of the table it is the slope of the only interval.
 fn slope(i: usize) -> f64 {
     let secant = |i: usize| {
         let ((a, va), (b, vb)) = (GUNN_KINZER[i], GUNN_KINZER[i + 1]);
@@ -93,7 +93,8 @@ fn standard_density_ratio(altitude_m: f64) -> f64 {
 }
 
 /// Returns the [`density_factor`] at an altitude above the sea, m, over a station whose air is known. The density at
-/// the station is computed from its pressure and temperature; it changes with height as in the standard atmosphere.
+/// the station is computed from the station's pressure and temperature. It changes with height as in the standard
+/// atmosphere.
 pub fn factor_in(air: &crate::weather::Air, altitude_m: f64) -> f64 {
     let at_station = 100.0 * air.station_pressure_hpa / (AIR_GAS_CONSTANT * (air.temperature_c + 273.15));
     let ratio = standard_density_ratio(altitude_m) / standard_density_ratio(air.station_altitude_m);
@@ -113,8 +114,9 @@ pub fn streak_length_m(relative_velocity_m_s: DVec3, exposure_s: f64) -> f64 {
     relative_velocity_m_s.length() * exposure_s
 }
 
-/// Returns the velocity (m/s) and the displacement (m) after `dt_s` of a drop that has `velocity_m_s` in air of
-/// `air_m_s` and falls at `terminal_m_s` once it has settled. Vectors are (east, north, up).
+/// Returns the velocity (m/s) and the displacement (m) of a drop after `dt_s`. The drop has `velocity_m_s` at first,
+/// the air has the velocity `air_m_s`, and the terminal speed in still air is `terminal_m_s`. Vectors are (east, north,
+/// up).
 ///
 /// The drag is linear in the velocity difference, which decays with the time constant `terminal_m_s` / g. The solution
 /// is exact for any step. (Quadratic drag leads to the same velocity, at most twice as fast.)

@@ -217,8 +217,8 @@ impl FlakeSizes {
         self.parts.iter().any(|p| p.extinction_per_m > 0.0)
     }
 
-    /// Returns the two diameters, mm, below and above which the flakes of a part hide a hundredth each of the area that
-    /// the part hides.
+    /// Returns two diameters of a part, mm. The part's flakes below the first hide a hundredth of the area that the
+    /// part hides, and the flakes above the second hide another hundredth.
     pub fn range_mm(&self, part: usize) -> (f64, f64) {
         (self.diameter_mm(part, 0.01), self.diameter_mm(part, 0.99))
     }

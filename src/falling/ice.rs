@@ -3,7 +3,7 @@
 //! Pellets are frozen raindrops. Their sizes are Marshall and Palmer's (1948) for the same water, enlarged by freezing,
 //! from 0.5 to 5 mm. They fall like spheres (Heymsfield and Westbrook 2010). Small hail counts as pellets. Hail has an
 //! exponential size distribution from 5 to 60 mm with N0 = 115 lambda^3.63 (Cheng and English 1983), so that the rate
-//! alone determines the sizes; it falls as Matson and Huggins (1980) measured from photographs. The distributions are
+//! alone determines the sizes. Hail falls as Matson and Huggins (1980) measured from photographs. The distributions are
 //! normalised: the flux that falls equals the rate. Diameters are in mm, of spheres of ice.
 
 use std::f64::consts::PI;

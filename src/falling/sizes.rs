@@ -412,8 +412,8 @@ mod tests {
         }
     }
 
-    /// Types of rain in an older system: the kind and the flag for showers that stand for each, and its range of
-    /// diameters, mm.
+    /// Types of rain in an older system. Each has the kind and the flag for showers that correspond to it, and its
+    /// range of diameters, mm.
     #[test]
     fn types_of_rain_have_the_drops_of_their_kind() {
         use crate::weather::{Precipitation, PrecipitationKind, Weather, derive};

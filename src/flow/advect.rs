@@ -10,11 +10,11 @@ use crate::error::{Error, Result, shown};
 /// Scheme that carries velocity and splits a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
-    /// Value at the place the air came from, along a straight path, linear between grid points (Stam 1999): the most
-    /// diffusive scheme.
+    /// Takes the value at the place from which the air came on a straight path, by linear interpolation (Stam 1999).
+    /// This is the most diffusive scheme.
     SemiLagrangian,
-    /// Value along a curved path, corrected by the error that carrying it back shows, and limited to the range of the
-    /// values it came from (Selle et al. 2008).
+    /// Takes the value from a curved path, and corrects it by the error that appears when it is carried back. The
+    /// result is limited to the range of the values between which it was interpolated (Selle et al. 2008).
     MacCormack,
     /// Half a step of advection, a projection, a reflection (2 x projected - unprojected velocity), another half step
     /// of advection and a projection (Zehnder et al. 2018, eq. 6). Advection is cubic. The reflection gives back the
@@ -79,8 +79,8 @@ impl Carrier<'_> {
         }
     }
 
-    /// Applies MacCormack's correction to `predicted`, whose ghosts are filled: half of the error that carrying it back
-    /// shows.
+    /// Applies MacCormack's correction to `predicted`, whose ghosts are filled: half of the error that appears when
+    /// `predicted` is carried back.
     pub(super) fn correct(
         &self,
         source: &Faces,

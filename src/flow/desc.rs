@@ -8,12 +8,12 @@ use crate::error::{Error, Result, check_range};
 /// Mode in which a field advances through time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindFieldMode {
-    /// Mean wind around terrain and boxes. It is solved for in the first moments after the wind or an obstacle has
-    /// changed; then the field rests at no cost. Gusts at a place are the weather's, times the ratio of the field's
-    /// mean wind there to the weather's.
+    /// Mean wind around terrain and boxes. It is solved for after the wind or an obstacle has changed. Then the field
+    /// rests at no cost. Gusts at a place are those of the weather, times the ratio of the field's mean wind there to
+    /// the weather's mean wind.
     #[default]
     Steady,
-    /// Wind with gusts, the eddies of the inflow, and those that obstacles shed. It is stepped all the time.
+    /// Wind with gusts, the eddies of the inflow, and those that obstacles shed. The field is stepped all the time.
     Running,
 }
 
@@ -32,8 +32,8 @@ pub enum WindWalls {
 /// ([`Context::set_shelters`](crate::context::Context::set_shelters)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindFieldDesc {
-    /// Centre of the field's floor in the host's world, not higher than the lowest ground that matters. The field moves
-    /// with it by whole cells.
+    /// Centre of the field's floor in the host's world, within 1e12 m of the origin, and not higher than the lowest
+    /// ground that matters. The field moves with it by whole cells.
     pub floor_center: DVec3,
     /// Size of a cell east, north and up, m, \[0.05, 1000\], the longest at most 8 times the shortest. Default 4.
     pub cell_m: DVec3,

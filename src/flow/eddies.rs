@@ -63,7 +63,8 @@ pub(super) fn viscosity(lattice: &Lattice, v: &Faces, most: f32, cells: &mut [f3
     });
 }
 
-/// Returns the eddy viscosity of four cells, m2/s; their lower faces lie from `start` on in the lists.
+/// Returns the eddy viscosity of four cells, m2/s. `start` is the position of the first cell's lower faces in the
+/// lists.
 #[inline]
 fn viscosity_of(lattice: &Lattice, v: &Faces, start: usize) -> Vec4 {
     let h = lattice.h;
@@ -92,7 +93,7 @@ fn viscosity_of(lattice: &Lattice, v: &Faces, start: usize) -> Vec4 {
     Vec4::select(all.cmplt(Vec4::splat(1e-12)), Vec4::ZERO, found)
 }
 
-/// One component of the air, and what mixes it.
+/// One component of the air's velocity, and the viscosities that mix it.
 pub(super) struct Mixing<'a> {
     pub lattice: &'a Lattice,
     /// Viscosity of each cell, and a uniform one that is added, m2/s.

@@ -155,7 +155,7 @@ impl FlowField {
             let last = self.lattice.n[c];
             let wraps = self.roles[c][0] == Role::Periodic;
             self.lattice.each(c, |i, at| {
-                // Faces on sides count for half a cell; both ends of a periodic axis are one face.
+                // Faces on sides have the weight of half a cell. Both ends of a periodic axis are one face.
                 let share = if i[c] == 0 || i[c] == last { 0.5 } else { 1.0 };
                 let open = f64::from(self.openings.open[c][at]);
                 let v = f64::from(self.velocity[c][at]);

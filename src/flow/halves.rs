@@ -72,8 +72,8 @@ impl Halves {
         i / 2 + if i.is_multiple_of(2) { 0 } else { self.odd }
     }
 
-    /// Returns the values of one half of a row, from `shift` cells after the first cell of the half on. `half` is 0 for
-    /// even cells and 1 for odd ones.
+    /// Returns the values of one half of a row, beginning `shift` cells after the first cell of the half. `half` is 0
+    /// for even cells and 1 for odd ones.
     #[inline]
     fn half<'a>(&self, values: &'a [f32], row: usize, half: usize, shift: isize) -> &'a [Lanes] {
         let start = (row + half * self.odd).wrapping_add_signed(shift);
@@ -100,7 +100,7 @@ impl Halves {
         values[start..start + self.room].as_chunks_mut().0
     }
 
-    /// Copies the ends of a row to where their neighbours across the row's ends look for them.
+    /// Copies each end of a row to the place where a sweep reads the neighbour of the other end.
     #[inline]
     pub(super) fn close(&self, values: &mut [f32], row: usize) {
         let last = self.place(self.n[0] - 1);
@@ -178,8 +178,8 @@ impl Halves {
         }
     }
 
-    /// Adds `share` times the values of a row to the sums of coarse cells. If `is_joined`, each coarse cell joins two
-    /// cells of the row, else it has one.
+    /// Adds `share` times the values of a row to the sums of coarse cells. If `is_joined` is set, each coarse cell
+    /// joins two cells of the row. Otherwise it has one cell.
     #[inline]
     pub(super) fn add_row(&self, row: &[f32], share: f32, is_joined: bool, sums: &mut [f32]) {
         let (even, odd) = row.split_at(self.odd);
@@ -201,7 +201,7 @@ impl Halves {
         }
     }
 
-    /// Adds the products of a row's cells to a sum, in the order of cells.
+    /// Adds the products of the cells of the rows `a` and `b` to a sum, in the order of cells.
     #[inline]
     pub(super) fn add_products(&self, a: &[f32], b: &[f32], mut sum: f64) -> f64 {
         let ((ae, ao), (be, bo)) = (a.split_at(self.odd), b.split_at(self.odd));

@@ -170,7 +170,7 @@ impl HeldFlow {
         Ok(StepOutcome::Unchanged)
     }
 
-    /// Takes the field's part out of a saved state.
+    /// Removes the field from a saved state and returns it.
     ///
     /// # Errors
     /// [`Status::Parse`] for values that cannot be a field of this context.

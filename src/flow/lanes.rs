@@ -1,7 +1,7 @@
 //! Paths of the air and interpolation, for four neighbouring faces at once: a lane of a vector for each.
 //!
 //! The air of neighbouring faces mostly comes from neighbouring places, so the values of all lanes lie side by side in
-//! memory. Where it does not, each lane's values are looked up singly, with the same result.
+//! memory. If the places are apart, each lane's values are looked up singly, with the same result.
 
 use glam::{BVec4A, Vec3, Vec4, vec4};
 
@@ -32,12 +32,13 @@ struct AxisPlaces {
     low: Vec4,
     /// Fraction of a cell from that value to the place.
     part: Vec4,
-    /// Whether each lane has the index that it would have if the four places lay side by side in a row: that of the
-    /// first lane, plus the number of the lane along the first axis.
+    /// Whether each lane has the index of a place side by side with that of the first lane in a row. Along the first
+    /// axis this is the first lane's index plus the number of the lane. Along the other axes it is the first lane's
+    /// index.
     follows: BVec4A,
 }
 
-/// Position in the list of the lowest of the values around each of four places.
+/// Position in the list, for each of four places, of the lowest value around the place.
 enum Lowest {
     /// The lanes' values follow each other, from this position.
     Row(usize),
@@ -66,7 +67,7 @@ impl AxisPlaces {
     }
 }
 
-/// Returns four values that follow each other.
+/// Returns the first four values as a vector.
 #[inline]
 pub(super) fn four(values: &[f32]) -> Vec4 {
     vec4(values[0], values[1], values[2], values[3])
@@ -79,8 +80,8 @@ impl<'a> Carrier<'a> {
         Self { lattice, wind, range, next, is_flat, per_cell: lattice.h.map(|h| 1.0 / h) }
     }
 
-    /// Calls `f` for the faces of a component, four of a row at a time, with their places, the position of the first in
-    /// the list, and their number, which is less than four at the end of a row.
+    /// Calls `f` for the faces of a component, four of a row at a time. `f` gets the places of the faces, the position
+    /// of the first face in the list, and the number of faces, which may be less than four at the end of a row.
     #[inline]
     pub(super) fn each_four(&self, component: usize, mut f: impl FnMut(FacePlaces, usize, usize)) {
         self.lattice.each_row(component, |j, k, row, count| {
@@ -235,7 +236,7 @@ impl<'a> Carrier<'a> {
         lesser(larger(cubic, least), most)
     }
 
-    /// Returns the wind at a place in cells, m/s; outside the range that of the nearest place.
+    /// Returns the wind at a place in cells, m/s. Outside the range it is the wind at the nearest place in the range.
     pub(super) fn velocity_near(&self, place: [f32; 3]) -> Vec3 {
         let [x, y, z] = place;
         let places = self.moved([Vec4::splat(x), Vec4::splat(y), Vec4::splat(z)], [Vec4::ZERO; 3], 0.0);
@@ -258,8 +259,8 @@ impl<'a> Carrier<'a> {
         ]
     }
 
-    /// Returns the wind at four faces of a component, the first at a position in the list. Another component there is
-    /// the mean of the four faces around.
+    /// Returns the wind at four faces of a component, the first at a position in the list. Each other component there
+    /// is the mean of its four faces around.
     #[inline]
     pub(super) fn velocity_on_faces(&self, component: usize, first: usize) -> [Vec4; 3] {
         let half = Vec4::splat(0.5);
@@ -293,7 +294,7 @@ impl<'a> Carrier<'a> {
     }
 }
 
-/// Returns places on a periodic axis of `n` cells in [0, n).
+/// Wraps places on a periodic axis of `n` cells into [0, n).
 #[inline]
 fn wrapped(places: Vec4, n: f32) -> Vec4 {
     if (places.cmpge(Vec4::ZERO) & places.cmplt(Vec4::splat(n))).all() {

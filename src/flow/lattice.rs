@@ -111,8 +111,9 @@ impl Lattice {
         }
     }
 
-    /// Whether these indices are neither of a value nor of a ghost of a component. Across its own axis a component has
-    /// one value less than its list has room for. These spare entries stay 0, so that equal fields have equal numbers.
+    /// Whether these indices belong neither to a value nor to a ghost of a component. Along every axis but its own, a
+    /// component has one value less than its list has room for. These spare entries stay 0, so that equal fields have
+    /// equal numbers.
     fn is_spare(&self, component: usize, i: [i64; 3]) -> bool {
         (0..3).any(|a| a != component && !self.is_flat(a) && i[a] >= (self.n[a] + GHOSTS) as i64)
     }
@@ -158,7 +159,7 @@ impl Lattice {
         }
     }
 
-    /// Calls `f` for every cell at the two sides across `axis`, which is not flat, as [`Lattice::each_cell`] would.
+    /// Calls `f` for every cell at the two ends of `axis`, as [`Lattice::each_cell`] would. The axis must not be flat.
     pub(super) fn each_side_cell(&self, axis: usize, mut f: impl FnMut([usize; 3], usize, usize)) {
         let [nx, ny, _] = self.n;
         let along = |a: usize| (0..self.n[a]).step_by(if a == axis { self.n[a] - 1 } else { 1 });

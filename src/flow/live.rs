@@ -27,8 +27,8 @@ const STEADY_STEP_S: f64 = 2.0;
 const CFL: f64 = 4.0;
 /// Largest number of parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// Limit of a T / v below which a steady field rests. a is the largest change of a velocity per time, m/s^2, v the
-/// largest speed, m/s, and T the crossing time: the time in which air of speed v crosses the field, s.
+/// Limit of the ratio `a T / v` below which a steady field rests. a is the largest change of a velocity per time,
+/// m/s^2, v the largest speed, m/s, and T the crossing time: the time in which air of speed v crosses the field, s.
 const REST: f64 = 0.01;
 /// Number of crossing times after which a steady field rests in any case.
 const MOST_CROSSINGS: f64 = 6.0;
@@ -271,9 +271,10 @@ pub(super) struct Live {
     pub parts: (u32, f64),
     /// Hashes of the terrain and boxes in the field at its last step, as [`Scenery::hash`] returns them.
     pub stood: [u64; 2],
-    /// Obstacles as last evaluated, of which the next step evaluates only the changes; `None` if it must evaluate all.
+    /// Obstacles as last evaluated. The next step evaluates only those that have changed; with `None` it evaluates all.
     bodies: Option<SolidBodies>,
-    /// Wind for which a steady field was solved: mean at 10 m east and north, m/s, and roughness length, m.
+    /// Wind for which a steady field was solved: east and north components of the mean at 10 m, m/s, and roughness
+    /// length, m.
     pub solved_for: [f64; 3],
     /// Time for which a steady field has not rested, s.
     pub awake_s: f64,
@@ -358,7 +359,7 @@ impl Live {
         self.start_at(world, level, false)
     }
 
-    /// Starts at a level, from the result of the previous level if `goes_on`.
+    /// Starts at a level, from the result of the previous level if `goes_on` is set.
     fn start_at(&mut self, world: &World, level: u32, goes_on: bool) -> Result<()> {
         let inflow = Inflow::new(world, self.time_s, WindFieldMode::Steady);
         let scenery = Scenery::new(world, self, self.time_s);

@@ -18,16 +18,17 @@
 //! - Grid: staggered, with velocity at the centres of faces and pressure at the centres of cells (Harlow and Welch
 //!   1965).
 //! - Obstacles: each face has an open share, so air flows along slopes and past boxes that end within a cell. The flux
-//!   through a face is its open share times its velocity (Ng, Min and Gibou 2009); an obstacle that closes the rest and
-//!   moves pushes air with its own velocity (Batty, Bertails and Bridson 2007). Air slides along obstacles or sticks to
-//!   them.
+//!   through a face is its open share times its velocity (Ng, Min and Gibou 2009). If a moving obstacle closes the rest
+//!   of the face, it pushes air with its own velocity (Batty, Bertails and Bridson 2007). Air slides along obstacles or
+//!   sticks to them.
 //! - Rough walls: air that slides along them feels the stress of the logarithmic law (`walls.rs`). Eddies smaller than
 //!   a cell: Vreman's eddy viscosity (2004), and over the ground Prandtl's kappa u* z, which maintains the inflow's
 //!   profile (`eddies.rs`). No constant is fitted.
 //! - Advection ([`Scheme`]): by default half a step, a projection, a reflection (2 x projected - unprojected velocity),
 //!   another half step and a projection (Zehnder et al. 2018). Each half step is cubic, limited to the range of the
-//!   values it interpolates. The advecting wind is extrapolated to the middle of each half step; with the wind of its
-//!   beginning, vortices would drift across the mean wind. Stam's and MacCormack's schemes are available too.
+//!   values it interpolates. The advecting wind is extrapolated to the middle of each half step. With the wind at the
+//!   beginning of the half step, vortices would drift across the mean wind. Stam's and MacCormack's schemes are
+//!   available too.
 //! - Pressure ([`PressureMethod`]): conjugate gradients preconditioned by multigrid, or red-black over-relaxation. Both
 //!   stop by the remaining divergence. The previous step's potential is subtracted first, so rounding errors are only
 //!   those of the change.
@@ -55,13 +56,13 @@
 //!
 //! # Cost
 //!
-//! V-cycles that reduce the residual to a tenth: 1.0 at 64^2 around a box, each with the work of 9 sweeps over the
-//! grid; over-relaxation needs 11 times this work (`cargo test --lib flow -- --nocapture multigrid`). A step of the
+//! To reduce the residual to a tenth takes 1.0 V-cycles at 64^2 around a box. A V-cycle has the work of 9 sweeps over
+//! the grid. Over-relaxation needs 11 times this work (`cargo test --lib flow -- --nocapture multigrid`). A step of the
 //! default scheme takes two projections. Advection, sweeps and eddies compute four neighbouring values at a time
-//! (`lanes.rs`, `halves.rs`), each with the operations and the order of a single value, so the bits do not depend on
-//! this grouping. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long (`cargo
-//! bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread and
-//! without the GPU; every run gives the same bits.
+//! (`lanes.rs`, `halves.rs`), each by the same operations in the same order as a single value, so the bits do not
+//! depend on this grouping. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long
+//! (`cargo bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread
+//! and without the GPU; every run gives the same bits.
 //!
 //! # Limits
 //!

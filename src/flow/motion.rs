@@ -42,8 +42,8 @@ impl FlowField {
 
     /// Makes a step of the scheme [`Scheme::Reflection`]: half a step of advection, a projection, a reflection, another
     /// half step of advection, and a projection. The air is carried by the wind in the middle of each half,
-    /// extrapolated from the two winds before it. With the wind at the half's beginning, vortices would drift across
-    /// the mean wind.
+    /// extrapolated from the two earlier winds. With the wind at the half's beginning, vortices would drift across the
+    /// mean wind.
     fn step_mirrored(&mut self, dt: f64) {
         let from = std::mem::take(&mut self.velocity);
         let [mut wind, mut middle, mut to] = std::mem::take(&mut self.scratch);
@@ -71,8 +71,8 @@ impl FlowField {
     /// largest speed while the fastest air crosses the box's longest side. In a step the fastest air passes `cfl`
     /// cells.
     ///
-    /// Returns whether the field is steady. Air that sheds vortices never is, so the function gives up after `most`
-    /// crossings.
+    /// Returns whether the field is steady. Air that sheds vortices never becomes steady, so the function gives up
+    /// after `most` crossings.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for `cfl` outside \[0.01, 64\] and `rest` outside \[1e-6, 1\].
@@ -189,7 +189,8 @@ fn largest_of(faces: &Faces, f: impl Fn(usize, usize) -> f32) -> f32 {
     all.fold(0.0, |most, (c, at)| most.max(f(c, at).abs()))
 }
 
-/// Extrapolates from `earlier` through `now`, by `ahead` times the difference between the two, into `earlier`.
+/// Extrapolates from `earlier` through `now`, by `ahead` times the difference between the two, and stores the result in
+/// `earlier`.
 fn lead_on(now: &Faces, earlier: &mut Faces, ahead: f32) {
     for (now, earlier) in now.iter().flatten().zip(earlier.iter_mut().flatten()) {
         *earlier = now + ahead * (now - *earlier);

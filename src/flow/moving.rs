@@ -20,14 +20,14 @@ pub(super) struct SolidBodies {
 }
 
 impl FlowField {
-    /// Changes the outer wind, m/s at a place, which blows in over open sides from the next step on. The air in the box
-    /// flows on.
+    /// Changes the outer wind, which blows in over open sides from the next step on. The air in the box flows on.
+    /// `wind` returns the outer wind, m/s (east, north, up), at a place, m from the box's lowest corner.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field
     /// then stays unchanged.
     pub fn set_wind(&mut self, wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
-        // The strongest winds of a profile are on the sides: all are checked before any is set.
+        // Checks all winds on the sides before it sets any. The strongest winds of a profile are on the sides.
         for is_checked in [false, true] {
             for c in self.lattice.axes() {
                 let (lattice, outer) = (&self.lattice, &mut self.outer[c]);

@@ -84,7 +84,7 @@ struct RowSweep<'a> {
 }
 
 impl RowSweep<'_> {
-    /// Returns the new values of some cells: those without air keep theirs.
+    /// Returns the new values of some cells. Cells without air keep their values.
     #[inline(always)]
     fn relaxed(&self, i: usize) -> Vec4 {
         let (x, sum) = (vector(self.x[i]), vector(self.sums[i]));
@@ -231,7 +231,7 @@ impl GridLevel {
         halves.clear_room(product, 0);
     }
 
-    /// Computes the residual of the equation: right-hand side less left-hand side.
+    /// Computes the residual of the equation: right-hand side minus left-hand side.
     pub(super) fn residual(&self, x: &[f32], b: &[f32], residual: &mut [f32]) {
         self.halves.each_row(|row, _| {
             let (out, b) = (&mut residual[row.own..][..self.halves.row], &b[row.own..]);
@@ -366,8 +366,8 @@ impl GridLevel {
     }
 }
 
-/// Returns the numbers of cells that the level after one with `n` cells of the size `h` joins along each axis, 1 or 2;
-/// `None` if there is no further level.
+/// Returns how many cells of a level the next coarser level joins along each axis, 1 or 2; `None` if there is no
+/// coarser level. The level has `n` cells of the size `h`.
 fn joined(n: [usize; 3], h: [f32; 3]) -> Option<[usize; 3]> {
     let can = |a: &usize| n[*a] > 2;
     let shortest = (0..3).filter(can).map(|a| h[a]).fold(f32::INFINITY, f32::min);
@@ -401,7 +401,7 @@ impl Levels {
             if let Some(last) = levels.last_mut() {
                 last.join = join;
                 if join[0] == 2 {
-                    // Cycles allocate nothing.
+                    // Allocates the lists now, so that cycles allocate nothing.
                     next.lay_out(last);
                 }
             }

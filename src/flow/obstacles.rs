@@ -27,7 +27,7 @@ pub struct FlowBox<'a> {
     pub half_size_m: DVec3,
     /// Axes of the box as columns (east, north, up): a rotation.
     pub axes: DMat3,
-    /// Velocity, m/s; a moving box pushes the air before it.
+    /// Velocity, m/s. A moving box pushes the air ahead of it.
     pub velocity_m_s: DVec3,
     /// Planes that cut the box, in its own axes: outward unit normal, and distance from the centre along it, m.
     pub planes: &'a [[f64; 4]],
@@ -58,7 +58,7 @@ pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 /// Obstacles that stand or move in the air.
 #[derive(Clone, Copy, Default)]
 pub struct FlowObstacles<'a> {
-    /// Heights of the ground; `None` puts it at the field's lowest side.
+    /// Heights of the ground; `None` puts the ground at the field's lowest side.
     pub terrain: Option<Heights<'a>>,
     /// Boxes.
     pub boxes: &'a [FlowBox<'a>],
@@ -113,7 +113,8 @@ impl SolidBox {
         Self { planes, low, high, velocity: b.velocity_m_s }
     }
 
-    /// Returns the heights between which the box lies over a place, lowest first; `None` where it does not.
+    /// Returns the heights between which the box lies over a place, lowest first; `None` if it does not lie over the
+    /// place.
     fn span(&self, place: DVec2) -> Option<[f64; 2]> {
         if place.cmplt(self.low).any() || place.cmpgt(self.high).any() {
             return None;

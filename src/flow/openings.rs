@@ -1,5 +1,5 @@
 //! Open shares of faces, and the data that follow from them: the coefficients of the pressure equation, separate bodies
-//! of air, and the faces inside obstacles that need a velocity because paths of air lead there.
+//! of air, and those faces inside obstacles to which paths of air lead, so that they need a velocity.
 
 use super::{
     lattice::{Faces, Lattice},

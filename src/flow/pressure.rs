@@ -7,7 +7,7 @@
 //! (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not symmetric). Coarse grids
 //! blur thin walls and small openings, which costs more cycles, but the method still converges.
 //!
-//! The residual of the equation is the remaining divergence, and both methods stop by it.
+//! The residual of the equation is the remaining divergence. Both methods stop once it is within the tolerance.
 
 use glam::Vec4;
 

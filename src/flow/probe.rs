@@ -10,7 +10,7 @@ use crate::error::{Error, Result, Status, check_range};
 /// Limit below which the cavity's flow counts as steady: the largest change of a velocity while the lid moves by the
 /// cavity's width, as a share of the lid's speed.
 const REST: f64 = 2e-4;
-/// Largest number of these spans of time, each of one width of the lid's motion, before giving up.
+/// Largest number of spans of time before giving up. In each span the lid moves by the cavity's width.
 const MOST_TIMES: u32 = 500;
 
 /// Returns the steady flow in a square box, 1 m wide, of `n` by `n` cells, whose lid moves at 1 m/s, at Reynolds number

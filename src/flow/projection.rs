@@ -100,8 +100,8 @@ impl FlowField {
     }
 
     /// Returns the force of the air's pressure on obstacles, divided by the air's density, m4/s2, as a mean over the
-    /// last step. Counted are obstacles in the box between the places `low_m` and `high_m`, m from the field's lowest
-    /// corner.
+    /// last step. It includes only the obstacles in the box between the places `low_m` and `high_m`, m from the field's
+    /// lowest corner.
     ///
     /// The pressure of a step is the sum of the potentials of its projections. In the reflection scheme it is twice the
     /// first plus the second.

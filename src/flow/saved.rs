@@ -126,7 +126,8 @@ pub(super) struct SavedField {
     corner: [i64; 3],
     /// Hashes of the scenery, in hexadecimal digits.
     stood: [String; 2],
-    /// Wind for which a steady field was solved: mean at 10 m east and north, m/s, and roughness length, m.
+    /// Wind for which a steady field was solved: east and north components of the mean at 10 m, m/s, and roughness
+    /// length, m.
     solved_for: [f64; 3],
     /// Time for which a steady field has not rested, s.
     awake_s: f64,

@@ -5,9 +5,9 @@ use super::lattice::{Faces, Lattice};
 /// Kind of a side of the box.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Side {
-    /// Open side. Where the outer wind blows in over the side as a whole, it is the inflow. Where it blows out, air
-    /// leaves with the velocity that advection gives it, and only the flux is balanced, so pressure reflects nothing.
-    /// Where it does neither, the side is a slip wall.
+    /// Open side. If the outer wind blows in over the side as a whole, air comes in with this wind. If it blows out,
+    /// air leaves with the velocity that advection gives it, and only the flux is balanced, so pressure reflects
+    /// nothing. If it does neither, the side is a slip wall.
     #[default]
     Open,
     /// Wall along which air slides without friction.
@@ -36,7 +36,7 @@ pub(super) enum Role {
 /// Roles of the low and the high side of each axis.
 pub(super) type Roles = [[Role; 2]; 3];
 
-/// Least mean flow through an open side, as a share of the wind's speed; with less it is a wall.
+/// Least mean flow through an open side, as a share of the wind's speed. With less, the side is a wall.
 const LEAST_THROUGH: f64 = 1e-4;
 
 /// Returns the roles of the sides in the outer wind `outer`.

@@ -1,10 +1,10 @@
 //! Friction of the air at rough walls.
 //!
-//! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0). A wall
-//! of roughness length z0 therefore takes, divided by the density of the air, the momentum u*^2 = (kappa / ln(y/z0))^2
-//! u^2 per second from each square metre of air that has the speed u at the distance y (Schumann 1975, for grids too
-//! coarse to resolve the layer at a wall). y is the distance to the middle of the open part of the cell at the wall.
-//! The logarithm takes y + z0 in place of y, so that it does not fall below zero in thin cells.
+//! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0). Let the
+//! air have the speed u at the distance y from a wall of roughness length z0. Each square metre of the wall then takes
+//! momentum from the air at the rate u*^2 = (kappa / ln(y/z0))^2 u^2, divided by the air's density (Schumann 1975, for
+//! grids too coarse to resolve the layer at a wall). y is the distance to the middle of the open part of the cell at
+//! the wall. The logarithm takes y + z0 in place of y, so that it does not fall below zero in thin cells.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -34,8 +34,8 @@ fn friction(open_m: f64, roughness_m: f64) -> f64 {
 }
 
 impl Walls {
-    /// Finds the walls of a grid: closed parts of faces, and the floor if `floor`. There are none if `roughness_m`
-    /// is 0.
+    /// Finds the walls of a grid: closed parts of faces, and the floor if `floor` is set. There are none if
+    /// `roughness_m` is 0.
     pub(super) fn find(&mut self, lattice: &Lattice, openings: &Openings, roughness_m: f64, floor: bool) {
         self.0.iter_mut().for_each(Vec::clear);
         if roughness_m <= 0.0 {

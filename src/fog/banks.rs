@@ -12,16 +12,16 @@
 //! # Method
 //! `shaders/fog/banks.wgsl` finds where a ray enters the shape and its perimeter on a flat plan. Inside the shape the
 //! depth is the integral of the layer's density; in the perimeter it is a sum over Gauss points of the share times the
-//! density. Banks whose regions overlap are integrated together: the ray is cut at the borders of all, and the shares
-//! of all are worked out once a point. Polygons that are not convex are sampled at twelve points of the ray's way
-//! through a circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the sphere, as
-//! visibility between two points does.
+//! density. Banks whose regions overlap are integrated together: the ray is cut at the borders of all these regions,
+//! and their shares are worked out together at each point. Polygons that are not convex are sampled at twelve points of
+//! the ray's way through a circle about them. The reference for queries ([`SkyBanks`]) integrates the shares on the
+//! sphere, as visibility between two points does.
 //!
 //! # Cost
 //! On a software driver, in copies of a picture of 640 x 360 (`cargo bench --bench speed -- banks`), a bank outside the
 //! picture costs nothing, a bank across the picture 8, a bank around the camera 11, eight separate banks 6, and eight
-//! overlapping banks 18. A software driver runs both sides of every branch, but a loop only as often as a pixel of its
-//! group needs. Each pixel therefore loops over the banks whose circle and heights its ray meets.
+//! overlapping banks 18. A software driver runs both sides of every branch, but repeats a loop only as often as some
+//! pixel of a group needs. Each pixel therefore loops over the banks whose circle and heights its ray meets.
 
 use std::f64::consts::PI;
 
@@ -156,7 +156,7 @@ fn turns(corners: &[[f64; 2]]) -> impl Iterator<Item = f64> {
 /// Whether a polygon is convex.
 fn is_convex(corners: &[[f64; 2]]) -> bool {
     let (left, right) = (turns(corners).any(|turn| turn > 0.0), turns(corners).any(|turn| turn < 0.0));
-    // A polygon that does not cross itself and turns one way only turns once.
+    // A polygon that does not cross itself, and whose corners all turn one way, makes one full turn.
     left != right
 }
 

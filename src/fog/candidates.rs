@@ -42,7 +42,7 @@ pub enum FogMethod {
         /// Number of cells across the picture, up, and in distance.
         cells: [u32; 3],
     },
-    /// A curve of distance, fitted so that a layer that fills the air has the same visibility.
+    /// A curve over the distance. It has the visibility of air that has the layer's extinction everywhere.
     Curve(FogCurve),
 }
 

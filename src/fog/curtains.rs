@@ -13,8 +13,7 @@ pub const CURTAIN_WAVES: usize = 8;
 /// `CURTAIN_START` of `shaders/fog/patterns.wgsl`.
 pub const CURTAIN_START_M: f64 = 30.0;
 
-/// Curtains of rain. The extinction is that of even precipitation, times 1 plus `amount` times the sum of the waves'
-/// cosines.
+/// Curtains of rain. The extinction is that of even precipitation times (1 + `amount` x the sum of the waves' cosines).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curtains {
     /// Amplitude of each wave relative to the extinction of all that falls; 0 without curtains.

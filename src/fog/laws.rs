@@ -51,8 +51,8 @@ pub struct CompatibilityLaw {
     pub curve: Curve,
     /// Kind of distance, range or plane.
     pub distance: DistanceKind,
-    /// Radiance of full fog, per channel. `None` takes the radiance of a deep layer of fog under the current light (see
-    /// [`super::FogModel::new`]).
+    /// Radiance of full fog, per channel, each \[0, 1e12\]. `None` takes the radiance of a deep layer of fog under the
+    /// current light (see [`super::FogModel::new`]).
     pub colour: Option<[f64; 3]>,
     /// Height above the horizon over which fog on sky pixels decreases from full to none, rad, \[0, pi\]. 0 leaves the
     /// sky clear, so culled objects would vanish visibly in front of it; pi covers the whole sky.

@@ -14,10 +14,10 @@ use crate::{
 pub enum Profile {
     /// Constant between base and top, with linear flanks at both, so that the optical depth has no kink.
     Slab {
-        /// Altitude of the middle of the lower flank, m. For fog that lies on the ground this altitude is far below the
-        /// ground.
+        /// Altitude of the middle of the lower flank, m, \[-1e5, 1e6\]. For fog that lies on the ground this altitude
+        /// is far below the ground.
         base_m: f64,
-        /// Altitude of the middle of the upper flank, m.
+        /// Altitude of the middle of the upper flank, m, \[`base_m`, 1e6\].
         top_m: f64,
         /// Vertical extent of the lower flank, m, \[0, 1e5\].
         base_softness_m: f64,
@@ -26,7 +26,7 @@ pub enum Profile {
     },
     /// Proportional to exp(-(h - reference)/scale) at every altitude h; not cut off above or below.
     Exponential {
-        /// Altitude at which the extinction has its stated value, m.
+        /// Altitude at which the extinction has its stated value, m, \[-1e5, 1e6\].
         reference_m: f64,
         /// Scale height, m, \[1, 1e5\].
         scale_height_m: f64,
@@ -37,14 +37,14 @@ pub enum Profile {
 /// with a mean of 1 that reaches 0 between the patches. The pattern is fixed to the world, shifted by `drift_m`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patches {
-    /// Strength of the pattern: 0 is an even layer, 1 has clear gaps between patches.
+    /// Strength of the pattern, \[0, 1\]: 0 is an even layer, 1 has clear gaps between patches.
     pub amount: f64,
     /// Typical distance between patches, m, \[5, 1e5\].
     pub size_m: f64,
     /// Seed of the pattern.
     #[serde(with = "seed_text")]
     pub seed: u64,
-    /// Distance over which the wind has carried the pattern, (east, north), m.
+    /// Distance over which the wind has carried the pattern, (east, north), m, each \[-1e12, 1e12\].
     pub drift_m: [f64; 2],
 }
 

@@ -83,7 +83,7 @@ pub struct FogModel {
     pub forward: f64,
     /// Asymmetry of the rest of the scattering.
     pub smooth: f64,
-    /// Whether `rise` and `fall` are used: the layer absorbs.
+    /// Whether the layer absorbs. Only then are `rise` and `fall` used.
     pub absorbing: bool,
     /// Diffusion exponent per channel.
     pub k: DVec3,
@@ -106,7 +106,7 @@ pub struct FogModel {
     pub ground_radiance: DVec3,
     /// Solutions of the layer's light per channel; `None` without a layer.
     pub solutions: Option<[Solution; 3]>,
-    /// Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
+    /// Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
     pub lit: f64,
     /// Strength of the patches, 0 (even) to 1.
     pub patch_amount: f64,

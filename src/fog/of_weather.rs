@@ -191,8 +191,8 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns the light below the weather's low layer, where `lux` is the light above the layer. Both are in lux: of the
-/// sun, of the moon, and of all other light on level ground.
+/// Returns the light below the weather's low layer, where `lux` is the light above the layer. Both have three
+/// illuminances, lux: that of the sun, that of the moon, and that of all other light on level ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,
@@ -258,7 +258,7 @@ impl Scene {
         Ok(model)
     }
 
-    /// Returns the curtains of the weather's own rain, as part of all that falls.
+    /// Returns the curtains of the weather's own rain, relative to the extinction of all that falls.
     fn curtains(&self, seed: u64) -> Curtains {
         let falling = &self.conditions.precipitation;
         let variation = curtain::variation(falling);
@@ -331,7 +331,7 @@ mod tests {
         }
     }
 
-    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `fog_layer` assumes.
+    /// The pattern has the mean 1, reaches clear gaps, and is as dense inside its patches as `ground_layer` assumes.
     #[test]
     fn patches_hold_the_reported_extinction_inside() {
         let patches = Patches { amount: 1.0, size_m: 100.0, seed: 5, drift_m: [0.0; 2] };

@@ -15,8 +15,8 @@
 //! t = c / (mu + sqrt(mu^2 + k c)),  c = d (2 + k d),
 //! ```
 //!
-//! which has only additions. The path through a slab with linear flanks therefore has three parts. A flank counts with
-//! its mean density along the path, which includes the path's curvature.
+//! which has only additions. The path through a slab with linear flanks therefore has three parts. Each flank
+//! contributes with its mean density along the path. This mean includes the path's curvature.
 
 use super::model::{FogKind, FogModel};
 

@@ -256,8 +256,9 @@ impl FogModel {
         self.lit = self.share_at(view.altitude_m);
     }
 
-    /// Returns the light at an altitude below or in the layer, per channel: that of the sun on a surface facing it,
-    /// including its aureole (the forward peak of the scattering), and all other light on level ground.
+    /// Returns the light at an altitude below or in the layer, per channel. The first is the sun's light on a surface
+    /// facing the sun, including the aureole (the forward peak of the scattering). The second is all other light on
+    /// level ground.
     pub fn light_at(&self, altitude_m: f64) -> Option<[[f64; 3]; 2]> {
         let solutions = self.solutions?;
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);

@@ -108,9 +108,9 @@ pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m
 }
 
 /// Returns the smallest illuminance at which a pilot sees a light, lx, against a background of `background_cd_m2`:
-/// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667, at least the value by night, 8e-7 lx. The curve runs midway
-/// through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328; WMO-No.
-/// 8).
+/// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667. It is at least 8e-7 lx, the value by night. The curve runs
+/// midway through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328;
+/// WMO-No. 8).
 pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(1.0).log10();
     10f64.powf(0.05 * b * b + 0.573 * b - 6.667).max(8e-7)
@@ -146,10 +146,11 @@ pub fn runway_visual_range_m(intensity_cd: f64, extinction_per_m: f64, backgroun
     Ok(lights.max(koschmieder_visibility_m(extinction_per_m)))
 }
 
-/// Returns the extinction, 1/m, for a reported runway visual range: the inverse of [`runway_visual_range_m`].
+/// Returns the extinction, 1/m, for a reported runway visual range, \[1, 1e6\] m: the inverse of
+/// [`runway_visual_range_m`].
 ///
 /// # Errors
-/// Errors of [`lights_range_m`].
+/// [`crate::Status::InvalidArgument`] naming the parameter.
 pub fn extinction_of_rvr_per_m(rvr_m: f64, intensity_cd: f64, background_cd_m2: f64) -> Result<f64> {
     check_range("rvr_m", rvr_m, 1.0, 1e6, "m")?;
     check_range("intensity_cd", intensity_cd, 0.0, 1e9, "cd")?;

@@ -1,4 +1,4 @@
-//! Fog along one ray in f64. Tests and queries call it, and it is the twin of `shaders/fog/lookup.wgsl`, with the same
+//! Fog along one ray in f64, for tests and queries. This file is the twin of `shaders/fog/lookup.wgsl`, with the same
 //! names and the same order of parameters. `path.rs` has the ray's path through the layer.
 //!
 //! # Light along the ray
@@ -139,8 +139,9 @@ fn layer_radiance(m: &FogModel, mu: f64, entry_mu: f64, versine: f64, ends: [f64
     let path = m.scaling * depth;
     let full = m.ratio * depth;
     let (through, left) = (exp3(-path), exp3(-full));
-    // Decrease of the depth below the top per unit of path, where the light comes from: the mean over the path if it is
-    // optically thin, the value at the entry if it is so thick that its end is not seen.
+    // Decrease of the depth below the top per unit of path, in the part of the path from which the light comes. It is
+    // the mean over an optically thin path. If the path is so thick that its end is not seen, it is the value at the
+    // entry.
     let mean = if depth > 1e-12 { ((ends[0] - ends[1]) / depth).clamp(-1.0, 1.0) } else { entry_mu };
     let slant = entry_mu + (mean - entry_mu) * 2.0 / (2.0 + depth);
     let level = DVec3::splat(slant);
@@ -215,9 +216,9 @@ pub fn fog_beside_drops(
     fog_beside(m, origin, direction, [range, plane], [hidden, 0.0])
 }
 
-/// Returns the effect of fog along a ray to an object at a distance along it and from the camera's plane, m. `less` has
-/// two optical depths: that of single drops, which is subtracted from the precipitation, and that which fog banks
-/// replace, which is subtracted from the layer.
+/// Returns the effect of fog along a ray to an object. The object's distance is `range`, m, along the ray and `plane`,
+/// m, from the camera's plane. `less` has two optical depths: that of single drops, which is subtracted from the
+/// precipitation, and that which fog banks replace, which is subtracted from the layer.
 fn fog_beside(m: &FogModel, origin: DVec3, direction: DVec3, [range, plane]: [f64; 2], less: [f64; 2]) -> FogSample {
     match m.kind {
         FogKind::Clear if m.falling.extinction <= 0.0 => {

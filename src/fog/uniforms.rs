@@ -90,7 +90,7 @@ impl FogModel {
 /// They are three times as fast with only the features that a model needs ([`FogModel::variant`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FogVariant {
-    /// Kinds of fog: bit k stands for kind k of [`FogKind`].
+    /// Kinds of fog: bit k is kind k of [`FogKind`].
     pub kinds: u32,
     /// Whether layers may absorb.
     pub absorbing: bool,
@@ -106,7 +106,7 @@ pub struct FogVariant {
     pub neutral: bool,
     /// Whether slabs may have a lower edge.
     pub lifted: bool,
-    /// Shapes of the fog banks: bit k stands for kind k of the shaders' `FogBank`; 0 without banks.
+    /// Shapes of the fog banks: bit k is kind k of the shaders' `FogBank`; 0 without banks.
     pub bank_shapes: u32,
     /// Whether regions of banks may overlap.
     pub banks_overlap: bool,
@@ -234,7 +234,7 @@ pub struct FogUniform {
     pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
     /// Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     pub falling: [f32; 4],
-    /// Share of the light above the layer that reaches the camera, by which the air inside the layer is lit.
+    /// Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
     pub lit: f32,
     /// Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     pub curtain_amount: f32,
@@ -294,7 +294,8 @@ pub struct LowAirUniform {
     /// Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south
     /// to north.
     pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
-    /// Indices of the banks that the camera may see, from far to near: four bits each, the farthest lowest.
+    /// Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
+    /// lowest bits.
     pub bank_order: u32,
     /// Padding.
     pub pad: [u32; 3],
@@ -314,7 +315,8 @@ impl LowAirUniform {
         std::mem::offset_of!(Self, banks) + banks * size_of::<FogBankUniform>()
     }
 
-    /// Sets a frame's fog without banks. Without detours those of an earlier frame remain, and no shader reads them.
+    /// Sets a frame's fog without banks. If the model has no detours, those of an earlier frame remain in the block,
+    /// and no shader reads them.
     pub fn set(&mut self, model: &FogModel) {
         self.fog = model.uniform();
         (self.bank_count, self.bank_order) = ([0; 2], 0);

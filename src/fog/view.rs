@@ -59,7 +59,7 @@ impl DrawnEffect for FogView {
         let (now, law) = (context.now, context.held.of::<HeldFog>()?.law.as_ref());
         let here = now.scene.fog_model(law, now.seed, now.planet_radius_m)?;
         given.fog_depth = here.depth_above(now.scene.place.altitude_m);
-        // A law of the host's is one fog for all places.
+        // A fog law of the host applies at all places.
         self.banks.gather(context, law.is_some())?;
         let model = if self.banks.list().is_empty() {
             here

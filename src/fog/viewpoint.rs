@@ -13,17 +13,18 @@ pub(super) const NO_LIGHT: FogLight =
 pub struct FogLight {
     /// Unit vector towards the sun, or at night the moon, (east, north, up).
     pub to_sun: DVec3,
-    /// Direct irradiance of the sun or moon at the layer's top, on a surface facing it, per channel. The unit is free;
-    /// radiances are in this unit per steradian.
+    /// Direct irradiance of the sun or moon at the layer's top, on a surface facing it, per channel, each \[0, 1e12\].
+    /// The unit is free; radiances are in this unit per steradian.
     pub sun_irradiance: [f64; 3],
-    /// Irradiance of the sky on a horizontal surface at the layer's top, per channel.
+    /// Irradiance of the sky on a horizontal surface at the layer's top, per channel, each \[0, 1e12\].
     pub sky_irradiance: [f64; 3],
     /// Diffuse reflectance of the ground, per channel, \[0, 1\].
     pub ground_albedo: [f64; 3],
 }
 
 impl FogLight {
-    /// Checks that all light is finite and not negative, and that `to_sun` is a unit vector.
+    /// Checks that every irradiance is in \[0, 1e12\] and every reflectance in \[0, 1\], and that `to_sun` is a unit
+    /// vector.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -45,11 +46,12 @@ impl FogLight {
 pub struct Viewpoint {
     /// Altitude of the camera above mean sea level, m, \[-1e5, 1e9\].
     pub altitude_m: f64,
-    /// Position on the map, m east and north of any fixed point. Only the patches' pattern depends on it.
+    /// Position on the map, m east and north of any fixed point, each \[-2e12, 2e12\]. Only the patches' pattern
+    /// depends on it.
     pub map_m: [f64; 2],
-    /// Radius of the planet, m; infinite for a flat world.
+    /// Radius of the planet, m, above 1000; infinite for a flat world.
     pub planet_radius_m: f64,
-    /// Altitude of the planet's ground where the host drew none, m.
+    /// Altitude of the planet's ground where the host drew none, m, \[-1e5, 1e5\].
     pub ground_m: f64,
 }
 

@@ -26,7 +26,7 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// GPU resources of a view. Each is created when a frame first needs it.
+/// GPU resources of a view. Optional ones are created when first needed.
 pub(super) struct DrawCache {
     /// Pipelines, shared by the views of a device.
     pub composite: Arc<SharedComposite>,

@@ -26,7 +26,7 @@ impl View {
             return Ok(());
         }
         self.history.report.exposure = target.exposure;
-        // The plan is that of the picture itself.
+        // The plan is that of the normal picture of this frame.
         let mut context =
             self.planned(frame_context, target, Stages(asked.0 & there.0).without(Stages::PREPARE.with(Stages::LENS)));
         let behind = if frame.diagnostic == Diagnostic::PlanError { asked.0 & Stages::BACKGROUND.0 } else { 0 };

@@ -1,4 +1,5 @@
-//! One draw of a view: the effects' passes before the composition, the composition, and the outputs made from it.
+//! One draw of a view: the effects' passes before the composition, the composition, and after it the host's cube map
+//! and veil.
 
 use super::{
     froxels::{FroxelKind, Froxels},
@@ -20,7 +21,7 @@ use crate::{
     },
 };
 
-/// Returns the frame's uniform block for a draw. `tone` says that the whole picture is tone-mapped.
+/// Returns the frame's uniform block for a draw. `tone` says whether the whole picture is tone-mapped.
 pub(super) fn frame_block(context: &DrawContext<'_>, tone: bool) -> FrameUniform {
     let target = &context.target;
     uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone)
@@ -71,8 +72,8 @@ impl View {
         Ok(())
     }
 
-    /// Merges what all effects add to a draw into `composition`, in place because it is large. `has_cube_map` says that
-    /// the host has asked for the cube map.
+    /// Merges the contributions of all effects into `composition`. The merging is done in place because a composition
+    /// is large. `has_cube_map` says whether the host has asked for the cube map.
     pub(super) fn compose_effects(
         &mut self,
         context: &DrawContext<'_>,
@@ -161,7 +162,7 @@ impl View {
         })
     }
 
-    /// Draws the composition over the picture, and the gauge over the whole picture if it is due.
+    /// Draws the composition over the picture, and then the gauge of the whole picture, if one is due.
     fn compose(
         &mut self,
         context: &DrawContext<'_>,
@@ -172,12 +173,12 @@ impl View {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(context.target.color, Layer::view);
         let groups = [group, tables, self.cache.surroundings.bind_group()];
-        // On a GPU, branches skip the parts that are not drawn. Compiling another pipeline without them would delay a
-        // frame.
+        // On a GPU, branches skip the parts that are not drawn. Compiling another pipeline without these parts would
+        // delay a frame.
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();
-        // A pure picture must not depend on the number of frames drawn before it.
+        // A picture without history must not depend on the number of frames drawn before it.
         let how = (splits, splits || context.frame.is_pure());
         let make = || {
             let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
@@ -205,7 +206,7 @@ impl View {
         Ok(())
     }
 
-    /// Fills the veil's textures for the host's own shaders, if the host has asked for them.
+    /// Fills the veil's textures for the host's own shaders, if the host has asked for these textures.
     fn fill_veil(
         &mut self,
         context: &DrawContext<'_>,

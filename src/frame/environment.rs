@@ -1,4 +1,4 @@
-//! Environment of a view for the host's own shaders: the cube map, as handed out and as filled.
+//! Environment of a view for the host's own shaders: the call that hands out the cube map, and the one that fills it.
 
 use super::{environment_map::EnvironmentMap, view::View};
 use crate::{
@@ -15,8 +15,8 @@ pub struct Environment {
     pub texture: wgpu::Texture,
     /// Factor from texels to cd/m^2; 0 before the first frame.
     pub cd_m2_per_unit: f64,
-    /// Factor from texels to the last frame's colour of a scene-linear host; for other hosts, to display values before
-    /// the tone curve. 0 before the first frame.
+    /// Factor from texels to units of the last frame's colour for a scene-linear host; for other hosts, to display
+    /// values before the tone curve. 0 before the first frame.
     pub light_scale: f64,
 }
 
@@ -42,7 +42,7 @@ impl View {
         Ok(Environment { texture: map.texture.clone(), cd_m2_per_unit, light_scale })
     }
 
-    /// Draws the faces of the cube map that are due, if the host has asked for it.
+    /// Draws those faces of the cube map that are due, if the host has asked for the map.
     pub(super) fn fill_environment(
         &mut self,
         context: &DrawContext<'_>,

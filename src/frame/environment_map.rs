@@ -24,13 +24,13 @@ const SIZE: u32 = 64;
 const LEVELS: u32 = 7;
 /// Number of sample directions of the filter for a texel of each level; narrow lobes need few.
 const SAMPLES: [f32; LEVELS as usize] = [0.0, 16.0, 32.0, 64.0, 64.0, 64.0, 64.0];
-/// Number of source levels that the filter reads.
+/// Number of levels of the unfiltered map, from which the filter reads.
 const SOURCE_LEVELS: u32 = 5;
 const FACES: u32 = 6;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Distance from one uniform block to the next, bytes; a multiple of every device's alignment.
 const STEP: usize = 256;
-/// Most cached pipelines of a view: with and without a low cloud layer, for one host's images.
+/// Largest number of cached pipelines of a view: with and without a low cloud layer, for one host's images.
 const MOST_PIPELINES: usize = 4;
 
 /// Middle, right edge and lower edge of each face in the cube's axes (OpenGL 4.6, table 8.19).
@@ -48,7 +48,7 @@ const AXES: [[DVec3; 3]; FACES as usize] = [
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FaceUniform {
     forward: [f32; 3],
-    /// Texels per cd/m^2 of a face; alpha of the filter.
+    /// For a face: texel value per cd/m^2. For the filter: alpha.
     number: f32,
     right: [f32; 3],
     /// Number of the filter's directions.
@@ -85,9 +85,9 @@ struct EnvironmentInputs {
     world_to_enu: DMat3,
 }
 
-/// Change of one of the `sizes` from one frame to the next above which it counts as a jump.
+/// Limit above which the change of one of the `sizes` between two frames counts as a jump.
 const LEAP: f64 = 0.05;
-/// Change of a direction from one frame to the next above which it counts as a jump, rad.
+/// Limit, rad, above which the change of a direction between two frames counts as a jump.
 const LEAP_RAD: f64 = 0.02;
 /// Ratios of adaptation luminance to the map's scale for which half floats are precise enough.
 const SCALES: std::ops::Range<f64> = 0.1..10.0;

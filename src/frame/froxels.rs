@@ -1,7 +1,7 @@
 //! Textures of the veil of air and fog, for the host's own transparent shaders (glass, lamps, smoke).
 //!
-//! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping is that of
-//! `shaders/frame/froxels.wgsl` and of the published snippets.
+//! Created when the host first calls `frame_textures`, and drawn in each frame from then on. The mapping from the
+//! view's frustum to texels is that of `shaders/frame/froxels.wgsl` and of the published snippets.
 
 use crate::{
     error::Result,
@@ -44,7 +44,7 @@ pub(super) struct FroxelKind {
     pub constants: Constants,
 }
 
-/// Most cached pipelines of a view: with and without fog, and an effect's own, for one host's images.
+/// Largest number of cached pipelines of a view: with and without fog, and an effect's own, for one host's images.
 const MOST_PIPELINES: usize = 8;
 
 /// Textures of the veil, and the pipelines that fill them.

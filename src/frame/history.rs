@@ -8,11 +8,11 @@ use crate::{
     world::KeptScene,
 };
 
-/// Data of the last frame's calls so far.
+/// Data from the calls of the view's last frame so far.
 pub(super) struct FrameHistory {
     /// Frame for which the plan was made.
     pub planned_for: Option<u64>,
-    /// Ratio of the veil textures' values to the units of the last picture.
+    /// Factor from the values of the veil's textures to units of the last picture's colour.
     pub light_scale: f32,
     pub unit: LuminanceUnitCheck,
     /// Stages of the frame that have been recorded so far.

@@ -41,13 +41,14 @@ impl View {
         Ok(())
     }
 
-    /// Draws what the opaque parts of the effects read.
+    /// Draws the textures that the opaque geometry of the effects reads.
     fn prepare_opaque(&mut self, context: &FrameContext<'_>, recording: &mut Recording<'_>) -> Result<()> {
         let mut drawn = self.effects.each().into_iter().filter(|effect| effect.has_opaque());
         drawn.try_for_each(|effect| effect.prepare_opaque(context, recording))
     }
 
-    /// Draws the opaque parts of the effects. If the host's depth is read-only, counts these effects instead.
+    /// Draws the opaque geometry of the effects. If the host's depth is read-only, draws nothing and counts the effects
+    /// with opaque geometry.
     pub(super) fn draw_opaque<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,

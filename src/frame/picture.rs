@@ -47,7 +47,7 @@ impl View {
         Ok(!fits)
     }
 
-    /// Creates the attachment for kinds of pixels, and the coarse grid, anew if they do not fit.
+    /// Creates the attachment for kinds of pixels, and the coarse grid, anew if they do not fit the picture.
     pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
         let apart = color.sample_count() == 1;
         if self.cache.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {

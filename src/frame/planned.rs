@@ -80,9 +80,9 @@ impl View {
     /// that the plan breaks are reported.
     ///
     /// # Errors
-    /// [`Status::Parse`] for text that is no such plan, or of another version, naming line and column or the field;
-    /// [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After either of
-    /// these two errors the budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
+    /// [`Status::Parse`] for text that is not such a plan or has another version; the message names line and column, or
+    /// the field; [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After
+    /// either of these two errors the budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;
         let mut budget = self.planner.budget().clone();

@@ -1,5 +1,5 @@
-//! Rehearsal of a view: the view draws the weathers to come into images of its own. Their pipelines are then compiled,
-//! and their first tables built, before they are needed.
+//! Rehearsal of a view: the view draws coming weathers into images of its own. The pipelines of these weathers are then
+//! compiled, and their first tables built, before a frame needs them.
 
 use std::time::{Duration, Instant};
 
@@ -12,11 +12,11 @@ use crate::{
     weather::{Conditions, Weather, derive},
 };
 
-/// Most frames of one moment.
+/// Largest number of frames drawn for one moment of a weather.
 pub(crate) const MOST_FRAMES: u32 = 12;
 /// Longest time of one call, s.
 const MOST_S: f64 = 3600.0;
-/// Most calls of one frame: one for each stage.
+/// Largest number of calls of one frame: one for each stage.
 pub(crate) const MOST_CALLS: usize = 7;
 
 impl View {
@@ -46,16 +46,16 @@ impl View {
         record(self, &own)
     }
 
-    /// Draws weathers that may come, into small images of the view's own. Their pipelines are then compiled and their
-    /// first tables made, so that hardly any frame waits for them when the weather comes. Each weather is drawn at
-    /// several moments: while the previous weather changes to it, after the change, and with the sun at several
-    /// heights. `frame` has the settings of the frames to come, and images with the formats, samples and usages of
-    /// theirs. These images are not drawn into. `calls` are the stages of the calls of one frame, in order, at most
-    /// seven. Call this function before the first frame or behind a loading screen: the next frame begins as a view's
-    /// first one does. On return the context is as it was before the call.
+    /// Draws weathers that may come, into small images of the view's own. The pipelines of these weathers are then
+    /// compiled and their first tables made, so that hardly any frame waits for them when the weather comes. Each
+    /// weather is drawn at several moments: while the previous weather changes to it, after the change, and with the
+    /// sun at several heights. `frame` has the settings of the coming frames, and images with the same formats, samples
+    /// and usages as in these frames. The images of `frame` are not drawn into. `calls` are the stages of the calls of
+    /// one frame, in order, at most seven. Call this function before the first frame or behind a loading screen: the
+    /// next frame begins as a view's first one does. On return the context is as it was before the call.
     ///
     /// One call draws for about `most`, and at least one moment of a weather. [`Status::Pending`] says that moments
-    /// remain: call this function again with the same weathers. Other weathers begin anew.
+    /// remain: call this function again with the same weathers. Other weathers begin a new rehearsal.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming `weathers[i]` and the field, `calls` or the field of `frame`;
@@ -125,15 +125,15 @@ impl View {
         None
     }
 
-    /// Begins a frame of a rehearsal: the calls that follow draw into its own images. Returns the number of pipelines
-    /// that the device has created.
+    /// Begins a frame of a rehearsal: the calls that follow draw into the view's own images. Returns the number of
+    /// pipelines that the device has created.
     pub(crate) fn begin_rehearsed_frame(&mut self) -> u64 {
         self.rehearsal.is_on = true;
         self.device.counts.total(DeviceWork::Pipelines)
     }
 
-    /// Ends a frame of a rehearsal. Returns whether it created pipelines, so that another frame is due: on a GPU each
-    /// creates one large pipeline.
+    /// Ends a frame of a rehearsal. Returns whether the frame created pipelines. Another frame is then due, because on
+    /// a GPU each frame creates only one large pipeline.
     pub(crate) fn end_rehearsed_frame(&mut self, pipelines_before: u64) -> bool {
         self.rehearsal.is_on = false;
         self.rehearsal.frames += 1;

@@ -20,11 +20,11 @@ const ROWS: u32 = 8;
 /// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// Ratio of the luminance of white in the weather's light to that of the picture's brightest pixels above which the
-/// unit counts as wrong. A room with its lamps off has a smaller ratio.
+/// Largest plausible ratio of two luminances: white in the weather's light, and the picture's brightest pixels. With a
+/// larger ratio the unit counts as wrong. A room with its lamps off has a smaller ratio.
 const DARKER: f64 = 2000.0;
-/// Ratio of the luminance of the picture's brightest pixels to that of white in the weather's light above which the
-/// unit counts as wrong by day. It is day if that white has more than `DAY_CD_M2`.
+/// Largest plausible ratio of two luminances by day: the picture's brightest pixels, and white in the weather's light.
+/// With a larger ratio the unit counts as wrong. It is day if that white has more than `DAY_CD_M2`.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -63,7 +63,7 @@ pub(super) struct LuminanceUnitCheck {
 
 impl LuminanceUnitCheck {
     /// Continues a pending readback, and starts one of this frame's picture if it is due. `white_cd_m2` is the
-    /// luminance of white on level ground; `with_background` says that BACKGROUND may already be in the picture.
+    /// luminance of white on level ground; `with_background` says whether BACKGROUND may already be in the picture.
     pub fn watch(
         &mut self,
         device: &Device,

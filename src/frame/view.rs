@@ -59,7 +59,7 @@ impl View {
     }
 
     /// Returns textures of air and fog for the host's own transparent shaders. From this function's first call on,
-    /// [`Stages::MEDIUM`] of every frame fills them.
+    /// [`Stages::MEDIUM`] of every frame fills these textures.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -316,7 +316,7 @@ impl View {
         if lens { self.draw_lens(frame, target.color, stages.has(Stages::TONE), recording) } else { Ok(()) }
     }
 
-    /// Draws the lens effects over the picture in the target. `toned` says that TONE has been applied in this call.
+    /// Draws the lens effects over the picture in the target. `toned` says whether TONE has been applied in this call.
     fn draw_lens(
         &mut self,
         frame: &Frame<'_>,

@@ -20,7 +20,7 @@ const PERIOD_M: f64 = 65_536.0;
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct WindUniform {
     map: WindMap,
-    /// Weather's wind, m/s (east, north, up).
+    /// The weather's wind, m/s (east, north, up).
     weathers: [f32; 3],
     /// 1 if there is a wind that varies in space, else 0.
     varies: u32,
@@ -51,7 +51,7 @@ impl WindPicture {
     /// Creates the bind group of the wind at a moment.
     ///
     /// # Errors
-    /// An error for a time that the weather does not cover.
+    /// [`crate::Status::InvalidArgument`] for a time that the weather does not cover.
     pub fn bind(&self, device: &Device, now: &SceneMoment<'_>) -> Result<wgpu::BindGroup> {
         let (found, map) = now.wind_texture(device);
         let uniform = WindUniform {

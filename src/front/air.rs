@@ -118,9 +118,9 @@ impl Context {
     /// harmonics of radiance, cd/m^2 per channel, in (east, north, up) of the place. The lower half is the lit ground.
     /// Clouds dim and whiten the sky.
     ///
-    /// The query reads the sky's tables: it builds them first if no frame did, and waits for the GPU once after every
-    /// change of the air. The pattern of the clear sky is that of the air in the tables; the overall brightness, clouds
-    /// and fog are those of `time_s`.
+    /// The query reads the sky's tables: it builds them first if no frame did. The first query after each change of the
+    /// tables waits for the GPU. The pattern of the clear sky is that of the air in the tables; the overall brightness,
+    /// clouds and fog are those of `time_s`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`];
@@ -249,7 +249,8 @@ pub(super) fn unit_vector(name: &str, direction: DVec3) -> Result<DVec3> {
     Err(Error::range(name, "a unit vector (east, north, up)", direction))
 }
 
-/// Adds a sky of uniform radiance `u` above the horizon, and below it a ground of this albedo that the sky lights.
+/// Adds a sky of uniform radiance `u` above the horizon, and below the horizon a ground of albedo `albedo` that this
+/// sky lights.
 fn add_even_sky(sh: &mut Sh9, u: [f32; 3], albedo: [f64; 3]) {
     // Integrals of the basis over the upper half: Y00 sqrt(pi), Y10 sqrt(3 pi)/2, the zonal Y20 vanishes.
     let (y00, y10) = (std::f32::consts::PI.sqrt(), (3.0 * std::f32::consts::PI).sqrt() / 2.0);

@@ -53,7 +53,7 @@ impl Context {
 
     /// Returns the optical depth at 550 nm that the rain areas add over `offset`, metres (east, north, up) from
     /// `position`: the mean over their curtains. The depth is negative where the areas thin the weather's rain. With
-    /// weather regions this is the rain outside all of them, without regions that of `c`.
+    /// weather regions, the weather's rain is that outside all of them. Without regions, it is the rain of `c`.
     pub(super) fn areas_depth(&self, position: DVec3, offset: DVec3, time_s: f64, c: &Conditions) -> Result<f64> {
         let (over, world) = (self.world.over(), &self.world);
         if over.regions.is_empty() {

@@ -16,7 +16,7 @@ const ATTENUATING: [WeatherParts; 3] = [WeatherParts::HAZE, WeatherParts::FOG, W
 
 /// Media of one weather along a ray.
 struct WayMedia {
-    /// Air, of which only the haze is used.
+    /// Air. Its haze is used; its gas and ozone are used only in the weather outside all regions.
     air: Medium,
     ray: Ray,
     low: LowMedia,

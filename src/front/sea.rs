@@ -74,7 +74,7 @@ impl Context {
     }
 
     /// Replaces the regions of water and of dry places; an empty list removes all. Part of the saved state. Regions
-    /// that move at a constant velocity move by themselves; set them again when it changes.
+    /// that move at a constant velocity move by themselves; set them again when the velocity changes.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for more than [`MAX_SEA_REGIONS`](crate::sea::MAX_SEA_REGIONS), or naming the

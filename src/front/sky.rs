@@ -18,7 +18,7 @@ use crate::{
     world::color_of,
 };
 
-/// Distance of fog, m, below which the air in front of its light is ignored.
+/// Distance of fog, m, below which the air in front of the fog is ignored.
 const NEAR_FOG_M: f64 = 50.0;
 /// Ratio E / (pi L) of an overcast sky: E is the illuminance of level ground, L the luminance of the zenith (Moon and
 /// Spencer 1942).

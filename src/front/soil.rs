@@ -12,7 +12,7 @@ use crate::{
     terrain::{Terrain, TileKey},
 };
 
-/// Largest number of cells of a query of a rectangle.
+/// Largest number of cells in a queried rectangle.
 const MOST_CELLS: u64 = 1 << 20;
 /// Returns a place of the host's world in metres east, north and up of the lattice's origin.
 fn local(terrain: &Terrain, position: DVec3) -> DVec3 {

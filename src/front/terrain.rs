@@ -16,7 +16,7 @@ impl Context {
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
     /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`]. Soil
-    /// ([`Context::set_soil`]) lies on the lattice, and is gone when another one takes its place.
+    /// ([`Context::set_soil`]) lies on the lattice, and is removed when another lattice replaces it.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; nothing changes then.
@@ -119,8 +119,8 @@ impl Context {
     /// snow where it is simulated. They cover a window of 512 x 512 cells, one texel a cell, which moves in steps of 64
     /// cells so that `center` stays in its middle quarter. Changes since the last call are uploaded and submitted;
     /// after a move that is the whole window. Both textures stay the same objects as long as the context lives. Where
-    /// no tile has ground there is neither water nor snow. A host with several cameras calls this before it draws each
-    /// one.
+    /// no tile has ground there is neither water nor snow. A host with several cameras calls this function before it
+    /// draws the picture of each camera.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if `center` is invalid; [`crate::Status::WrongOrder`] where no tile reaches

@@ -35,8 +35,8 @@ impl View {
 
     /// Returns the map of the clouds' shadows, for a host that lights its own materials. From the first call on, the
     /// first call of each frame updates the map, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) no longer draws
-    /// cloud shadows: the host does. Call it after each frame for the map's placement. A host that draws before Welkin
-    /// uses the placement of the last frame: clouds have moved by centimetres since then.
+    /// cloud shadows: the host does. Call this function after each frame for the map's placement. A host that draws
+    /// before Welkin uses the placement of the last frame: clouds have moved by centimetres since then.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -59,8 +59,8 @@ impl View {
     }
 
     /// Sets the windscreen through which the view looks; `None` removes it. A host sets it again before each frame in
-    /// which the vehicle drives, the head turns or the wiper moves. The water stays on the glass as long as the size
-    /// stays the same. After an error the windscreen is unchanged.
+    /// which the vehicle drives, the head turns or the wiper moves. The water stays on the glass as long as the glass
+    /// keeps its size. After an error the windscreen is unchanged.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.
@@ -71,8 +71,8 @@ impl View {
         self.effects.glass.set(screen)
     }
 
-    /// Returns the water on the windscreen as of the last frame, or `None` without one. It waits for the GPU to read
-    /// the water back: do not call it every frame.
+    /// Returns the water on the windscreen as of the last frame, or `None` without one. The call waits for the GPU to
+    /// read the water back: do not make it every frame.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

@@ -12,11 +12,12 @@ impl Context {
     /// windscreen, and for drops and flakes near a camera. A host's grid ([`Context::set_wind_grid`]) replaces the
     /// field.
     ///
-    /// A field that is set again with another position moves by whole cells; with another size, mode, walls, scheme or
-    /// pressure method it starts anew. [`Context::update`] advances it in steps on a time grid that is anchored at time
-    /// 0; [`crate::flow`] says how long they take. It starts with the steady field of the wind at its start, and starts
-    /// anew in this way after a leap of time of more than a minute ([`WindFieldReport::begun_s`]). Part of the saved
-    /// state.
+    /// A field that is set again with another position moves there by whole cells if the move is shorter than half of
+    /// the field along each axis. After a longer move, or with another size, mode, walls, scheme or pressure method, it
+    /// starts anew. [`Context::update`] advances the field in steps that end at multiples of their length since time 0;
+    /// [`crate::flow`] says how long they take. A field starts with the steady field of the wind at its start, and
+    /// starts anew in this way after a leap of time of more than a minute ([`WindFieldReport::begun_s`]). Part of the
+    /// saved state.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; for a field that is too large, the message also gives the

@@ -73,7 +73,7 @@ pub fn melts_m_s(heat_w_m2: f64, temperature_c: f64, wind_m_s: f64) -> f64 {
 }
 
 /// Returns the largest volume of water that one flake brings to a cell, m^3. It is 0.1 mm of water over the cell. A
-/// large flake covers several cells: one of 5 mm and 2 mg is as deep over its disc.
+/// large flake covers several cells: a flake of 5 mm and 2 mg is also 0.1 mm of water deep over its disc.
 pub fn of_a_flake_m3(cell_m: f64) -> f64 {
     1e-4 * cell_m * cell_m
 }

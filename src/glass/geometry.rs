@@ -13,7 +13,8 @@ pub const MAX_CELLS: u32 = 1024;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pane {
     /// A flat window. Its corners in the camera's axes (x right, y up, z backwards), m from the camera: lower left,
-    /// lower right, upper right, upper left as seen from the camera. Convex; edges from 0.05 to 8 m.
+    /// lower right, upper right, upper left as seen from the camera. Convex, in one plane within 2 % of a diagonal,
+    /// each coordinate within 20 m, edges from 0.05 to 8 m.
     Quad([DVec3; 4]),
     /// Glass over the whole picture, at right angles to the camera's axis. The value is its distance from the camera,
     /// m, [0.1, 3].

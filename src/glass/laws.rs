@@ -101,7 +101,7 @@ pub fn drop_volume_m3(d: f64) -> f64 {
 /// Drops that hit a surface, by diameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrivals {
-    /// Diameter, mm, and drops per m^2 and second of each class, from the largest down.
+    /// Diameter, mm, and number of drops per m^2 and second of each class, from the largest diameter down.
     pub classes: [(f64, f64); CLASSES],
     /// Number of drops, 1/(m^2 s).
     pub number_m2_s: f64,

@@ -13,8 +13,8 @@
 //!
 //! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a
 //! cut, at the first frame, and if more than [`MAX_STEPS`] would be due, the glass takes the declared state of that
-//! time: a pure function of (seed, time, rain), with beads below the size at which they run. A frame with `NO_HISTORY`
-//! always shows the declared state.
+//! time. This state is a pure function of (seed, time, rain), and its beads are too small to run. A frame with
+//! `NO_HISTORY` always shows the declared state.
 //!
 //! **Cost.** Each step takes two passes over the lattice, and a third with snow on the glass or falling. Each frame
 //! takes two small copies of the picture and one pass over it. There is no cost without a windscreen or on dry glass.
@@ -22,7 +22,7 @@
 //! apart.
 //!
 //! There is no `held.rs`: the water belongs to a view's own window (`state.rs`). There is no `candidates.rs`: there is
-//! one way to draw it, and the plan never leaves it out.
+//! one way to draw the water, and the plan never leaves the water out.
 
 mod cell_passes;
 pub mod frost;

@@ -24,11 +24,11 @@ const VEHICLE_M: f64 = 3.0;
 pub(super) struct PaneAt {
     /// Position of the eye.
     eye: DVec3,
-    /// Lower left corner of its bounds, m.
+    /// Lower left corner of the pane's bounds, m.
     origin: DVec3,
-    /// Vector from `origin` to the lower right corner of its bounds, m.
+    /// Vector from `origin` to the lower right corner of the pane's bounds, m.
     along: DVec3,
-    /// Vector from `origin` to the upper left corner of its bounds, m.
+    /// Vector from `origin` to the upper left corner of the pane's bounds, m.
     up: DVec3,
     /// Unit vector outwards.
     out: DVec3,
@@ -59,13 +59,14 @@ impl PaneAt {
         met(self.eye, self.out) && met(self.eye, -self.out) && !met(before, self.out)
     }
 
-    /// Returns the point at these shares of the pane to the right and up, 0 to 1.
+    /// Returns a point of the pane. `x` and `y`, 0 to 1, are its distances from the lower left corner of the bounds, as
+    /// shares of the width and the height.
     fn at(&self, [x, y]: [f64; 2]) -> DVec3 {
         self.origin + self.along * x + self.up * y
     }
 
-    /// Returns drops of `sizes` that each represent an equal share of the falling water: the present velocity of each
-    /// in the host's world, and the share of the water on the pane that each brings.
+    /// Returns drops of `sizes` that each represent an equal share of the falling water. Each has its present velocity
+    /// in the host's world, and the share of the water on the pane that it brings.
     pub fn drops(&self, now: &SceneMoment<'_>, sizes: &DropSizes) -> [(DVec3, f64); SIZES] {
         let over = &now.weather;
         let to_enu = over.world.frame_at(self.origin).world_to_enu;
@@ -101,7 +102,7 @@ impl PaneAt {
     }
 
     /// Returns the pane and its drops as uniforms for the maps' pass. The camera is at `eye`; `to_enu` is the rotation
-    /// from the host's axes to its east, north, up.
+    /// from the host's axes to east, north, up at the camera.
     pub fn uniform(&self, drops: &[(DVec3, f64); SIZES], (eye, to_enu): (DVec3, DMat3)) -> PaneUniform {
         let row = |v: DVec3, w: f64| (to_enu * v).extend(w).as_vec4().to_array();
         PaneUniform {

@@ -38,7 +38,7 @@ pub(super) struct LensVariant {
     pub has_mask: bool,
 }
 
-/// Number of cached lens pipelines: one for each format that views are drawn in.
+/// Largest number of cached lens pipelines. Each [`LensVariant`] in use needs one.
 const MOST_LENSES: usize = 16;
 
 /// Pipelines and layouts, one set for each device.
@@ -179,7 +179,7 @@ pub(super) struct PaneLattice {
     groups: [[[wgpu::BindGroup; 2]; 2]; 2],
     /// Uniform blocks of the due steps, every `stride` bytes.
     steps: wgpu::Buffer,
-    /// Distance between the blocks of two steps, bytes.
+    /// Distance between the blocks of consecutive steps, bytes.
     stride: usize,
     /// Bytes of the steps' uniform blocks, before they are uploaded.
     slots: Vec<u8>,
@@ -398,7 +398,7 @@ impl LensPass {
         }
     }
 
-    /// Returns whether it was created for these textures.
+    /// Returns whether the lens was created for these textures.
     pub fn serves(&self, frame: &LensFrame<'_>, lattice: Option<&PaneLattice>) -> bool {
         self.picture == *frame.picture
             && is_kept(frame.mask, self.mask.as_ref())

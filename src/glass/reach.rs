@@ -1,9 +1,9 @@
 //! Share of the rain that reaches each part of the pane past shelters and maps.
 //!
-//! A grid of nodes lies over the pane's bounds. Boxes are tested on the CPU in f64, so that every channel has the same
-//! bits. The host's maps, which are on the GPU, are tested by their own pass (`shaders/glass/maps.wgsl`). The
-//! shaders give each cell of the glass, which holds one bead, the share interpolated between the four nodes around it,
-//! in integers.
+//! A grid of nodes lies over the pane's bounds. Boxes are tested on the CPU in f64, so that every view has the same
+//! bits. The host's maps, which are on the GPU, are tested by their own pass (`shaders/glass/maps.wgsl`). The shaders
+//! give each cell of the glass, which holds one bead, the share interpolated between the four nodes around it, in
+//! integers.
 
 use std::array::from_fn;
 

@@ -71,7 +71,8 @@ fn perp_dot(a: [i32; 2], b: [i32; 2]) -> i32 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Returns whether a blade has passed over a point, given in 1/16 cell, during the step, or lies on it.
+/// Returns whether a blade passes over a point during the step, or lies on the point at the beginning or the end.
+/// `point` is in 1/16 cell.
 fn swept(step: &StepUniform, point: [i32; 2]) -> bool {
     step.arms.chunks(3).any(|arm| {
         let [reach, before, now] = [arm[0], arm[1], arm[2]];

@@ -119,7 +119,7 @@ fn acting(screen: &Windscreen, plane: &Plane, moment: &AtGlass<'_>, weather: &Co
 }
 
 impl Glass {
-    /// Creates a windscreen that no update has reached yet.
+    /// Creates the state of a windscreen before the first frame.
     pub fn new(screen: Windscreen) -> Self {
         Self {
             screen,
@@ -256,7 +256,7 @@ impl Glass {
             None => *screen,
         };
         let is_wiped = (0..MAX_ARMS).any(|i| screen.arms[i] != earlier.arms[i]);
-        // Skips the step if snow only lies.
+        // Skips the step if nothing changes: no rain, no water, no wiping, and snow that neither falls nor melts.
         if !rains && self.moisture <= 0.0 && !snows && melts <= 0.0 && !is_wiped {
             return;
         }

@@ -30,7 +30,7 @@ const LARGEST: f64 = 0.95;
 const FARTHEST: f64 = 58_000.0;
 /// Units per cell of an arm's positions.
 const ARM_UNIT: f64 = 16.0;
-/// Units per 1 of an arm's directions.
+/// Units per unit length of the direction vectors of an arm.
 const DIRECTION_UNIT: f64 = 4096.0;
 
 /// Uniform block `Step` of `shaders/glass/cells.wgsl`.
@@ -342,7 +342,7 @@ mod tests {
             let n = numbers(&acting);
             for i in 0..DROP_CLASSES {
                 let octave = (i / 16) as f64;
-                // The rarest class also stands for all rarer drops.
+                // The rarest class also includes all rarer drops.
                 let share = 0.5f64.powf(octave + 5.0) * if i == DROP_CLASSES - 1 { 17.0 } else { 1.0 };
                 sum += share * f64::from(n.drops[i / 4][i % 4]) * VOLUME_UNIT_M3;
             }

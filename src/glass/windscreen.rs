@@ -47,8 +47,8 @@ impl Default for WiperArm {
 pub struct Windscreen {
     /// Shape and position of the glass.
     pub pane: Pane,
-    /// Velocity of the glass against the air (the vehicle's less the wind's), m/s in the camera's axes, each
-    /// within 400. The number of drops that hit the glass depends on it.
+    /// Velocity of the glass against the air (the vehicle's minus the wind's), m/s in the camera's axes, each within
+    /// 400. The number of drops that hit the glass depends on it.
     pub velocity_m_s: DVec3,
     /// Speed of the air that flows up along the glass, as close to it as a bead is high, m/s, [-100, 100]. It drives
     /// the beads.

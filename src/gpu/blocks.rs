@@ -24,7 +24,7 @@ struct Page {
     staged: Vec<u8>,
     /// Range of `staged` that is not yet uploaded.
     changed: Range<usize>,
-    /// Ranges in use, from the end of the page to its beginning.
+    /// Ranges in use, ordered from the end of the page to its beginning.
     taken: Vec<Range<usize>>,
 }
 

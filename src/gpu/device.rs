@@ -21,7 +21,8 @@ pub struct Caps {
     /// Name and version that the driver reports.
     pub driver: String,
     /// Feature tier: 0 without compute (GL 3.3 to 4.2, macOS GL, or [`DeviceOptions::force_tier0`]), 1 with compute and
-    /// draw counts that stay on the GPU. Compute needs workgroups of 128 threads and 3 storage buffers per stage.
+    /// with indirect draws, whose counts stay on the GPU. Compute needs workgroups of 128 threads and 3 storage buffers
+    /// per stage.
     pub tier: u32,
     /// Whether the driver computes on the CPU.
     pub software: bool,
@@ -414,8 +415,8 @@ impl Device {
         Ok(made)
     }
 
-    /// Submits the commands. Only one thread submits at a time, so that the semaphores and barriers that a Vulkan host
-    /// has staged belong to its own submission.
+    /// Submits the commands. Only one thread submits at a time, so that semaphores and barriers staged for a Vulkan
+    /// host go with the submission for which they were staged.
     pub fn submit(&self, encoder: wgpu::CommandEncoder) {
         let commands = encoder.finish();
         let _turn = self.turn();

@@ -28,8 +28,8 @@ impl Layer<'_> {
         })
     }
 
-    /// Creates a view of this layer only, to draw into, with all aspects of its format. It cannot be read: on OpenGL a
-    /// single layer of several reads as empty.
+    /// Creates a view of this layer only, to draw into, with all aspects of its format. The view cannot be read: on
+    /// OpenGL a single layer of several reads as empty.
     pub fn attached_view(self) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
             usage: Some(wgpu::TextureUsages::RENDER_ATTACHMENT),
@@ -95,7 +95,7 @@ pub(crate) fn is_kept(layer: Option<Layer<'_>>, kept: Option<&KeptLayer>) -> boo
 /// Checks that shaders can read the depth of `format`.
 ///
 /// # Errors
-/// [`crate::Status::Unsupported`], which names the formats that they can read.
+/// [`crate::Status::Unsupported`], which names the formats that shaders can read.
 pub(crate) fn check_depth_format(format: wgpu::TextureFormat) -> Result<()> {
     use wgpu::TextureFormat as F;
     if !matches!(

@@ -1,8 +1,8 @@
 //! Kinds of passes that effects use: a full-screen triangle with a fragment shader, quads drawn over a layer, a mesh,
 //! or a compute shader.
 //!
-//! Tables, sky, fog and composition use full-screen passes only, so they also run on tier 0. The vertex stage of these
-//! is `common/fullscreen.wgsl`.
+//! Tables, sky, fog and composition use full-screen passes only, so they also run on tier 0. The vertex stage of
+//! full-screen passes is `common/fullscreen.wgsl`.
 
 use std::time::Instant;
 

@@ -1,4 +1,5 @@
-//! Shader assembly: plain WGSL files, `//!include "common/x.wgsl"` resolved once each.
+//! Shader assembly: plain WGSL files, in which the line `//!include "common/x.wgsl"` includes another file, once in
+//! each shader.
 //!
 //! A variant of a shader has other `override` constants, another entry point, or other files in place of some:
 //! `rain/drops_view.wgsl:multi` includes `common/host_multi.wgsl` instead of `common/host.wgsl`, and so for every file

@@ -128,7 +128,8 @@ impl NativeWindow {
 }
 
 impl NativeWindow {
-    /// Checks that the window exists: without it X11 drivers crash, and the behaviour on Windows depends on the driver.
+    /// Checks that the window exists. For a window that does not exist, X11 drivers crash, and the behaviour on Windows
+    /// depends on the driver.
     ///
     /// # Safety
     /// The connection is live.
@@ -510,7 +511,7 @@ fn outdated(why: &str) -> Error {
     Error::new(Status::SurfaceOutdated, message)
 }
 
-/// Chooses the window's format for an encoding: 8 bits per channel, in the order that the window prefers.
+/// Chooses the window's format for an encoding: of those with 8 bits per channel, the one that the window prefers.
 fn choose_format(offered: &[wgpu::TextureFormat], encoding: SurfaceEncoding) -> Result<wgpu::TextureFormat> {
     let wanted = match encoding {
         SurfaceEncoding::DisplayLinear => [wgpu::TextureFormat::Bgra8UnormSrgb, wgpu::TextureFormat::Rgba8UnormSrgb],

@@ -1,13 +1,13 @@
 //! Hollows of a terrain as a tree, and the pit to which each cell drains.
 //!
-//! A pit fills until its water meets that of another pit at a saddle. Above the saddle both are one larger hollow,
-//! which fills up to the height at which it spills, and so on until the water finds the grid's border. This is the
-//! depression hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow spills is that of the
-//! priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal heights by cell number,
-//! so every cell except a pit has a lower neighbour that has been visited. Run-off takes the steepest of the eight
-//! directions. Water leaves at the border.
+//! A pit fills until its water meets that of another pit at a saddle. Above the saddle both are parts of one larger
+//! hollow. The larger hollow fills up to the height at which it spills, and so on until the water finds the grid's
+//! border. This is the depression hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow
+//! spills is that of the priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal
+//! heights by cell number, so every cell except a pit has a lower neighbour that has been visited. Run-off takes the
+//! steepest of the eight directions. Water leaves at the border.
 
-/// Index that stands for no hollow: water that drains there leaves the grid.
+/// Index that means no hollow: water that drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
 /// Mark in [`Rising::owner`] of a cell that has not been visited yet.
 const UNSEEN: u32 = u32::MAX - 1;
@@ -15,7 +15,8 @@ const UNSEEN: u32 = u32::MAX - 1;
 /// Hollow of a terrain. Its water is counted in millimetres times cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Basin {
-    /// Larger hollow that this one becomes a part of when it and its neighbours are full; [`OUT`] for none.
+    /// Larger hollow of which this hollow becomes a part when this hollow and its neighbours are full; [`OUT`] for
+    /// none.
     pub parent: u32,
     /// Pit into which the hollow spills when it is full; [`OUT`] if the water leaves the grid.
     pub spills_to: u32,
@@ -25,9 +26,9 @@ pub(super) struct Basin {
     pub next: u32,
     /// Height at which the hollow begins, mm: its pit, or the saddle where its parts meet.
     birth_mm: f64,
-    /// Number of cells of its parts, which are all under water while the hollow itself holds water.
+    /// Number of cells in the hollow's parts. All of them are under water while the hollow itself holds water.
     pub below: f64,
-    /// Water that its parts hold when they are full.
+    /// Water that the hollow's parts hold when they are full.
     pub base: f64,
     /// Water in the hollow when it spills, including that of its parts.
     pub capacity: f64,
@@ -47,7 +48,7 @@ pub(super) struct Basins {
     cells: Vec<u32>,
     /// Heights of the cells in `cells`, mm.
     levels_mm: Vec<f64>,
-    /// Water that the hollow holds when its level is at the cell, for each of the cells in `cells`.
+    /// For each cell in `cells`, the water in its hollow when the level is at the cell's height.
     held: Vec<f64>,
 }
 
@@ -170,8 +171,8 @@ impl Rising<'_> {
         })
     }
 
-    /// Returns the pit in which water ends that leaves `cell` by the lowest neighbour belonging to `whole` (a hollow,
-    /// or the ground that drains off the grid).
+    /// Returns the pit that water reaches when it leaves `cell` by the lowest neighbour in `whole`, which is a hollow
+    /// or the ground that drains off the grid.
     fn lowest_of(&mut self, cell: usize, whole: u32, size: (usize, usize)) -> u32 {
         let mut lowest: Option<usize> = None;
         for (other, _) in neighbours(cell, size.0, size.1) {

@@ -1,30 +1,31 @@
-//! Heights of the host's terrain on a regular grid, for the water on it.
+//! Heights of the host's terrain on a regular grid, for the water on the terrain.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::class::SurfaceClass;
 use crate::error::{Error, Result, check_range};
 
-/// Largest number of nodes of a grid, east and north each.
+/// Largest number of nodes of a grid along each axis.
 pub const MAX_GRID_NODES: u32 = 512;
 /// Largest height above or below the origin, m.
 const MOST_M: f32 = 1e5;
-/// Height above the terrain, m, from which on a place counts as on an object that stands on the terrain, such as a
-/// bridge or a roof.
+/// Height above the terrain, m. A place at this height or higher is taken to be on an object that stands on the
+/// terrain, such as a bridge or a roof.
 pub(super) const ABOVE_M: f64 = 3.0;
 
-/// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node stands for the
-/// square cell around it and has its own water; between nodes the water is interpolated bilinearly. Outside the nodes
-/// the ground is the world's own ([`GroundModel`](crate::ground::GroundModel)).
+/// Heights of the host's terrain on a grid that is level and aligned to north at its origin. Each node is the middle of
+/// a square cell with water of its own. Between nodes the water is interpolated bilinearly. Outside the nodes lies
+/// level, open ground ([`GroundModel`](crate::ground::GroundModel)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundGrid {
-    /// South-west corner node in the host's world; `heights_m` count from its height.
+    /// South-west corner node in the host's world; `heights_m` are measured from its height.
     pub origin: DVec3,
     /// Distance between nodes, m, \[0.01, 10 000\]. Puddles smaller than a few cells are not resolved.
     pub cell_m: f64,
     /// Numbers of nodes east and north, each \[2, 512\].
     pub nodes: [u32; 2],
-    /// Heights above the origin, m, within +-1e5, by rows: from west to east, rows from south to north.
+    /// Heights above the origin, m, within +-1e5. They are stored row by row from south to north, each row from west to
+    /// east.
     pub heights_m: Vec<f32>,
     /// Surface class of each cell, in the order of the heights; empty if not given.
     pub classes: Vec<SurfaceClass>,
@@ -137,7 +138,7 @@ impl GroundGrid {
 /// Places and heights of the cells of a grid or of a tile.
 #[derive(Clone, Copy)]
 pub(super) struct CellGrid<'a> {
-    /// First node in the host's world; heights count from its height.
+    /// First node in the host's world; heights are measured from its height.
     pub origin: DVec3,
     /// Distance between neighbouring cells, m.
     pub cell_m: f64,

@@ -1,6 +1,6 @@
-//! Water on the ground of a context, shared by its views. It is the water that the weather reports or, if the host asks
-//! for a simulation, the water simulated over the timeline, on level, open ground and on each cell of the host's
-//! terrain.
+//! Water on the ground of a context, shared by its views. By default it is the water that the weather reports. If the
+//! host asks for a simulation, the water is simulated over the timeline, on level, open ground and on each cell of the
+//! host's terrain.
 
 use std::sync::{Arc, Mutex};
 
@@ -35,10 +35,11 @@ pub struct GroundAt {
     pub water_mm: f64,
     /// Film on level ground outside hollows, mm; on the host's terrain the film at the place.
     pub film_mm: f64,
-    /// Wetness of the ground in general; on the host's terrain that of the place. 0 is dry, 0.3 damp, 1 under a closed
-    /// film.
+    /// Wetness of the ground. On the host's terrain it is that of the place, elsewhere that of level, open ground. 0 is
+    /// dry, 0.3 damp, 1 under a closed film.
     pub wetness: f64,
-    /// Share of the host's terrain under standing water, for a place on it; elsewhere, of the ground in general.
+    /// Share of the ground under standing water. On the host's terrain it is the share of the whole terrain, elsewhere
+    /// that of level, open ground.
     pub puddles: f64,
     /// Whether standing water covers the place. Off the host's terrain only paved ground has puddles.
     pub in_puddle: bool,
@@ -68,7 +69,7 @@ pub(crate) struct HeldGround {
     pub classes_revision: u64,
     /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
-    /// Time at which the terrain was set, s; steps before it leave the terrain out.
+    /// Start of the 10-s slot in which the terrain was set, s. Steps that begin earlier leave the terrain out.
     terrain_from_s: f64,
     /// Time, s, and revision of the water that was last published for the soil.
     pub(super) published: Option<(f64, u64)>,
@@ -76,9 +77,9 @@ pub(crate) struct HeldGround {
     pub(super) textures: Mutex<TerrainTextures>,
     /// Water on the host's tiles.
     pub(super) tiled: Option<Box<TiledWater>>,
-    /// Changes of the tiles that the water has yet to take over, each with the terrain after the change.
+    /// Changes of tiles that are not yet applied to the water, each with the terrain after the change.
     pub(super) waiting: Vec<(Changed, Arc<Terrain>)>,
-    /// Window of tile textures for the host's own shaders, once it has asked for one.
+    /// Window of tile textures for the host's own shaders; `None` until the host asks for one.
     pub(super) host_window: Option<Box<TerrainWindow>>,
 }
 
@@ -371,7 +372,7 @@ impl HeldEffect for HeldGround {
             return Ok(());
         }
         self.state = Some(if time_s - world.time_s > LONGEST_S {
-            // The start is on the sunlight grid, so leaps that end at slightly different times start alike.
+            // The start is a multiple of SUN_EVERY_S, so leaps that end at slightly different times start alike.
             let begin_s = ((time_s - LONGEST_S) / SUN_EVERY_S).floor() * SUN_EVERY_S;
             let state = GroundState::first(world, begin_s.max(world.time_s))?;
             self.host.iter_mut().for_each(|host| host.begin_anew());

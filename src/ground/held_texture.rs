@@ -89,7 +89,8 @@ impl HeldGround {
         Ok(GroundTexture { texture: water, snow, generation: 1, revision, uv_from_world: rows })
     }
 
-    /// Returns the views of the terrain's water and surface for drawing, up to date if `wanted`; `None` without a grid.
+    /// Returns the texture views of the terrain's water and surface for drawing, brought up to date if `wanted`; `None`
+    /// without a grid.
     pub fn views(
         &self,
         device: &Arc<Device>,

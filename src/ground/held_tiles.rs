@@ -103,7 +103,7 @@ impl HeldGround {
     }
 
     /// Updates the water after the changes that had to wait, up to the world's present terrain. Each change is applied
-    /// on the terrain as it was right after it.
+    /// with the terrain that resulted from it.
     pub(super) fn follow_late(&mut self, world: &World) {
         let Some(now) = world.set.tiles.as_ref().filter(|_| !self.waiting.is_empty()) else { return };
         let count = self.waiting.iter().take_while(|(changed, _)| changed.revision <= now.revision).count();
@@ -148,7 +148,8 @@ impl HeldGround {
         }
     }
 
-    /// Advances the water on the tiles by a step, or on some of them within the budget. Returns whether all are done.
+    /// Advances the water on the tiles by a step, or on some of them within the budget. Returns whether all tiles are
+    /// done.
     pub(super) fn step_tiles(&mut self, world: &World, step: &GroundStep<'_>, budget: UpdateBudget) -> Result<bool> {
         let (Some(terrain), Some(tiled)) = (world.set.tiles.as_ref(), self.tiled.as_mut()) else { return Ok(true) };
         if !tiled.is_of(terrain) {
@@ -173,7 +174,7 @@ impl HeldGround {
         (height < point.height_m + ABOVE_M).then_some(point.surface_class)
     }
 
-    /// Returns the water at a place on the tiles, and the share of them under standing water; `None` elsewhere.
+    /// Returns the water at a place on the tiles, and the share of all tiles under standing water; `None` elsewhere.
     pub(super) fn tiles_at(&self, world: &World, position: DVec3) -> Option<(CellWater, f64)> {
         let (terrain, tiled) = (world.set.tiles.as_ref()?, self.tiled.as_ref()?);
         if !tiled.is_of(terrain) {

@@ -1,9 +1,9 @@
 //! Hollows of a ground whose heights are unknown: a sum of waves that is fixed to the host's world. This is the f64
 //! twin of `shaders/ground/hollows.wgsl`.
 //!
-//! Waves have two advantages over noise on a lattice. The average of each over a pixel is known exactly, so distant
-//! puddles fade to their mean without flicker. The sum of the waves is normally distributed, so the water level follows
-//! from the share of ground under water.
+//! Waves have two advantages over noise on a lattice. The average of each wave over a pixel is known exactly, so
+//! distant puddles fade to their mean without flicker. The sum of the waves is normally distributed, so the water level
+//! follows from the share of ground under water.
 
 use std::f64::consts::TAU;
 
@@ -100,8 +100,8 @@ impl Hollows {
     }
 }
 
-/// Returns the axes of the pattern in the host's world: the two of its three axes that are closest to horizontal. In an
-/// Earth-centred world the choice differs between six sides of the planet.
+/// Returns the axes of the pattern in the host's world: the two of the world's three axes that are closest to
+/// horizontal. In an Earth-centred world the choice differs between six sides of the planet.
 pub(crate) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
     let up = (world_to_enu.transpose() * DVec3::Z).abs();
     if up.z >= up.x && up.z >= up.y {

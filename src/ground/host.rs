@@ -123,7 +123,8 @@ impl HostGround {
     /// Updates the values that depend only on the present weather, areas and shelter: the ice, and the water of a grid
     /// without a state. Returns whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
-        // Updated as often as a state is stepped: weather and areas may change at any time.
+        // Takes the weather at the beginning of the present step, so that this water changes only as often as a stepped
+        // state: weather and areas may change at any time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
         let c = world.over().weather_at(self.rain.whole.middle, slot_s);
         if self.begun && c.surface.ice == 0.0 && !self.rain.is_iced() {

@@ -1,4 +1,5 @@
-//! Rain areas over a grid, and bounds of groups of its cells, within which an area's share may be uniform.
+//! Rain areas over a grid, and bounds of groups of the grid's cells. Within such bounds the share of an area may be
+//! uniform.
 
 use std::ops::Range;
 
@@ -26,7 +27,7 @@ pub(super) type Evens = [Option<(f64, f64)>; MAX_AREAS];
 
 /// Rain areas over a grid, in the order of the world's list.
 pub(super) struct AreasOverGrid {
-    /// Areas that there are now; `None` for the rest.
+    /// Present areas; `None` at unused places.
     pub list: [Option<AreaOverGrid>; MAX_AREAS],
     /// Shares that are uniform over the whole grid.
     pub evens: Evens,

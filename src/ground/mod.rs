@@ -3,7 +3,7 @@
 //! **Drawing**. The surface pass ([`Stages::SURFACE`](crate::frame::Stages::SURFACE)) draws the water onto the host's
 //! picture, pixel by pixel from the host's depth. Wet ground is darker (Angstrom 1925; Lekner & Dorf 1988), and its
 //! rough film mirrors sky, sun and moon (Fresnel, n = 1.333). Standing water fills the hollows of a pattern that is
-//! fixed to the host's world; its surface is level, and smooth but for the rings of drops.
+//! fixed to the host's world. The water's surface is level, and smooth but for the rings of drops.
 //!
 //! **Surface normals** come from the host's image of normals, else from its terrain, else from the depths around a
 //! pixel. The error of a normal from depths limits how strongly a surface mirrors. Level ground catches all rain, walls
@@ -19,7 +19,7 @@
 //! added through the tone curve. Reflections show the sky and level ground, but no objects.
 //!
 //! **Files**. There is no `passes.rs`: the composition draws the water, and `texture.rs` holds the terrain data that it
-//! reads. There is no `candidates.rs`: only one way to draw the water exists, and no plan leaves it out.
+//! reads. There is no `candidates.rs`: only one way to draw the water exists, and no plan leaves the water out.
 
 mod basins;
 mod class;

@@ -13,8 +13,8 @@ pub(super) struct Pools {
     /// Water in each hollow, mm times cells, including that of its parts; [`APART`] while its parts hold separate
     /// lakes.
     pub held: Vec<f64>,
-    /// Scratch space of [`Pools::sink`]: water that each part must lose, because its hollow lost more than it held
-    /// above its parts.
+    /// Scratch space of [`Pools::sink`]: for each hollow, the loss passed down from its larger hollow, which lost more
+    /// water than it held above its parts.
     passed: Vec<f64>,
 }
 
@@ -25,7 +25,7 @@ impl Pools {
         Self { held, passed: vec![0.0; basins.list.len()] }
     }
 
-    /// Creates the pools of a saved state; `None` if it cannot be of these hollows.
+    /// Creates the pools of a saved state; `None` if the saved water does not fit these hollows.
     pub fn from_held(basins: &Basins, held: Vec<f64>) -> Option<Self> {
         let sound = held.len() == basins.list.len()
             && held.iter().zip(&basins.list).all(|(h, b)| {
@@ -46,13 +46,13 @@ impl Pools {
         self.held[basin] >= basins.list[basin].capacity
     }
 
-    /// Returns whether a hollow's water is part of a larger one.
+    /// Returns whether a hollow's water belongs to the water of its larger hollow.
     fn is_part(&self, basins: &Basins, basin: usize) -> bool {
         let parent = basins.list[basin].parent;
         parent != OUT && self.held[parent as usize] >= 0.0
     }
 
-    /// Pours water into a pit, mm times cells. Returns the part of it that leaves the grid.
+    /// Pours `water`, mm times cells, into a pit. Returns the part of this water that leaves the grid.
     pub fn pour(&mut self, basins: &Basins, pit: u32, water: f64) -> f64 {
         let (mut to, mut left) = (pit, water);
         while to != OUT && left > 0.0 {
@@ -83,8 +83,8 @@ impl Pools {
     /// Lowers the level of all standing water by `depth_mm`. Returns the water lost, mm times cells.
     pub fn sink(&mut self, basins: &Basins, depth_mm: f64) -> f64 {
         let mut gone = 0.0;
-        // Processes a hollow before its parts, which precede it in the list: the parts bear what it loses beyond its
-        // own water.
+        // Processes a hollow before its parts, although the parts precede it in the list: they bear the loss beyond the
+        // hollow's own water.
         for basin in (0..self.held.len()).rev() {
             let passed = std::mem::take(&mut self.passed[basin]);
             if self.held[basin] <= 0.0 || self.is_part(basins, basin) {
@@ -127,7 +127,7 @@ impl Pools {
         (0..self.held.len()).filter(whole).map(|i| self.held[i]).sum()
     }
 
-    /// Returns the larger hollow whose water includes that of a hollow; `None` if it has separate water.
+    /// Returns the larger hollow to whose water a hollow's water belongs; `None` if the hollow has separate water.
     pub fn whole_of(&self, basins: &Basins, basin: usize) -> Option<usize> {
         self.is_part(basins, basin).then(|| basins.list[basin].parent as usize)
     }

@@ -1,5 +1,5 @@
-//! Precipitation on the cells of a grid, with rain areas, less the part that boxes at rest keep off; and the share of
-//! each cell under ice.
+//! Precipitation on the cells of a grid, and the share of each cell under ice. The precipitation includes that of rain
+//! areas, and leaves out what boxes at rest (shelters that do not move) keep off.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -36,7 +36,7 @@ impl Shadow {
     }
 }
 
-/// Ice of the present weather: the share of open ground under it, and the freezing rain that boxes keep off.
+/// Ice of the present weather: the share of open ground under ice, and the freezing rain that boxes keep off.
 #[derive(Default)]
 struct Glaze {
     /// Share of open ground under ice, 0 to 1.
@@ -60,7 +60,7 @@ pub(super) struct RainStep<'a> {
 pub(super) struct GridRain {
     /// Rotation from the host's axes to east, north, up.
     pub to_enu: DMat3,
-    /// Altitude from which the grid's heights count, m.
+    /// Altitude from which the grid's heights are measured, m.
     pub altitude_m: f64,
     /// Bounds of the whole grid.
     pub whole: CellBounds,
@@ -72,8 +72,7 @@ pub(super) struct GridRain {
     shadow: Shadow,
     /// Ice on the grid.
     glaze: Glaze,
-    /// Precipitation on every cell in this step, mm, with the part that boxes keep off still included; `None` if cells
-    /// differ.
+    /// Precipitation on every cell in this step, mm, before boxes keep any of it off; `None` if cells differ.
     even_mm: Option<f64>,
     /// Precipitation on each cell in this step, mm, less the part that boxes keep off, if `even_mm` is `None`.
     rates: Vec<f64>,
@@ -181,7 +180,7 @@ impl GridRain {
         (self.glaze.ice * self.glaze.shadow.share(cell)) as f32
     }
 
-    /// Adds 1 to each cell off which boxes keep drops of this velocity, (east, north, up), m/s.
+    /// Adds 1 to `thirds` for each cell that boxes shelter from drops of this velocity, (east, north, up), m/s.
     fn shade_third<'a>(
         &self,
         grid: &CellGrid<'_>,
@@ -278,7 +277,7 @@ impl GridRain {
         }
     }
 
-    /// Returns the water with which each cell begins: that of the weather for all ground, but more in rain areas, and
+    /// Returns the water with which each cell begins: `water`, that of level, open ground, but more in rain areas, and
     /// less where boxes keep rain off.
     pub fn first_water(
         &mut self,
@@ -348,7 +347,7 @@ impl GridRain {
         }
     }
 
-    /// Returns the rain areas over the terrain at a time; `c` is the weather then.
+    /// Returns the rain areas over the terrain at a time; `c` is the weather at that time.
     pub fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
         let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
         if world.set.regions.is_empty() {

@@ -9,8 +9,8 @@ use crate::{error::Result, weather::Conditions, world::World};
 /// Source of the ground's wetness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundModel {
-    /// Wetness from the present weather: as reported, or as the present rain keeps it. There is no state: when rain
-    /// ends, the ground is dry at once.
+    /// Wetness from the present weather: the reported wetness, or the wetness that the present rain keeps up. There is
+    /// no state: when rain ends, the ground is dry at once.
     #[default]
     Reported,
     /// Simulated water: rain adds to it, and it drains and dries by wind, sun and humidity ([`crate::ground::water`]).

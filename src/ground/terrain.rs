@@ -17,8 +17,8 @@ use super::{
 
 /// Number of cells in a run. A run is skipped in a step if nothing falls, flows or dries on any of its cells.
 pub(crate) const RUN: usize = 64;
-/// Standing water, mm, of a cell in a dry hollow or in no hollow. The more negative this value, the nearer to the water
-/// interpolation puts the edge of a puddle.
+/// Standing water, mm, of a cell in a dry hollow or in no hollow. The more negative this value, the closer to the
+/// puddle's water its interpolated edge lies.
 const BARE_MM: f32 = -50.0;
 
 /// Terrain of the host and its hollows.
@@ -84,8 +84,8 @@ pub(crate) struct TerrainWater {
     standing: Vec<f32>,
     /// Whether there is no water at all.
     dry: bool,
-    /// Whether a step without rain may change a run, for each run: true if one of its cells has a film, or wet pores
-    /// that are not under water.
+    /// For each run, whether a step without rain may change it: true if one of its cells has a film, or wet pores that
+    /// are not under water.
     awake: Vec<bool>,
     /// Cached water level of each hollow.
     levels: Vec<WaterLevel>,
@@ -96,9 +96,9 @@ pub(crate) struct TerrainWater {
 /// Cached water level in a hollow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WaterLevel {
-    /// Height of the level, in the frame of the cells' heights, mm.
+    /// Height of the level, mm, above the origin from which the cells' heights are measured.
     mm: f64,
-    /// Volume for which `mm` was computed, mm times cells; `None` if the water is part of a larger hollow's.
+    /// Volume for which `mm` was computed, mm times cells; `None` if the water belongs to a larger hollow.
     of: Option<f64>,
 }
 
@@ -119,7 +119,7 @@ impl TerrainWater {
         Self::with(terrain, top.iter().map(|w| [w.film_mm, w.soaked_mm]).collect(), pools)
     }
 
-    /// Creates the water of a saved state; `None` if it cannot be of this terrain.
+    /// Creates the water of a saved state; `None` if the saved water does not fit this terrain.
     pub fn from_parts(terrain: &GridTerrain, top: Vec<[f64; 2]>, held: Vec<f64>) -> Option<Self> {
         let sound = |[film, soaked]: &[f64; 2]| (0.0..1e4).contains(film) && (0.0..=PORES_MM).contains(soaked);
         let pools = Pools::from_held(&terrain.basins, held)?;
@@ -156,8 +156,8 @@ impl TerrainWater {
         self.dry
     }
 
-    /// Advances the water by a step. `rain_mm` returns the rain on a cell, mm, `rains` whether any falls on a run. Runs
-    /// on which nothing falls, flows or dries are skipped, which does not change the result by a bit.
+    /// Advances the water by a step. `rain_mm` returns the rain on a cell, mm; `rains` returns whether any rain falls
+    /// on a run. Runs on which nothing falls, flows or dries are skipped. Skipping changes no bit of the result.
     pub fn step(
         &mut self,
         terrain: &GridTerrain,

@@ -1,10 +1,10 @@
-//! Texture of the water on the host's terrain, which the surface pass reads and which the host can sample in its own
-//! materials.
+//! Texture of the water on the host's terrain. The surface pass reads this texture, and the host can sample it in its
+//! own materials.
 //!
 //! There is one texel per node: rows from south to north, each row from west to east. Texels are half floats, which
 //! every graphics API can filter. Film, soaked share and standing water are exact to 1/2048 of their value: 0.05 mm at
-//! 100 mm. Standing water is negative at a node above the water's level. Interpolated between a node under water and
-//! one above it, it is 0 where the water's level meets the ground, which is the shore.
+//! 100 mm. Standing water is negative at a node above the water's level. Between a node under water and a node above
+//! the water, the interpolated value is 0 at the shore, where the water's level meets the ground.
 
 use glam::DVec4;
 
@@ -17,7 +17,7 @@ use crate::{gpu::Device, surroundings::LyingSnow};
 
 /// WGSL text of functions that compute the look of the water from a [`GroundTexture`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_ground.wgsl");
-/// GLSL text of the same functions, for 3.30 and ES 3.00.
+/// GLSL text of the functions in [`SNIPPET_WGSL`], for GLSL 3.30 and GLSL ES 3.00.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");
 
 /// Water on the host's terrain for the host's own shaders: the values of [`GroundCell`](crate::ground::GroundCell), one
@@ -32,13 +32,14 @@ pub struct GroundTexture {
     pub texture: wgpu::Texture,
     /// Incremented whenever `texture` is replaced, which happens when another grid is set or loaded.
     pub generation: u64,
-    /// [`Context::ground_revision`](crate::context::Context::ground_revision) of the contents.
+    /// Value of [`Context::ground_revision`](crate::context::Context::ground_revision) for the contents.
     pub revision: u64,
     /// Snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light.
     /// `None` without simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced and updated
     /// together with `texture`.
     pub snow: Option<wgpu::Texture>,
-    /// Rows of the transform to u and v: the dot product of each with (x, y, z, 1) of a place in the host's world, m.
+    /// Rows of the transform from a place (x, y, z) in the host's world, m, to texture coordinates. The dot product of
+    /// the first row with (x, y, z, 1) is u, that of the second row is v.
     pub uv_from_world: [DVec4; 2],
 }
 
@@ -59,7 +60,7 @@ pub(crate) struct UploadedTerrain {
     /// Texture of the surface ([`surface_texels`]), followed by as many rows of the snow: depth in m, density in
     /// kg/m^3, wetness, albedo.
     surface: wgpu::Texture,
-    /// Views for drawing: of the water and of the surface.
+    /// Texture views for drawing: of the water and of the surface.
     pub views: [wgpu::TextureView; 2],
     /// Revision of the grid in the textures.
     pub generation: u64,
@@ -69,7 +70,7 @@ pub(crate) struct UploadedTerrain {
     classes: u64,
     /// Revision of the snow in the textures.
     snow: u64,
-    /// Snow texture for the host, once it has asked for one, and the snow revision in it.
+    /// Snow texture for the host and the revision of the snow in this texture; `None` until the host asks for one.
     host_snow: Option<(wgpu::Texture, u64)>,
 }
 
@@ -91,8 +92,8 @@ impl TerrainTextures {
         self.filled.as_ref()
     }
 
-    /// Uploads surface and water if the grid was replaced, otherwise only the one of them that has changed. The numbers
-    /// are the revisions of the grid, of the water and of the classes.
+    /// Uploads surface and water if the grid was replaced; otherwise uploads each only if it has changed. The last
+    /// argument holds the revisions of the grid, of the water and of the classes.
     pub fn upload(
         &mut self,
         device: &Device,

@@ -22,8 +22,8 @@ use crate::{
     weather::{Falling, SurfaceCover, snow_cover},
 };
 
-/// Side of a cell of the rings' grid, m. This constant and the two below are twins of those in
-/// `shaders/ground/hollows.wgsl`.
+/// Side of a cell of the rings' grid, m. `shaders/ground/hollows.wgsl` has twins of this constant and of the two that
+/// follow.
 const RING_CELL_M: f64 = 0.2;
 /// Length of a time slot of the rings, s.
 const RING_SLOT_S: f64 = 0.6;
@@ -118,26 +118,27 @@ pub(crate) struct WetScene<'a> {
     pub curvature: f64,
     /// Optical depth of the fog straight up.
     pub fog_depth: f64,
-    /// Height of the highest crests of the drawn sea above the camera, m, if there is one.
+    /// Height above the camera of the highest crests of the drawn sea, m; `None` without a drawn sea.
     pub sea_top_m: Option<f64>,
-    /// Steps in normalised device coordinates to the next pixel to the right and below.
+    /// Steps in normalised device coordinates from a pixel to the one on its right and to the one below it.
     pub pixel: [f64; 2],
     /// Rounding error of the host's depth: absolute, and relative to the value.
     pub depth_rounding: [f64; 2],
     /// Limit of the light in a pixel, cd/m^2.
     pub most_cd_m2: f64,
-    /// Velocity of the air that carries the rain, (east, north, up), m/s; `None` if nothing keeps rain off.
+    /// Velocity of the air that carries the rain, (east, north, up), m/s; `None` if there are no shelters and no
+    /// occluder maps.
     pub wind_m_s: Option<DVec3>,
     /// Terrain of the host around the camera.
     pub terrain: Option<DrawnTerrain>,
     /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
     /// Rotation from the axes of the host's image of normals to east, north, up; and the scale and the offset that
-    /// decode its numbers.
+    /// decode the numbers in the image.
     pub normals: (DMat3, [f32; 2]),
 }
 
-/// Width of the border zone of a terrain, in cells, in which it fades into the world's ground.
+/// Width of the border zone of a terrain, in cells, in which it fades into the level, open ground around it.
 const TERRAIN_RIM: f64 = 2.0;
 /// Largest distance from a terrain at which a surface still belongs to the terrain: a constant part, m, and a share of
 /// the cell size.
@@ -148,15 +149,15 @@ fn look_of(wetness: f64) -> (f64, f64) {
     (smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness))
 }
 
-/// Level that is deeper than any hollow, in units of the root mean square depth: no water stands there. Twin of
+/// Level that is deeper than any hollow, in units of the root mean square depth. At this level no water stands. Twin of
 /// `NO_LEVEL` in `shaders/ground/hollows.wgsl`.
 const NO_LEVEL: f32 = 1000.0;
 
-/// Height that no surface lies below, m.
+/// Height of the sea's crests above the camera if there is no sea, m: no surface lies as low.
 const NO_SEA_M: f32 = -1e9;
 
-/// Returns the level of the water that covers the share `covered` of the ground: the depth that the hollows exceed
-/// there, in units of their root mean square depth.
+/// Returns the level of the water that covers the share `covered` of the ground: the depth that the hollows exceed on
+/// this share, in units of their root mean square depth.
 fn level_of(covered: f64) -> f32 {
     if covered <= 0.0 { NO_LEVEL } else { normal_quantile(1.0 - covered.min(1.0)) as f32 }
 }
@@ -166,9 +167,9 @@ fn level_of(covered: f64) -> f32 {
 /// equally many rings everywhere, and one factor scales all fall speeds.
 #[derive(Default)]
 pub(crate) struct DropsKept {
-    /// Precipitation and its rate of rings, 1/(m^2 s).
+    /// Precipitation and the rate at which it makes rings, 1/(m^2 s).
     rings: Option<(Falling, f64)>,
-    /// Precipitation and the fall speeds of its twelfths at sea level, m/s.
+    /// Precipitation and the fall speeds at sea level, m/s, of the drops in the middle of each twelfth of its water.
     falls: Option<(Falling, [f64; 12])>,
 }
 
@@ -281,7 +282,7 @@ impl WetScene<'_> {
         looks
     }
 
-    /// Returns the block's rows of the terrain, its last node, and the size of a cell.
+    /// Returns the block's rows of the terrain, the indices of the terrain's last node, and the size of a cell.
     fn terrain_rows(&self) -> ([[f32; 4]; 3], [f64; 2], f64) {
         let Some(grid) = &self.terrain else { return ([[0.0; 4]; 3], [1.0; 2], 1.0) };
         let turned = grid.to_enu * self.scene.world_to_enu.transpose();

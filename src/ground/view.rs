@@ -1,4 +1,4 @@
-//! Water on the ground in a view; nothing is drawn while the ground is dry.
+//! Water and snow on the ground in a view; nothing is drawn while no surface has water or snow.
 
 use glam::DMat3;
 

@@ -1,12 +1,12 @@
 //! Simulated water of level, open ground: a film, water in the pores, and water in hollows, all in mm averaged over the
 //! whole ground.
 //!
-//! The state advances in steps of [`STEP_S`] that begin at whole multiples of it, so the result does not depend on how
-//! often it is asked for. In a step rain wets the ground (less the part that freezes), pores fill, the film runs off
-//! into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each of these processes
-//! is solved over the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On the host's
-//! terrain (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of the
-//! terrain.
+//! The state advances in steps of [`STEP_S`] that begin at whole multiples of [`STEP_S`], so the result does not depend
+//! on how often a caller asks for it. In a step the rain that does not freeze wets the ground, pores fill, the film
+//! runs off into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each of these
+//! processes is solved over the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On
+//! the host's terrain (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of
+//! the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::{
@@ -21,8 +21,8 @@ pub const STEP_S: f64 = 10.0;
 pub(crate) const PORES_MM: f64 = 0.4;
 /// Time constant with which pores take up the water on them, s.
 const SOAK_S: f64 = 90.0;
-/// Run-off coefficient k of a film, d film / dt = -k film^3, for a slope of 2 % and 5 m length (Nusselt 1916: the flux
-/// per metre of width is g sin(slope) / (3 nu) film^3), mm^-2 s^-1.
+/// Run-off coefficient k of a film, mm^-2 s^-1: d film / dt = -k film^3 on a slope of 2 % and 5 m length. The flux per
+/// metre of width is g sin(slope) / (3 nu) film^3 (Nusselt 1916).
 const RUN_OFF: f64 = 9.81 * 0.02 / (3.0 * 1.3e-6) / 5.0 * 1e-6;
 /// Share of the run-off that flows into a hollow.
 const INTO_HOLLOWS: f64 = 0.4;
@@ -36,7 +36,7 @@ const LEAK_MM_H: f64 = 0.4;
 const FILM_MM: f64 = 0.15;
 /// Amount of water, mm, below which the rest in pores or hollows counts as none.
 const LEAST_MM: f64 = 1e-4;
-/// Wetness of soaked ground without a film: damp, in [`SurfaceCover::wetness`].
+/// Wetness of soaked ground without a film. [`SurfaceCover::wetness`] calls this value damp.
 const DAMP: f64 = 0.3;
 
 /// Water on level, open ground.
@@ -177,7 +177,7 @@ pub(crate) struct Step {
     soaking: f64,
     /// 2 k t, with the run-off coefficient k ([`RUN_OFF`]) and the length t of the step.
     run_off: f64,
-    /// Share of the pores' water that is left after the step where there is no film.
+    /// Share of the water in pores that is left after the step, on ground without a film.
     drying: f64,
 }
 
@@ -238,15 +238,16 @@ impl Step {
         }
     }
 
-    /// Returns film and pores after the step under standing water, which takes all water that the pores do not.
+    /// Returns film and pores after the step under standing water. The standing water takes all water that the pores do
+    /// not.
     pub fn below_water(&self, film_mm: f64, soaked_mm: f64, rain_mm: f64) -> SurfaceWater {
         let up = self.soaked_up(film_mm + rain_mm, soaked_mm);
         SurfaceWater { film_mm: 0.0, soaked_mm: soaked_mm + up, ran_off_mm: film_mm + rain_mm - up, evaporated_mm: 0.0 }
     }
 }
 
-/// Returns the wetness of film F and pores S, as [`SurfaceCover::wetness`]: 0.3 S / [`PORES_MM`] + 0.7 (1 - exp(-F /
-/// [`FILM_MM`])).
+/// Returns the wetness, as [`SurfaceCover::wetness`], of a film of F mm over pores with S mm: 0.3 S / [`PORES_MM`] +
+/// 0.7 (1 - exp(-F / [`FILM_MM`])).
 pub(crate) fn wetness_of(film_mm: f64, soaked_mm: f64) -> f64 {
     DAMP * soaked_mm / PORES_MM + (1.0 - DAMP) * (1.0 - libm::exp(-film_mm / FILM_MM))
 }

@@ -1,10 +1,10 @@
-//! Textures of the part of a tiled terrain around a camera, for the surface pass, or around a place that the host
-//! names, for its own shaders. [`super::texture`] does the same for a grid.
+//! Textures of a window of a tiled terrain: for the surface pass around a camera, and for the host's own shaders around
+//! a place that the host names. [`super::texture`] does the same for a grid.
 //!
 //! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
-//! m the window reaches 224 to 288 m from the camera; beyond the window lies the world's own ground. Only changed parts
-//! are filled and uploaded: everything if the window moves, all water if the water has changed, else the rectangles in
-//! which the ground changed.
+//! m the window reaches 224 to 288 m from the camera; beyond the window the ground is drawn as level and open. Only
+//! changed parts are filled and uploaded: everything if the window moves, all water if the water has changed, else the
+//! rectangles in which the ground changed.
 
 use glam::{DMat3, DVec3};
 use half::f16;
@@ -22,13 +22,13 @@ const WINDOW: i32 = 512;
 const STEP: i32 = 64;
 /// Height stored for a hole, m: so high that no surface of the host lies near it.
 const NOWHERE_M: f32 = 1e6;
-/// Standing water of a cell where none stands, mm.
+/// Value of standing water for a cell without any near it, mm.
 const BARE_MM: f64 = -50.0;
 
 /// Grid of nodes that a frame draws: a whole grid, or a window of a tiled terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnTerrain {
-    /// Position of the first node in the host's world, at the level from which heights count.
+    /// Position of the first node in the host's world, at the level from which heights are measured.
     pub origin: DVec3,
     /// Rotation from the host's axes to east, north, up at the origin of the terrain.
     pub to_enu: DMat3,
@@ -96,7 +96,7 @@ struct WindowContents {
     snow: u64,
 }
 
-/// Part of its textures that a window fills. `Ground` is surface and water together.
+/// Content that a window fills into its textures. `Ground` is surface and water together.
 #[derive(Clone, Copy)]
 enum WindowPart {
     Ground,
@@ -105,7 +105,8 @@ enum WindowPart {
     Snow,
 }
 
-/// Textures of a window: for drawing, the water, and the surface with its snow; for a host, water and snow.
+/// Textures of a window. For drawing these are the water, and the surface together with its snow. For a host they are
+/// the water and the snow.
 #[derive(Default)]
 pub(crate) struct TerrainWindow {
     /// Whether the textures are for the host's own shaders.
@@ -118,7 +119,8 @@ pub(crate) struct TerrainWindow {
     filled: Option<WindowContents>,
     /// Scratch space for texels of the water, or of the snow for a host.
     water: Vec<[u16; 4]>,
-    /// Texels of the surface, or of the snow, which is stored in the rows after those of the surface.
+    /// Scratch space for texels of the surface or, if not for a host, of the snow. The texture of the surface has the
+    /// snow in the rows after the surface.
     surface: Vec<[f32; 4]>,
 }
 
@@ -159,7 +161,7 @@ impl TerrainWindow {
         if is_wet_anew {
             self.fill(device, shown, (rect, rect), WindowPart::Water);
         }
-        // Fills the snow anew if it has changed; a new texture has none.
+        // Fills the snow anew if it has changed. A new texture is empty, which is revision 0.
         if before.map_or(0, |f| f.snow) != now.snow {
             self.fill(device, shown, (rect, rect), WindowPart::Snow);
         }
@@ -292,7 +294,7 @@ fn slope(terrain: &Terrain, [x, y]: [i32; 2], own: f32) -> [f32; 2] {
     })
 }
 
-/// Converts to half floats; larger values are clamped to their range.
+/// Converts to half floats. Values outside the range of half floats are clamped.
 fn half4(values: [f32; 4]) -> [u16; 4] {
     values.map(|v| f16::from_f32(v.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_bits())
 }

@@ -40,11 +40,11 @@ pub struct NoiseTerrain {
     pub seed: u64,
     /// Size of the largest forms, m, \[0.1, 1e6\]; default 2000. Each octave is half as large as the one before.
     pub wavelength_m: f64,
-    /// Amplitude of the largest forms, m, \[0, 4000\]; default 300. A single octave of the fractal kind deviates by
-    /// 0.27 of it (RMS).
+    /// Amplitude of the largest forms, m, \[0, 4000\]; default 300. The root mean square of a single octave of the
+    /// fractal kind is 0.27 of its amplitude.
     pub amplitude_m: f64,
-    /// Hurst exponent, \[0, 1\]; default 0.8. An octave's amplitude is 2^-H of that of the one before, so differences
-    /// of height grow as distance^H: 0.5 is jagged, 1 smooth.
+    /// Hurst exponent, \[0, 1\]; default 0.8. An octave's amplitude is 2^-H times that of the one before, with H this
+    /// exponent, so differences of height grow as distance^H: 0.5 is jagged, 1 smooth.
     pub hurst: f64,
 }
 

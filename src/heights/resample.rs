@@ -19,9 +19,9 @@ struct PartlyKnown {
 impl HeightMap {
     /// Returns the map with another number of samples over the same ground. Each sample stands for a cell around it. A
     /// new sample is the mean over its cell of parabolas through the old cells (Colella and Woodward 1984, equations
-    /// 1.5 to 1.9, without their limiter). So the mean of all heights stays, whether the map becomes finer or coarser,
-    /// a plane stays a plane, and the map's own size gives the same heights. A finer map overshoots at a cliff by at
-    /// most 0.18 of the cliff's height.
+    /// 1.5 to 1.9, without their limiter). So the mean of all heights stays, whether the map becomes finer or coarser.
+    /// A plane stays a plane, and resampling to the map's own size gives the same heights. A finer map overshoots at a
+    /// cliff by at most 0.18 of the cliff's height.
     ///
     /// A new sample is known if at least half of its cell is. The mean of a map with unknown heights then stays if each
     /// new sample is weighted by the known part of its cell.

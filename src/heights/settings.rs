@@ -6,8 +6,8 @@ use crate::error::{Error, Result, check_range};
 /// Height of a number in a file: `base_m + step_m x number`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightScale {
-    /// Height difference for a difference of 1 in the number, m; its absolute value is in 1e-6 to 10 000, and it is
-    /// negative where numbers are depths. Default 1; 0.3048 for international feet, 1200/3937 for US survey feet.
+    /// Height difference for a difference of 1 in the number, m; negative where numbers are depths. Its absolute value
+    /// is in \[1e-6, 10 000\]. Default 1; 0.3048 for international feet, 1200/3937 for US survey feet.
     pub step_m: f64,
     /// Height of the number 0, m, within 1 000 000. Default 0.
     pub base_m: f64,

@@ -54,8 +54,8 @@ impl<'a> CellReader<'a> {
         self.tile_of(place).map_or_else(DugColor::default, |(tile, cell)| tile.dug_color(cell))
     }
 
-    /// Returns whether a cell is the rim of a wall of soil: soil shows in a neighbour, and the drop to that neighbour
-    /// is steeper than [`WALL`].
+    /// Returns whether a cell is the upper edge of a wall of soil: soil shows in a neighbour, and the drop to that
+    /// neighbour is steeper than [`WALL`].
     pub fn tops_wall(&mut self, [x, y]: [i32; 2]) -> bool {
         let Some(own) = self.height([x, y]) else { return false };
         let drop = (WALL * self.terrain.desc.cell_m) as f32;

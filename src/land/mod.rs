@@ -9,7 +9,7 @@
 //! to the distance at which its squares are 10 pixels wide if this is farther. Here e is the error that the host
 //! accepts, pixels, and a the angle of a pixel. d is the vertical error of level n + 1: at 99.7 % of random cells of
 //! the terrain, the error of that level is no larger. The distance is at least 40 and at most 160 sides of the squares.
-//! In the last part of the distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous
+//! Over the last stretch of this distance each odd vertex moves onto its even neighbour (Strugar 2010, Continuous
 //! Distance-Dependent Level of Detail), so the mesh of a level becomes that of the next coarser one before the two
 //! meet. There are no cracks, no skirts and no jumps.
 //!
@@ -27,7 +27,7 @@
 //! **Precision**. Places are f64 until they are relative to the eye. Lattice positions reach the GPU as whole numbers
 //! of cells from the cell below the eye.
 //!
-//! **Files**. There is no `candidates.rs`: no plan leaves terrain out.
+//! **Files**. There is no `candidates.rs`: the plan never leaves terrain out.
 
 mod cells;
 mod eye;

@@ -43,7 +43,7 @@ pub(super) fn texels_in_node(level: u8) -> i32 {
 type SlopeTexel = [u16; 4];
 /// Shares of the classes in 255ths, in the order of the class numbers. The last byte is 255 where there is ground.
 type ClassTexel = [u8; 8];
-/// Colour of dug soil times its share, in codes of sRGB, and its share.
+/// Colour of dug soil times the soil's share, in codes of sRGB, and that share.
 type DugTexel = [u8; 4];
 
 /// Scratch space in which a page, or a part of it, is computed.
@@ -129,8 +129,8 @@ impl PageRect {
     }
 }
 
-/// Slope at a height from its two neighbours, each `distance` away: one-sided if one neighbour has no ground, 0 if
-/// neither has.
+/// Slope at a place with the height `own`, from the heights of its two neighbours, each `distance` away: one-sided if
+/// one neighbour has no ground, 0 if neither has.
 fn slope(low: f32, own: f32, high: f32, distance: f32) -> f32 {
     match (low.is_nan(), high.is_nan()) {
         (false, false) => (high - low) / (2.0 * distance),

@@ -1,10 +1,11 @@
 //! Selection of the patches that a picture shows: a quadtree whose levels follow the distance from the eye.
 //!
 //! A level is used up to a distance, its reach, at which the error of the next coarser level is as small as the host
-//! asks. Distances are horizontal, with the height of the eye above one reference height, so that they depend on the
-//! place alone and not on its height. The vertices of a level move onto those of the next coarser one before its reach
-//! ends (Strugar 2010). Where two levels meet, the vertices of the finer one have all moved onto the coarser one's, and
-//! those of the coarser one have not begun to move. Both levels then have the same vertices there, without a crack.
+//! asks. Distances combine the horizontal distance with the height of the eye above one reference height, so that they
+//! depend on the place alone and not on the ground's height there. The vertices of a level move onto those of the next
+//! coarser one before its reach ends (Strugar 2010). Where two levels meet, the vertices of the finer one have all
+//! moved onto the coarser one's, and those of the coarser one have not begun to move. Both levels then have the same
+//! vertices there, without a crack.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -26,11 +27,11 @@ const LONGEST_SIDE_PX: f64 = 10.0;
 const FARTHER: f64 = 1.07;
 /// Least ratio of a level's reach to the distance at which its vertices begin to move.
 const LEAST_BAND: f64 = 1.25;
-/// Share of a level's reach at which its vertices begin to move, if the level below lets them.
+/// Share of a level's reach at which its vertices begin to move, if the next finer level ends soon enough.
 const LATEST_START: f64 = 0.7;
-/// Share of a distance that single precision may be off.
+/// Largest error of a distance in single precision, as a share of the distance.
 const ROUNDING: f64 = 1e-4;
-/// Largest number of patches of a picture. Beyond it levels become coarser.
+/// Largest number of patches of a picture. A picture that would have more is drawn with coarser levels.
 const MOST_PATCHES: usize = 4096;
 
 /// Part of the lattice that is drawn at one level, from the page of a node of that level.
@@ -94,7 +95,7 @@ impl LevelDistances {
             };
             let level = (1..LEVELS).take_while(is_fine).last().unwrap_or(0);
             let reach = Self::reach_for(|_| SHORTEST_REACH);
-            // In the middle of the distances at which this level does not move.
+            // This distance is in the middle of those at which the level's vertices do not move.
             let above = if level == 0 { 0.0 } else { 1.05 * reach[level - 1] };
             return Self { eye, above, spread: 0.0, reach };
         }
@@ -107,7 +108,8 @@ impl LevelDistances {
     }
 
     /// Returns the reach of each level, cells. `wanted` returns the reach that a level should have, in sides of its
-    /// squares. A level reaches so far beyond the one below it that its vertices have room to move.
+    /// squares. A level reaches so far beyond the next finer one that its vertices have enough distance in which to
+    /// move.
     pub fn reach_for(wanted: impl Fn(usize) -> f64) -> [f64; LEVELS] {
         let (mut reach, mut begins): ([f64; LEVELS], f64) = ([0.0; LEVELS], 0.0);
         for (level, reach) in reach.iter_mut().enumerate() {
@@ -135,7 +137,7 @@ impl LevelDistances {
 #[derive(Clone, Copy)]
 pub(super) struct LandFrustum {
     planes: [DVec4; 5],
-    /// Side of a cell, m, and the height of the eye, m.
+    /// Side of a cell, m, and the place of the eye: cells east and north, and the height in metres.
     cell_m: f64,
     eye: DVec3,
 }

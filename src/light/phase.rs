@@ -83,8 +83,8 @@ impl PhaseLobes {
 ///
 /// Light that is scattered n = `order` times by a Henyey-Greenstein lobe is spread by a lobe of g^n. In a blend whose
 /// Draine lobe has the weight w, the share (1 - w)^n of the light was scattered by the Henyey-Greenstein lobe only. The
-/// rest was scattered by Draine's lobe about n w times and becomes more even: alpha falls with the square of that
-/// number.
+/// rest was scattered by Draine's lobe about n w times and becomes more isotropic: alpha is divided by the square of
+/// that number.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;

@@ -1,4 +1,4 @@
-//! From wavelengths to colours: black bodies, the CIE 1931 standard observer, and linear Rec. 709.
+//! Conversion of wavelengths to colours: black bodies, the CIE 1931 standard observer, and linear Rec. 709.
 
 /// Returns the radiance of a black body per unit of wavelength, up to a constant factor: Planck's law.
 pub fn black_body(wavelength_nm: f64, temperature_k: f64) -> f64 {
@@ -7,8 +7,9 @@ pub fn black_body(wavelength_nm: f64, temperature_k: f64) -> f64 {
     um.powi(-5) / (14_387.77 / (um * temperature_k)).exp_m1()
 }
 
-/// Returns the colour matching functions of the CIE 1931 standard observer (2 degrees), by the sums of lobes of Wyman,
-/// Sloan and Shirley 2013 (table 1; their integrals are within 1 % of the tabulated functions'). Wavelength in nm.
+/// Returns the colour matching functions of the CIE 1931 standard observer (2 degrees), as sums of lobes (Wyman, Sloan
+/// and Shirley 2013, table 1). The integrals of these sums are within 1 % of those of the tabulated functions.
+/// Wavelength in nm.
 pub fn cie_1931(wavelength_nm: f64) -> [f64; 3] {
     let lobe = |mean: f64, below: f64, above: f64| {
         let t = (wavelength_nm - mean) / if wavelength_nm < mean { below } else { above };
@@ -32,12 +33,12 @@ pub(crate) const REC709_FROM_XYZ: [[f64; 3]; 3] = [
     [ 0.055_630_080, -0.203_976_959,  1.056_971_514],
 ];
 
-/// Returns the colour of a unit spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
+/// Returns the linear Rec. 709 colour of a unit spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
 pub fn rec709_of_wavelength(wavelength_nm: f64) -> [f64; 3] {
     apply(&REC709_FROM_XYZ, &cie_1931(wavelength_nm)).map(|v| v * LUMINOUS_EFFICACY_LM_PER_W)
 }
 
-/// Multiplies a matrix by a column.
+/// Multiplies a matrix by a column vector.
 pub fn apply(matrix: &[[f64; 3]; 3], column: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| (0..3).map(|j| matrix[i][j] * column[j]).sum())
 }

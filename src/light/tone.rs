@@ -1,5 +1,5 @@
-//! From luminance to the display, in f64: the reference of `shaders/common/tone.wgsl`, and the exposure that all
-//! channels of a simulator share.
+//! Conversion of luminance to display values, in f64: the reference of `shaders/common/tone.wgsl`, and the exposure
+//! that all channels of a simulator share.
 
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +41,7 @@ impl ToneCurve {
 /// Exposure of a picture: one value for all channels of a simulator, never measured per view.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Exposure {
-    /// Computed from the light of sun, moon and sky at the place, by the closed-form queries: equal on every channel
+    /// Computed in closed form from the light of sun, moon and sky at the place, and therefore equal on every channel
     /// and machine. `compensation_ev` brightens (+) or darkens (-), in stops, [-20, 20].
     Auto {
         /// Stops added.
@@ -75,7 +75,8 @@ impl Exposure {
         }
     }
 
-    /// Returns the exposure, display units per cd/m^2, for the luminance that an eye would adapt to, cd/m^2.
+    /// Returns the exposure, display units per cd/m^2. `adaptation_cd_m2` is the luminance, cd/m^2, to which an eye
+    /// would adapt; only `Auto` uses it.
     pub fn factor(&self, adaptation_cd_m2: f64) -> f64 {
         match *self {
             Self::Auto { compensation_ev } => auto_factor(adaptation_cd_m2) * compensation_ev.exp2(),
@@ -85,15 +86,15 @@ impl Exposure {
     }
 }
 
-/// Returns the exposure, display units per cd/m^2, by the saturation-based sensitivity of ISO 12232 with the usual
-/// lens: white is L_max = 1.2 * 2^EV.
+/// Returns the exposure, display units per cd/m^2, by the saturation-based sensitivity of ISO 12232 with the usual lens
+/// factor q = 0.65: white is L_max = 1.2 * 2^EV.
 fn ev100_factor(ev: f64) -> f64 {
     1.0 / (1.2 * ev.exp2())
 }
 
 /// Returns the exposure, display units per cd/m^2, at which the adaptation luminance has the display value `key`. The
-/// key falls with that luminance (Krawczyk, Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and yet is
-/// not black.
+/// key is smaller for a smaller luminance (Krawczyk, Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and
+/// yet is not black.
 fn auto_factor(adaptation_cd_m2: f64) -> f64 {
     let luminance = adaptation_cd_m2.max(1e-5);
     let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());

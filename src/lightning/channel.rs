@@ -1,11 +1,11 @@
-//! Path of a flash, and the part of it that a place sees and hears.
+//! Path of a flash, its distance from a place, and the delay of its thunder there.
 //!
 //! # Model
 //! A channel wanders around a straight line by midpoint displacement: the middle of each interval is moved sideways at
 //! random, by a share of the interval's length, and less in the first two halvings. Photographs show a fractal
 //! dimension of 1.1 to 1.4 (Tsonis 1991); the chosen share gives 1.15 (tested). From the path of a ground flash 8 to 17
 //! branches leave, each at 20 to 50 degrees to the path, with 0.15 to 0.6 of the remaining path's length. A third of
-//! them branch again. They point down, and none reaches the ground.
+//! them branch again. All branches point down, and none reaches the ground.
 //!
 //! Tall objects attract a ground flash. The last leap of a leader with peak current I, in kA, has the length L = 10
 //! I^0.65 m (Love 1973). The leader comes down until it is within that distance of the ground or of something tall, and
@@ -48,9 +48,10 @@ pub fn leap_m(peak_ka: f64) -> f64 {
 /// A side channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
-    /// Points from the channel that it leaves to its end.
+    /// Points from the place where the branch leaves its path to the branch's own end.
     pub points_m: Vec<DVec3>,
-    /// Position on the main channel where it leaves, 0 at the upper end to 1.
+    /// Position on the main channel where the branch leaves, 0 at the upper end to 1 at the lower end. A branch of a
+    /// branch has the position of that branch.
     pub leaves_at: f64,
     /// Ratio of the light at its start to that of the main channel there.
     pub strength: f64,
@@ -70,7 +71,7 @@ pub struct Channel {
 pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
     let leap = leap_m(flash.strokes()[0].peak_ka);
     let below = flash.place_m;
-    // Height at which the leader is a leap away from a mast's tip. The ground's is `ground_m` + leap.
+    // Height at which the leader is a leap away from a mast's tip. For the ground this height is `ground_m` + leap.
     let met = |mast: &Mast| {
         let aside = (mast.tip_m.truncate() - below).length();
         (aside <= leap).then(|| mast.tip_m.z + (leap * leap - aside * aside).sqrt())
@@ -83,8 +84,8 @@ pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
 }
 
 impl Channel {
-    /// Creates the channel of a flash that starts at the height `top_m`. A ground flash ends at `end_m`, a flash in the
-    /// cloud some kilometres away.
+    /// Creates the channel of a flash that starts at the height `top_m`. A ground flash ends at `end_m`. A flash in the
+    /// cloud ends some kilometres away from its start.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
         let mut chance = RandomStream::new(flash.id, 0xc4a1);
         let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
@@ -161,7 +162,7 @@ impl Channel {
     }
 }
 
-/// Returns a path between two points by `halvings` halvings that stays above `lowest_m`.
+/// Returns a path between two points, made by `halvings` halvings. The path does not go below `lowest_m`.
 fn wander(chance: &mut RandomStream, (start, end): (DVec3, DVec3), halvings: u32, lowest_m: f64) -> Vec<DVec3> {
     let last = 1usize << halvings;
     let mut points_m = vec![DVec3::ZERO; last + 1];
@@ -183,7 +184,8 @@ fn wander(chance: &mut RandomStream, (start, end): (DVec3, DVec3), halvings: u32
     points_m
 }
 
-/// Branches of the first order: the smallest number, and the largest number of additional ones.
+/// Number of branches of the first order: the least value, and the length of the range above it. A random value of
+/// this range is rounded down.
 const BRANCHES: (f64, f64) = (8.0, 10.0);
 /// Range of the angles of branches to the path that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
@@ -219,7 +221,7 @@ fn branches(chance: &mut RandomStream, main: &[DVec3]) -> Vec<Branch> {
     out
 }
 
-/// Creates a branch from a point of a path that goes on along `way`.
+/// Creates a branch that leaves a path at `from`, where the path itself goes on along `way`.
 fn branch(
     chance: &mut RandomStream,
     (from, way): (DVec3, DVec3),

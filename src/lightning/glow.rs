@@ -13,7 +13,7 @@ const BASE_REFLECTS: f64 = 0.8;
 const ASYMMETRY: f64 = 0.75;
 
 /// Returns the luminous intensity, cd, of the visible side of the clouds in the light of a source: `k` of the shader.
-/// From below, this is the light that leaves through the base, or that the base reflects.
+/// Seen from below, it is the light that leaves through the base, or that the base reflects.
 pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     match (source.is_hidden(), from_below) {
         (true, true) => source.flux_lm * source.down_share / (2.0 * PI * PI),
@@ -23,8 +23,8 @@ pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     }
 }
 
-/// Returns the luminance of the visible side of the clouds, cd/m2. `h` is the distance of a source from the face, `r`
-/// the distance along the face, and `k` the intensity, cd.
+/// Returns the luminance of the visible side of the clouds, cd/m2. `h` is the distance of a source from this side, `r`
+/// the distance along it, and `k` the intensity, cd.
 #[cfg(test)]
 fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)

@@ -13,7 +13,7 @@ use crate::{
     world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
-/// Time for which a triggered flash is kept after it, s. Its thunder has passed by then.
+/// Time for which a triggered flash is kept after its first stroke, s. Its thunder has passed by then.
 const KEPT_S: f64 = 120.0;
 
 /// Lightning of a context.
@@ -76,10 +76,11 @@ const TABLE: &str = "settings";
 const KEY: &str = "lightning";
 
 impl HeldLightning {
-    /// Returns the lightning of a saved state, which is removed from `state`.
+    /// Removes the lightning from the saved state `state` and returns it.
     ///
     /// # Errors
-    /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
+    /// [`Status::Parse`] for a value of another form or for more than [`MAX_TRIGGERED`] triggered flashes.
+    /// [`Status::InvalidArgument`] naming a field that is out of range.
     pub fn read(&self, state: &mut toml::Table) -> Result<Self> {
         let revision = self.revision + 1;
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);

@@ -67,7 +67,7 @@ impl Span {
         (sum(until) - sum(from)) / (until - from)
     }
 
-    /// Returns the share of the span between two times.
+    /// Returns the share of the span that lies between two times.
     fn share_between(&self, begin_s: f64, end_s: f64) -> f64 {
         if self.until_s <= self.from_s {
             return f64::from(u8::from((begin_s..end_s).contains(&self.until_s)));
@@ -97,7 +97,7 @@ impl Course {
     }
 }
 
-/// Properties of a part of a channel on which its light depends.
+/// Properties on which the light of a part of a channel depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// Position along the main channel, 0 at the upper end to 1. For a branch: the position on the main channel that

@@ -3,10 +3,10 @@
 //! With the limit a flash rises once and fades: two changes. Of the flashes near a camera, one is drawn only if it
 //! begins at least a second after the last drawn one. Any second then has at most three changes (WCAG 2.2, success
 //! criterion 2.3.1, allows three flashes of two changes each). The choice restarts every 10 s with a second in which
-//! none is drawn. It therefore depends only on the flashes of these 10 s, and is the same in every channel and for
-//! every order of times.
+//! none is drawn. It therefore depends only on the flashes of these 10 s, and is the same in every view and for
+//! every order in which a host draws times.
 
-/// Length of an epoch, whose choice does not depend on other epochs, s.
+/// Length of an epoch, s. The choice in an epoch does not depend on other epochs.
 pub const EPOCH_S: f64 = 10.0;
 /// Least time between two drawn flashes, s.
 const APART_S: f64 = 1.0;
@@ -16,8 +16,8 @@ pub fn epoch_s(time_s: f64) -> f64 {
     (time_s / EPOCH_S).floor() * EPOCH_S
 }
 
-/// Whether the flash that begins at `time_s` is drawn. `times_s` has, in order, the times of all flashes since its
-/// [`epoch_s`].
+/// Whether the flash that begins at `time_s` is drawn. `times_s` has, in order, the times of all flashes since the
+/// [`epoch_s`] of `time_s`.
 pub fn is_drawn(time_s: f64, times_s: &[f64]) -> bool {
     let mut drawn_s = epoch_s(time_s);
     for t in times_s.iter().copied().filter(|t| *t <= time_s) {

@@ -23,7 +23,8 @@ pub(super) const MOST_PARTS: usize = 4096;
 /// Number of cached pipelines of a view, for the weathers that alternate.
 const MOST_PIPELINES: usize = 4;
 
-/// Key of a pipeline besides the veil's constants: whether the depth has several samples, and whether there is a depth.
+/// Key of a pipeline besides the veil's constants: whether the depth texture has several samples, and whether there is
+/// a depth texture.
 type DepthKey = (bool, bool);
 
 /// Pass and its resources, created when there is a channel to draw.

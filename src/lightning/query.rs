@@ -43,7 +43,7 @@ pub struct FlashEvent {
     pub peak_ka: f64,
     /// Position that it struck, or the middle of its path in the cloud, in the host's world, m.
     pub position: DVec3,
-    /// Distance of the nearest point of its channel, m.
+    /// Distance from the place to the nearest point of the flash's channel, m.
     pub distance_m: f64,
     /// Direction from the place to `position`, unit vector (east, north, up).
     pub direction: DVec3,
@@ -54,7 +54,7 @@ pub struct FlashEvent {
 /// Light of flashes at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightningLight {
-    /// Sum of the illuminances on surfaces that face each source, lux for each channel of linear Rec. 709.
+    /// Sum of the illuminances on surfaces that each face one source, lux for red, green and blue of linear Rec. 709.
     pub facing_lux: [f64; 3],
     /// Illuminance on level ground, lux.
     pub level_lux: f64,

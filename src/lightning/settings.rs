@@ -29,8 +29,8 @@ pub struct LightningSettings {
     /// Flashes a minute of each of the weather's storm cells, \[0, 60\], in place of the weather's rate (3 in a
     /// thunderstorm, otherwise none). The host's cells have rates of their own. Default `None`: the weather's rate.
     pub flashes_per_minute: Option<f64>,
-    /// The host's storm cells, at most [`MAX_CELLS`]. They replace the weather's, which are one in each square of 20
-    /// km. Default none.
+    /// The host's storm cells, at most [`MAX_CELLS`]. They replace the weather's cells, one in each square of 20 km x
+    /// 20 km. Default none.
     pub cells: Vec<StormCell>,
     /// Tips of tall objects in the host's world, m, at most [`MAX_MASTS`]. They attract ground flashes. Default none.
     pub masts: Vec<DVec3>,

@@ -1,4 +1,5 @@
-//! Light sources of a flash: the few points that represent the parts of its open channel and its glow in the cloud.
+//! Light sources of a flash: the few points that represent the open channel, which lies outside clouds, and the glow in
+//! the cloud.
 
 use std::f64::consts::PI;
 
@@ -24,7 +25,7 @@ pub(crate) struct LightSource {
     pub flux_lm: f64,
     /// Extent of the light around the position, m.
     pub radius_m: f64,
-    /// Depth above the cloud's base, m; 0 for an open channel.
+    /// Height above the cloud's base, m; 0 for an open channel.
     pub depth_m: f64,
     /// Share of the cloud's light that leaves through its base. The rest leaves through its top.
     pub down_share: f64,

@@ -1,5 +1,5 @@
-//! Flashes near a place within a time: from the weather's cells, from the host's cells, and those that the host
-//! triggered.
+//! Flashes near a place in an interval of time: those of the weather's cells, those of the host's cells, and those that
+//! the host triggered.
 
 use glam::{DVec2, DVec3};
 
@@ -110,7 +110,7 @@ impl Storms<'_> {
         self.world.map_at(position)
     }
 
-    /// Returns the range of times in which the flashes begin that may give light in a span.
+    /// Returns the range of times at which those flashes begin that may give light between two times.
     pub fn begin_within(from_s: f64, until_s: f64) -> (f64, f64) {
         (from_s - LONGEST_S, until_s + super::light::BEFORE_S)
     }

@@ -17,7 +17,7 @@ use crate::{
 const CHARGE_C: f64 = -12.0;
 /// Lapse rate of the air, K/m.
 const COOLS_K_M: f64 = 6.5e-3;
-/// Least height of the charge above the ground, m.
+/// Least height of the charge above the station, m.
 const LEAST_M: f64 = 2500.0;
 /// Least distance of the charge from the cloud's base and top, m. In a cloud thinner than twice this distance the
 /// charge lies half way up.

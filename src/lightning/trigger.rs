@@ -41,7 +41,8 @@ impl FlashTrigger {
     }
 }
 
-/// Refuses a place that is too far from the origin of the host's world; the error has its `name`.
+/// Refuses a place that is not finite or too far from the origin of the host's world. The error names the place as
+/// `name`.
 pub(super) fn check_place(name: &str, position: DVec3) -> Result<()> {
     if position.is_finite() && position.length() <= FARTHEST_M {
         return Ok(());

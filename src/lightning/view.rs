@@ -95,7 +95,7 @@ pub(crate) struct LightningView {
     passes: Option<Box<ChannelPass>>,
     /// Parts to draw; scratch memory.
     parts: Vec<PartInstance>,
-    /// Own layer in front of the picture, where precipitation has none.
+    /// Own layer in front of the picture, for draws in which precipitation has none.
     layer: Option<(wgpu::Texture, wgpu::TextureView)>,
     /// Layer to draw into, and whether it has content already.
     target: Option<(wgpu::TextureView, bool)>,
@@ -103,8 +103,8 @@ pub(crate) struct LightningView {
     shown: FlashBlock,
 }
 
-/// Returns the interval over which a frame averages light: since the frame before, or a sixtieth of a second without a
-/// predecessor. While time stands still, frames keep the same interval.
+/// Returns the interval over which a frame averages light: since the previous frame, or a sixtieth of a second without
+/// one. While time stands still, frames keep the same interval.
 fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
     let span = match last_frame {
@@ -181,7 +181,7 @@ impl LightningView {
             };
         }
         self.lit = Some(lit);
-        // Each call has a new moment, so this is not set yet.
+        // Each call has a new moment, so its flash light is not set yet.
         let _ = now.flash.set(light);
     }
 
@@ -254,7 +254,7 @@ impl Lit {
     /// Creates the uniforms of the composition's glow.
     fn block(&self, c: &Conditions) -> FlashBlock {
         let clouds = CloudSpan::of(c);
-        // From below the base is visible, from above the tops; inside a cloud the nearer of the two is taken.
+        // An eye below the clouds sees the base, one above them the top. Inside a cloud the nearer of the two is taken.
         let from_below = clouds.is_none_or(|s| self.eye_m < 0.5 * (s.base_m + s.top_m));
         let face_m = clouds.map_or(0.0, |s| if from_below { s.base_m } else { s.top_m });
         let cover = c.cloud_slabs().fold(1.0, |clear, s| clear * (1.0 - s.cover));
@@ -328,7 +328,7 @@ impl DrawnEffect for LightningView {
         let has_line = lit.has_line && context.stages.has(Stages::PARTICLES);
         self.shown = lit.block(&context.now.scene.conditions);
         if has_line {
-            // Precipitation has a layer already; the lines are drawn into it afterwards.
+            // If precipitation has a layer already, the lines are drawn into that layer after the precipitation.
             let over = given.before.is_some();
             let view = given.before.clone().unwrap_or_else(|| self.layer(context.device, context.picture()));
             to.set_texture(Texture::Before, Some(view.clone()));

@@ -34,7 +34,7 @@ pub(crate) struct SceneMoment<'a> {
     pub planet_radius_m: f64,
     /// The weather at other places and times.
     pub weather: WeatherOver<'a>,
-    /// The weather at the camera, with the precipitation of its region.
+    /// The weather at the camera, with the rain and drizzle of the rain areas there.
     pub here: Conditions,
     /// Extinction of the precipitation outside all regions.
     pub falling: FallingLayer,
@@ -88,8 +88,8 @@ impl<'a> SceneMoment<'a> {
     }
 
     /// Returns the texture of the wind that varies in space, which shaders read (`shaders/surroundings/wind.wgsl`), and
-    /// the camera's mapping into it. `None` where the weather's wind blows everywhere: no shader then reads the
-    /// texture.
+    /// the camera's mapping into it. The mapping is `None` where the weather's wind blows everywhere: no shader then
+    /// reads the texture.
     pub fn wind_texture(&self, device: &Device) -> (WindView, Option<WindMap>) {
         let map = self.wind_volume.map(|volume| WindMap::new(volume, self.eye));
         (self.wind_texture.view(device, self.wind_volume), map)

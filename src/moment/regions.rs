@@ -23,13 +23,13 @@ use crate::{
 pub(crate) struct Region {
     /// Place, motion and rain of the area.
     pub area: RainArea,
-    /// Distance over which the wind had carried the air at the area's own time, m east and north. Stored once that time
-    /// is past, because the timeline forgets the past.
+    /// Distance over which the wind had carried the air at the area's own time ([`RainArea::at_s`]), m east and north.
+    /// Stored once that time is past, because the timeline forgets the past.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_m: Option<[f64; 2]>,
 }
 
-/// Height above the station of the wind that moves a raining cloud, m: the top of the surface layer, in which the wind
+/// Height above the station, m, of the wind that moves a raining cloud: the top of the surface layer, in which the wind
 /// does not turn.
 const CLOUD_WIND_M: f64 = 100.0;
 
@@ -54,8 +54,8 @@ impl<'a> WeatherOver<'a> {
         self.wind.timeline
     }
 
-    /// Returns the weather at a time outside all regions. Before the time from which the timeline is known, it is the
-    /// weather of that time.
+    /// Returns the weather at a time outside all regions. For an earlier time than the timeline knows, this is the
+    /// weather at the first time that it knows.
     pub fn known(&self, time_s: f64) -> Conditions {
         self.timeline().at(time_s)
     }
@@ -65,7 +65,8 @@ impl<'a> WeatherOver<'a> {
         self.in_regions(position, time_s, self.known(time_s))
     }
 
-    /// Returns the weather `c` of a time after the weather regions over a place have changed their parts of it.
+    /// Returns the weather `c`, which holds at a time outside all regions, with the changes by the weather regions over
+    /// a place.
     pub fn in_regions(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.weather_regions.is_empty() {
             return c;
@@ -121,7 +122,8 @@ impl<'a> WeatherOver<'a> {
         Ok(self.wind.carrying_until(time_s))
     }
 
-    /// Returns the wind at 10 m with its gusts that carries what falls past a place, m/s (east, north, up).
+    /// Returns the wind, m/s (east, north, up), that carries what falls past a place: the wind at 10 m with its gusts,
+    /// and the upward wind at the place's height.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].

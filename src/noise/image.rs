@@ -103,7 +103,8 @@ impl NoiseImage {
 
     /// Returns the cutoff that gives `cover`, 0 to 1, as closely as bytes allow: [`NoiseImage::cover`] differs by at
     /// most the share of the texels with one of the 256 byte values. Within a byte value the cutoff is interpolated as
-    /// if its texels lay evenly between the numbers that round to it, as those of a filtered texture do.
+    /// if the texels with this byte were spread evenly over all numbers that round to the byte. The values of a
+    /// filtered texture are spread so.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a cover outside \[0, 1\].
@@ -116,7 +117,7 @@ impl NoiseImage {
         for (level, count) in counts.iter().enumerate().rev().filter(|(_, count)| **count > 0) {
             let count = *count as f64;
             if above + count >= wanted {
-                // A level stands for all values that round to it.
+                // A byte value represents all numbers that round to it.
                 let cutoff = level as f64 + 0.5 - (wanted - above) / count;
                 return Ok((cutoff / 255.0).clamp(0.0, 1.0));
             }

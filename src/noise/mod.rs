@@ -4,7 +4,7 @@
 //! smaller amplitude. There are three kinds ([`NoiseKind`]):
 //!
 //! - gradient noise N (Perlin 2002, *Improving Noise*): 0 at the corners of the cells, with continuous second
-//!   derivatives. The texel holds the sum of A (1 + N) / 2 over the octaves, the mapping with which the presets of
+//!   derivatives. The texel holds the sum of A (1 + N) / 2 over the octaves. With this mapping the presets of
 //!   Tarantilis (2004, *Simulating Clouds with Procedural Texturing Techniques Using the GPU*, section IV.A.1) have the
 //!   covers that their names say;
 //! - cellular noise 1 - F1 (Worley 1996, *A Cellular Texture Basis Function*), where F1 is the distance to the nearest

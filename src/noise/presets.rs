@@ -16,7 +16,7 @@ pub enum CloudPreset {
 }
 
 impl CloudPreset {
-    /// All presets, from the overcast sky on.
+    /// All presets, from the largest cover to the smallest.
     pub const ALL: [Self; 3] = [Self::Overcast, Self::Broken, Self::Few];
 
     /// Returns the name in lower case, as the tool `examples/noise` takes it.

@@ -49,8 +49,8 @@ impl Default for NoiseSettings {
 }
 
 impl NoiseSettings {
-    /// Returns the number of octaves that a texture of `size` texels can hold: `octaves`, or as many as have two texels
-    /// to a cell.
+    /// Returns the number of octaves that a texture of `size` texels can hold: `octaves`, or fewer if finer octaves
+    /// would have less than two texels to a cell.
     pub fn octaves_in(&self, size: [u32; 3]) -> u32 {
         let held = |axis: usize| (size[axis] / (2 * self.frequency[axis]).max(1)).max(1).ilog2() + 1;
         (0..axes(size)).map(held).fold(self.octaves, u32::min)

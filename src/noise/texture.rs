@@ -160,7 +160,7 @@ impl NoiseTexture {
         self.texture.create_view(&Default::default())
     }
 
-    /// Reads one channel back with its mip levels. Waits for the GPU, so not for use in frames.
+    /// Reads one channel back with its mip levels. Waits for the GPU, so do not call it in a frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a channel that the texture does not have; [`crate::Status::WrongOrder`]

@@ -9,7 +9,7 @@
 //! motion. A longer step uses the rate of a particle at terminal velocity, so that it ends at the right fall speed.
 //!
 //! A particle that leaves its cell, or is left behind by the camera, enters again on the opposite side. Its new place
-//! is random: a hash of its number and of the number of times that it has entered. Its velocity is the wind there less
+//! is random: a hash of its number and of the number of times that it has entered. Its velocity is the wind there minus
 //! the fall speed. As many particles enter as leave, so neither dropped frames nor a camera at 300 m/s cause gaps or
 //! bursts. After a jump in time, or of the camera if the host reports it, all particles start anew.
 
@@ -81,7 +81,7 @@ pub(crate) struct Stepped<'a> {
     pub time_s: f64,
     /// Present velocity of the air, (east, north, up), m/s.
     pub air_m_s: DVec3,
-    /// Function that returns the displacement of the air since an earlier time, s, in m (east, north, up).
+    /// Function that returns the displacement of the air, m (east, north, up), since an earlier time, s.
     pub carried: &'a dyn Fn(f64) -> DVec3,
     /// Whether all particles start anew, because the picture must not depend on earlier frames.
     pub anew: bool,

@@ -135,7 +135,7 @@ impl FallingTexture {
     }
 }
 
-/// Begins a pass that draws into the layer. It is cleared first, unless `keeps`.
+/// Begins a pass that draws into the layer. The layer is cleared first, unless `keeps` is set.
 pub(crate) fn layer_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     label: &str,

@@ -9,9 +9,9 @@ pub struct PartWish {
     /// Importance of the part to viewers, [0, 1]. A budget of time leaves out the less important parts first. Default
     /// `None`: the part's own [`Part::importance`].
     pub importance: Option<f64>,
-    /// Rung at which the part is drawn whatever the tolerance and the time, so that all channels of a simulator draw it
-    /// alike. [`Plan::gave_way`](super::Plan::gave_way) still names the limit that the picture then breaks. Default
-    /// `None`: the plan chooses the rung.
+    /// Rung at which the part is drawn whatever the tolerance and the time, so that all views of a simulator draw the
+    /// part alike. [`Plan::gave_way`](super::Plan::gave_way) still names the limit that the picture then breaks.
+    /// Default `None`: the plan chooses the rung.
     pub rung: Option<usize>,
 }
 
@@ -20,8 +20,8 @@ pub struct PartWish {
 pub struct Budget {
     /// Largest error that leaving parts out may cause, (0, 1]. The error of a pixel is |Y' - Y| / (Y + 0.01 white)
     /// after exposure, where Y is the luminance with everything drawn and Y' that of the planned picture. The 95th
-    /// percentile over pixels must be at most this, and the worst pixel at most ten times this. An error of 0.01 is not
-    /// visible. Default `None`: everything is drawn, unless `milliseconds` says otherwise.
+    /// percentile over pixels must be at most the tolerance, and the worst pixel at most ten times the tolerance. An
+    /// error of 0.01 is not visible. Default `None`: everything is drawn, unless `milliseconds` says otherwise.
     pub tolerance: Option<f64>,
     /// Longest time that the weather may take in a frame, ms, (0, 1000]. It wins over the tolerance. The times that the
     /// host reports by [`View::report_time`](crate::frame::View::report_time) decide how many parts are left out.
@@ -40,7 +40,7 @@ impl Budget {
         Self { wishes, ..Self::default() }
     }
 
-    /// Checks that all fields are in range; the error names the one that is not.
+    /// Checks that all fields are in range. The error names the field that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].

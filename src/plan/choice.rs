@@ -1,6 +1,6 @@
 //! Choice of the steps to take in a gauged picture. A step leads from one rung of a part down to the next, so each step
-//! taken saves work. The choice is the set of steps with the least work within the tolerance or, if that picture takes
-//! too long, the set whose loss matters least.
+//! taken saves work. The choice is the set of steps with the least work within the tolerance or, if the picture with
+//! that set takes too long, the set with the least loss within the time.
 
 use super::{
     estimate::{Estimate, Estimator},
@@ -9,8 +9,8 @@ use super::{
     search::{Free, Search, least_missed},
 };
 
-/// Share of the tolerance that a new set of steps must keep; the present set may use all of it. A picture at the border
-/// then does not flicker.
+/// Share of the tolerance within which a new set of steps must stay. The present set may use the whole tolerance. A
+/// picture whose error is close to the tolerance then does not flicker.
 const CERTAINTY: f64 = 0.9;
 
 /// Demands on a picture.
@@ -60,9 +60,9 @@ impl Choices {
         }
     }
 
-    /// Takes the findings about a gauged picture, whose pixels the estimator already has: its work with everything
-    /// (`all`), the steps of the parts that are present (`there`), the host's demands (`demands`), and the steps taken
-    /// now (`previous`).
+    /// Takes the findings about a gauged picture. The estimator already has the picture's pixels. `all` is the
+    /// picture's work with everything, `there` the steps of the parts that are present, `demands` the host's demands,
+    /// and `previous` the steps taken now.
     pub fn take(&mut self, all: WorkAmount, there: Set, governor: &Governor, demands: &PlanDemands, previous: Set) {
         (self.all, self.there) = (all, there);
         let Self { ladder, estimator, search, worth, .. } = self;

@@ -1,4 +1,5 @@
-//! Measure of error: the difference in luminance of two pictures. Every error that the crate states is of this kind.
+//! Measure of error: the difference in luminance of two pictures. Every error of a picture that the crate states is
+//! such a difference.
 
 use crate::error::{Error, Result};
 
@@ -39,7 +40,7 @@ pub fn difference(a: &[f64], b: &[f64], white: f64) -> Result<Difference> {
 }
 
 /// Returns the percentile of numbers in ascending order: the smallest number that is at least as large as the share
-/// `share` of them. 0 for an empty list.
+/// `share` of the numbers. 0 for an empty list.
 pub fn percentile(sorted: &[f64], share: f64) -> f64 {
     let rank = (sorted.len() as f64 * share).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)

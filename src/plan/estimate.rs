@@ -67,7 +67,7 @@ impl Estimator {
         self.kept.fill((0, Estimate::default()));
     }
 
-    /// Adds a pixel that is not masked, with its relative change due to each step.
+    /// Adds a pixel, with its relative change due to each step.
     pub fn see(&mut self, changes: [f32; MOST_STEPS]) {
         self.changes.push(changes);
     }
@@ -80,7 +80,7 @@ impl Estimator {
         if let Some((_, known)) = self.kept.iter().find(|k| k.0 == set) {
             return *known;
         }
-        // The lowest step taken of each part has the change by all steps of that part.
+        // The change due to the lowest step taken of a part is that of all the steps taken of this part.
         let mut lowest = [0; MOST_STEPS];
         let mut count = 0;
         for part in 0..ladder.parts.len() {
@@ -105,7 +105,8 @@ impl Estimator {
 /// Returns the 95th percentile of errors with its confidence bound, and the largest error. Reorders `errors`.
 fn percentile(errors: &mut [f32]) -> Estimate {
     let n = errors.len();
-    // Rank above which 5 % of the population lie with a confidence of 95 % (normal approximation of the binomial).
+    // Share of the errors between the rank of the 95th percentile and the rank `high`. The error at `high` is, with a
+    // confidence of 95 %, at least the 95th percentile of the population (normal approximation of the binomial).
     let spread = 1.645 * (0.95 * 0.05 / n as f64).sqrt();
     let rank = |share: f64| ((share * n as f64).ceil() as usize).clamp(1, n) - 1;
     let (low, high) = (rank(0.95), rank((0.95 + spread).min(1.0)));

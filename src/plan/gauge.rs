@@ -44,13 +44,14 @@ const FAILED: u32 = 4;
 /// Names and values of `override` constants.
 type OverrideValues = Vec<(&'static str, f64)>;
 
-/// Largest number of channels; each holds the change due to one part.
+/// Largest number of channels. Each holds the change due to one part, or to several parts that share it.
 pub const CHANNELS: usize = 5;
 
 /// Result of the gauge at one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GaugeSample {
-    /// Relative change of luminance without the part of each channel, (Y' - Y) / (Y + 0.01 white).
+    /// Relative change of luminance, (Y' - Y) / (Y + 0.01 white), for each channel: Y' is without the parts of the
+    /// channel.
     pub composed: [f32; CHANNELS],
     /// Kind of the pixel: 1 where the host drew something, -1 where it did not, 0 where the host keeps the pixel for
     /// itself.

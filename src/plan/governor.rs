@@ -152,8 +152,8 @@ impl Governor {
         self.recent.iter_mut().for_each(|k| *k *= before / after);
     }
 
-    /// Returns the time for a unit of work, ms; until a change of parts has settled, the time before it. `None` before
-    /// a report.
+    /// Returns the time for a unit of work, ms. Until a change of parts has settled, it is the time before the change.
+    /// `None` before the first report.
     fn ms_per_work(&self) -> Option<f64> {
         match self.before {
             Some((_, k)) => Some(k),
@@ -181,7 +181,7 @@ impl Governor {
     }
 
     /// Whether the predicted time of a picture is within a budget of time. A picture with more work than the present
-    /// one must be within [`ROOM`] of the budget, so that the choice does not change back and forth.
+    /// one must be within the share [`ROOM`] of the budget, so that the choice does not change back and forth.
     pub fn fits(&self, amount: &WorkAmount, budget_ms: Option<f64>, now: &WorkAmount) -> bool {
         match (budget_ms, self.ms(amount)) {
             (Some(budget), Some(ms)) => {

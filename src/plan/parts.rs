@@ -9,7 +9,7 @@
 pub const MOST_PARTS: usize = 16;
 /// Largest number of rungs of a part.
 pub const MOST_RUNGS: usize = 4;
-/// Largest number of steps down of all parts together.
+/// Largest number of steps of all parts together.
 pub const MOST_STEPS: usize = 32;
 
 /// A part of the weather, as its room registers it.
@@ -17,7 +17,7 @@ pub const MOST_STEPS: usize = 32;
 pub struct Part {
     /// Name of the part in plans, budgets and messages: lower case, unique.
     pub name: &'static str,
-    /// Names of its rungs, from all of it to the cheapest: two to [`MOST_RUNGS`].
+    /// Names of the part's rungs, from the whole part to the cheapest rung: two to [`MOST_RUNGS`] names.
     pub rungs: &'static [&'static str],
     /// Importance to viewers, [0, 1], unless a budget sets another.
     pub importance: f64,
@@ -93,7 +93,7 @@ pub(super) type Set = u32;
 pub(super) struct Ladder {
     /// List of the parts.
     pub parts: &'static [Part],
-    /// Index of each part's first step, and last the number of all steps.
+    /// Index of each part's first step, followed by the number of all steps.
     first: Vec<usize>,
 }
 

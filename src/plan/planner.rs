@@ -1,4 +1,4 @@
-//! Planner of a view: turns gauged pictures into parts that are drawn, faded or left out.
+//! Planner of a view: decides from gauged pictures which parts are drawn, faded or left out.
 
 use glam::{DVec2, DVec3};
 
@@ -29,17 +29,19 @@ pub struct PartPlan {
     pub share: f32,
     /// Reason for the rung.
     pub reason: Reason,
-    /// Error of the picture with only this part at each rung, as last gauged; that of the first rung is 0.
+    /// Error of the picture for each rung of this part, with every other part drawn in full, as last gauged. It is 0
+    /// for the first rung.
     pub worth: [Estimate; MOST_RUNGS],
     /// Work that the whole part adds, or would add, to this picture with everything else, in units of the work of a
     /// pixel in which no part is drawn.
     pub work: f64,
-    /// Steps that the part has gone down; a fraction during a fade.
+    /// Number of steps that the part has gone down. During a fade it is not a whole number.
     depth: f32,
 }
 
 impl PartPlan {
-    /// Returns the error of the picture with only this part at its last rung, as last gauged.
+    /// Returns the error of the picture with this part at its last rung and every other part drawn in full, as last
+    /// gauged.
     pub fn last(&self) -> Estimate {
         self.worth[self.part.rungs.len() - 1]
     }
@@ -162,8 +164,8 @@ pub(crate) struct Situation {
     pub conditions: Conditions,
 }
 
-/// Largest relative change of each quantity of the weather that a picture shows, up to which a gauge stays valid. A
-/// part that the weather did not have is drawn in any case.
+/// Largest relative change of a quantity of the weather up to which a gauge stays valid. It applies to each quantity
+/// that a picture shows. A part that the weather did not have at the gauge is drawn in any case.
 const NEAR: f64 = 0.05;
 
 impl Situation {
@@ -201,9 +203,9 @@ struct Gauging<U> {
 /// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share: tables
 /// are not built in finer strips. The second is the usual share, for frames with time to spare.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
-/// Largest work on the sky's tables in a frame, as a share of the picture's own work, unless the usual share of a build
-/// ([`SHARE`]) is more work: then the usual share is the limit. A frame that works on tables takes less than 1.5 times
-/// as long as one that does not.
+/// Largest work on the sky's tables in a frame, as a share of the picture's own work. If the usual share of a build
+/// ([`SHARE`]) is more work, the usual share is the limit instead. A frame that works on tables takes less than 1.5
+/// times as long as one that does not.
 const SLICE: f64 = 0.3;
 
 /// Largest relative change of a pixel in one frame while a part fades.

@@ -1,4 +1,4 @@
-//! A plan as text, with which other channels and later sessions draw equal pictures.
+//! A plan as text, by which other views and later sessions draw equal pictures.
 //!
 //! The text holds the rungs of the parts and the sky's settings. Views of a context with other settings would draw
 //! differently, so they refuse the plan.
@@ -19,7 +19,7 @@ pub(crate) struct PlanSettings<'a> {
     pub model: &'a str,
     /// Check that refuses a name that no model has.
     pub check_model: fn(&str) -> Result<()>,
-    /// Name, value, minimum and maximum of every number.
+    /// Name, value, minimum and maximum of every numeric setting.
     pub numbers: Vec<(&'static str, u32, u32, u32)>,
 }
 
@@ -40,14 +40,14 @@ pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &PlanSettings<'_>) -> 
 ///
 /// # Errors
 /// [`Status::Parse`] for text that is not a plan or is of another version, by line and column or by the field's name;
-/// [`Status::InvalidArgument`] if its settings differ.
+/// [`Status::InvalidArgument`] if the plan's sky settings differ from `sky`.
 pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &PlanSettings<'_>) -> Result<Vec<usize>> {
     if bytes.len() > MOST_BYTES {
         return Err(fault("", format_args!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
     }
     let text = std::str::from_utf8(bytes).map_err(|e| unread(&e))?;
     let whole: Table = toml::from_str(text).map_err(|e| unread(&toml_fault(text, &e)))?;
-    // The version comes first: other fields of another version are unknown.
+    // Checks the version first, because a text of another version has fields that are unknown here.
     let version = whole.get("version");
     if version != Some(&Value::from(i64::from(VERSION))) {
         return Err(fault(".version", format_args!("must be {VERSION}, got {}", shown(version))));

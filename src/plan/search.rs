@@ -88,7 +88,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// Finds the set of least work that keeps a tolerance, that is, whose strain is at most 1. `None` if no such set
+    /// Finds the set of least work that keeps a tolerance. Such a set has a strain of at most 1. `None` if no such set
     /// was found.
     pub fn cheapest(
         &mut self,

@@ -54,7 +54,7 @@ impl Default for Price {
     }
 }
 
-/// Cost of a candidate, split into parts by how often each is paid.
+/// Cost of a candidate, split by how often each amount is paid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Work whenever the air changes, once for all views.

@@ -14,9 +14,10 @@ impl Planet {
     /// `absorption`). Without `mie` the haze is the Earth's at the file's wavelengths.
     ///
     /// # Errors
-    /// [`crate::Status::Parse`] with line and column for what is not TOML, for a key that is missing, unknown or of the
-    /// wrong kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names
-    /// the key, its unit and the accepted range.
+    /// [`crate::Status::Parse`] for a text that is not TOML, and for a key that is missing, unknown or of the wrong
+    /// kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names the
+    /// key, its unit and the accepted range. It also names line and column, unless a key is missing or two values
+    /// contradict each other.
     pub fn from_toml(text: &str) -> Result<Self> {
         parse(text)
     }

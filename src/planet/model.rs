@@ -35,8 +35,8 @@ pub struct Mie {
     pub extinction_per_m: [f64; 3],
     /// Scale height, m, `[0, 1e6]`: the density falls to 1/e over it; 0 means that there is no haze above the ground.
     pub scale_height_m: f64,
-    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; with a positive one, most light goes on forward, away
-    /// from the sun.
+    /// Parameter g of the phase function, `[-0.9999, 0.9999]`; with a positive g, most light goes on forward, away from
+    /// the sun.
     pub asymmetry_g: f64,
 }
 
@@ -72,8 +72,8 @@ pub struct Absorption {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Planet {
-    /// The three wavelengths that are computed, nm, each in `[200, 4000]`. All other triples have the same order.
-    /// Welkin's own colours require red, green, blue; radiances are right in any order.
+    /// The three wavelengths that are computed, nm, each in `[200, 4000]`. The numbers of all other triples are in the
+    /// order of these wavelengths. Welkin's own colours require red, green, blue; radiances are right in any order.
     pub wavelengths_nm: [f64; 3],
     /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`. Radiances
     /// are then in W m^-2 sr^-1 nm^-1; [`super::spectral`] converts them to luminous colours. With an irradiance of 1
@@ -212,11 +212,11 @@ impl Planet {
         (differs && is_there).then_some(self.mie)
     }
 
-    /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`. Every spectrum is the Earth's
-    /// (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor, which is
-    /// linear between this planet's three wavelengths and constant outside. Haze follows a power of the wavelength
-    /// between two neighbours of these three (Angstrom 1929), which is extrapolated beyond the outer two. At the
-    /// planet's own wavelengths all values are unchanged.
+    /// Returns the planet at three other wavelengths, nm, each in `[365, 835]`. Every spectrum except the haze's is the
+    /// Earth's (Bodhaine's gas, ozone's cross-section, the sun's spectrum; a flat one for the ground) times a factor.
+    /// The factor is linear between this planet's three wavelengths and constant outside. Between two neighbouring
+    /// wavelengths of the three, haze follows a power of the wavelength (Angstrom 1929). This power law is extrapolated
+    /// beyond the outer two. At the planet's own wavelengths all values are unchanged.
     pub fn at_wavelengths(&self, wavelengths_nm: [f64; 3]) -> Self {
         let shaped = |own: [f64; 3], law: &dyn Fn(f64) -> f64| {
             let factor = |i: usize| own[i] / law(self.wavelengths_nm[i]).max(f64::MIN_POSITIVE);

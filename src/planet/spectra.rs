@@ -66,9 +66,9 @@ pub(crate) fn between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     if x < points[b] { line(a, b) } else { line(b, c) }
 }
 
-/// Interpolates at `x` by a power law, value = a x^b, through the two of three points beside `x`. The points may be in
-/// any order. Beyond them the law of the nearest two is extrapolated. If one of the two values is 0, or the two points
-/// coincide, the result is that of [`between`].
+/// Interpolates at `x` by a power law, value = a x^b, through those two of the three points between which `x` lies. The
+/// points may be in any order. Beyond the outer points the law of the two nearest points is extrapolated. If one of the
+/// two values is 0, or the two points coincide, the result is that of [`between`].
 pub(crate) fn power_between(points: &[f64; 3], values: &[f64; 3], x: f64) -> f64 {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| points[*a].total_cmp(&points[*b]));

@@ -111,19 +111,20 @@ impl SpectralSet {
     }
 }
 
-/// A planet at three wavelengths of a set, and their weights in transfers at the whole planet's own three wavelengths.
+/// A planet at three wavelengths of a set, and the weights of these wavelengths in transfers at the three wavelengths
+/// of the planet that [`parts`] splits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpectralTriple {
     /// Planet at these wavelengths; its solar irradiance does not matter.
     pub planet: Planet,
-    /// Columns of a matrix: for each of these wavelengths, the three transfers at the whole planet's own wavelengths
-    /// that have the same colour as a unit transfer at this wavelength alone.
+    /// Columns of a matrix, one for each wavelength of the triple: the three transfers at the split planet's
+    /// wavelengths that have the same colour as a unit transfer at this wavelength alone.
     pub columns: [[f64; 3]; 3],
 }
 
 /// Splits `planet` into planets for a set of `count` wavelengths, a multiple of 3. The sum of all transfers, each times
 /// its column, is a triple of transfers at the planet's own wavelengths. The conversion of the planet's own wavelengths
-/// turns this triple into the set's colour. With a count of 3 the only part is the planet itself.
+/// turns this triple into the set's colour. With a count of 3 the result is the planet itself.
 ///
 /// # Errors
 /// As [`SpectralSet::new`].
@@ -270,8 +271,9 @@ impl AirSample {
 }
 
 /// Returns the sun's limb darkening: brightness relative to the disc's centre at a point where the line of sight meets
-/// the photosphere at an angle of cosine `mu` (1 at the centre, 0 at the limb). 1 - u - v + u mu + v mu^2 with the
-/// coefficients of Cox 2000 (Allen's Astrophysical Quantities, section 14.7), linear between wavelengths.
+/// the photosphere at an angle of cosine `mu` (1 at the centre, 0 at the limb). The law is 1 - u - v + u mu + v mu^2.
+/// Its coefficients u and v are those of Cox 2000 (Allen's Astrophysical Quantities, section 14.7), interpolated
+/// linearly between wavelengths.
 pub fn limb_darkening(wavelength_nm: f64, mu: f64) -> f64 {
     const TABLE: [(f64, f64, f64); 8] = [
         (380.0, 0.92, -0.05),

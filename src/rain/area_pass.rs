@@ -1,4 +1,4 @@
-//! Pass that draws the columns of rain areas as veils into the layer in front of the picture.
+//! Pass that draws the columns of rain areas as translucent volumes into the layer in front of the picture.
 
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ struct AreaBlocks {
     shaft: ShaftUniform,
 }
 
-/// Offset of `ShaftUniform` in the upload, bytes: parts of a uniform buffer are bound at multiples of 256.
+/// Offset of `ShaftUniform` in the upload, bytes: a uniform buffer is bound at multiples of 256.
 const SHAFT_AT: usize = size_of::<ColumnsUniform>().next_multiple_of(256);
 
 /// Properties that select the pipeline, in addition to the composition's constants for air, fog and cloud.
@@ -75,7 +75,7 @@ pub(super) struct ShaftKind {
     pub polygons: bool,
 }
 
-/// Number of pipelines held for a view: enough for a few weathers that alternate.
+/// Number of pipelines that a view keeps: enough for a few weathers that alternate.
 const MOST_PIPELINES: usize = 16;
 
 /// Pass of a view, created when the view first has rain areas.
@@ -88,9 +88,9 @@ pub(super) struct AreaPass {
     /// Placeholder for a missing layer behind the picture.
     no_layers: wgpu::TextureView,
     pipelines: LruCache<(ShaftKind, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    /// Depth and layer behind the picture to which the bind group refers, and the bind group.
+    /// Bind group, preceded by the depth and by the layer behind the picture that are bound in it.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, wgpu::BindGroup)>,
-    /// Whether pixels count how often they are drawn, instead of showing light.
+    /// Whether the pass counts how often each pixel is drawn, instead of drawing light.
     counts: bool,
 }
 

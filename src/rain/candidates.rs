@@ -14,17 +14,17 @@ pub const RAIN: Part =
 /// Work per pixel of the rain layer with its cones and splashes. The unit is the work of a pixel in a picture without
 /// any part of the plan. Measured on a software driver (`cargo bench -- parts`).
 const LAYER_OF_PIXEL: f64 = 0.3;
-/// Work of one drop of the lattice, in units of [`LAYER_OF_PIXEL`].
+/// Work of one drop of the lattice, in the same unit as [`LAYER_OF_PIXEL`].
 const ONE_DROP: f64 = 1.4;
 
-/// Returns the work that two steps save, in units of [`LAYER_OF_PIXEL`], for a picture of `pixels` pixels with `drops`
-/// drops: from drops to cones, and from cones to none.
+/// Returns the work that two steps save: the step from drops to cones, and the step from cones to none. The picture has
+/// `pixels` pixels and `drops` drops. The unit is that of [`LAYER_OF_PIXEL`].
 pub(crate) fn rain_work(pixels: u64, drops: u32) -> [StepWork; 2] {
     [ONE_DROP * f64::from(drops), LAYER_OF_PIXEL * pixels as f64].map(|fixed| StepWork { fixed, ..StepWork::default() })
 }
 
-/// Work of one drop of the lattice: the test whether it is in the picture, and the streaks of the few that are.
-/// Measured against cones at 640 x 360.
+/// Work of one drop of the lattice: the test whether it is in the picture, and the streaks of the few drops that are in
+/// the picture. Measured against cones at 640 x 360.
 const DROP: Units = Units { samples: 20.0, texels: 1.0, bytes: 13.0 };
 /// Work of stepping one drop: an exponential, a look-up of the wind, and its state read and written.
 const STEP: Units = Units { samples: 2.0, texels: 1.0, bytes: 32.0 };
@@ -43,10 +43,10 @@ pub fn work(s: &RainSettings) -> Work {
         ..Work::default()
     };
     match s.model {
-        // Counts a little for the veil, which the fog draws anyway; there is no layer.
+        // Adds a little work for the rain in the fog, which is drawn anyway. There is no layer.
         RainModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         RainModel::Cones => Work { pixel: LAYER.plus(CONES, 1.0), ..Work::default() },
-        // Counts the outer cones, and the drops of one shell of the four.
+        // Adds the work of the outer cones, and of the drops in one of the four shells.
         RainModel::Automatic => Work {
             view: Units::default().plus(DROP, 0.25 * f64::from(most)),
             pixel: LAYER.plus(CONES, 0.9),

@@ -6,7 +6,8 @@ use super::{
 };
 use crate::weather::Falling;
 
-/// Smallest and largest diameter drawn as drops, mm. Smaller drops are only part of the veil.
+/// Smallest and largest diameter drawn as drops, mm. Smaller drops only add to the extinction that is drawn with the
+/// fog.
 const DRAWN_MM: (f64, f64) = (0.5, 6.0);
 
 /// Drops of each class in one shell.
@@ -17,7 +18,7 @@ pub struct Classes {
     pub table: [[f32; 4]; CLASSES],
     /// Number of drops in a shell.
     pub per_shell: u32,
-    /// Number of drops that each drawn drop of the innermost shell stands for.
+    /// Number of drops that each drawn drop of the innermost shell represents.
     pub weight: f64,
     /// Extinction of all drops in the drawn classes, 1/m.
     pub extinction_per_m: f64,

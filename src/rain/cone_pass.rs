@@ -19,7 +19,7 @@ use crate::{
     surroundings::SurroundingsBlock,
 };
 
-/// State for rain on cones that a view holds, created when the view first draws cones.
+/// State that a view keeps for rain on cones, created when the view first draws cones.
 pub(super) struct ConePass {
     block: UniformBlock,
     layout: wgpu::BindGroupLayout,
@@ -27,14 +27,14 @@ pub(super) struct ConePass {
     streaks: wgpu::TextureView,
     /// Samplers with repeated coordinates, for streaks, and with clamped ones, for the grid.
     samplers: [wgpu::Sampler; 2],
-    /// Bind group with the grid of the rain that passes shelters, or with a grid of one cell that is not read.
+    /// Bind group with the grid of shelter ([`super::open_pass`]), or with a grid of one cell that is not read.
     group: wgpu::BindGroup,
-    /// Pass for the grid of the rain that passes shelters, once it is needed.
+    /// Pass that draws the grid of shelter, created when the grid is first needed.
     open: Option<OpenPass>,
     /// Bytes of the texture of streaks.
     bytes: u64,
     pipelines: PassPipelines<ConeKind, wgpu::RenderPipeline>,
-    /// Whether pixels count how often they are drawn, instead of showing light.
+    /// Whether the pass counts how often each pixel is drawn, instead of drawing light.
     counts: bool,
 }
 
@@ -83,8 +83,8 @@ impl ConePass {
         self.pipelines.prepare(kind, |_| pipeline(device, &[frame, own, around], kind, counts))
     }
 
-    /// Draws the grid of the shares of rain that pass shelters, for a picture of this size. `maps` says whether there
-    /// are occluder maps. `blocks` begins with the rain's block; `layout` is that of the surroundings.
+    /// Draws the grid of shelter for a picture of the size `picture`. `maps` says whether there are occluder maps.
+    /// `blocks` begins with the rain's block. `layout` is the layout of the surroundings' bind group.
     ///
     /// # Errors
     /// A missing shader file.

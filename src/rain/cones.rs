@@ -41,7 +41,8 @@ pub const BANDS_M: [f64; CONES + 1] = {
 };
 /// Ratio of the far end to the near end of each of the outer two bands: the square root of 8.
 const FURTHER: f64 = 2.828_427_124_746_190_3;
-/// Number of stretches of a ray that are tested for shelter: one per band, and two halves of the outermost.
+/// Number of stretches of a ray that are tested for shelter: one for each band, but two for the outermost, which is
+/// halved.
 pub(super) const STRETCHES: usize = CONES + 1;
 /// Width and height of the texture, texels.
 pub(crate) const SIDE: u32 = 256;
@@ -131,7 +132,7 @@ fn set_at(j: usize, time_s: f64) -> (f64, f64, f64) {
     (number, born_s, ((time_s - born_s) / (GROWS * life)).clamp(0.0, 1.0))
 }
 
-/// Function that returns the displacement of the air by the wind since a time, s, in m (east, north, up).
+/// Function that returns the displacement of the air by the wind, m (east, north, up), since a time, s.
 pub(crate) type Carried<'a> = &'a dyn Fn(f64) -> DVec3;
 
 impl ConeUniform {
@@ -188,8 +189,8 @@ impl ConeUniform {
         c
     }
 
-    /// Adapts the cones to drops that are drawn one by one: of the drops nearer than `distance_m`, the share `drops` is
-    /// drawn so and left out of the cones. All optical depths are multiplied by `share`. If all drops up to
+    /// Adapts the cones to the drops that are drawn one by one: the share `drops` of all drops nearer than
+    /// `distance_m`. The cones leave these drops out. All optical depths are multiplied by `share`. If all drops up to
     /// `distance_m` are drawn one by one and this distance lies inside a band, the band's cone begins there.
     pub fn behind(mut self, (distance_m, drops): (f64, f64), share: f64) -> Self {
         for (j, band) in self.bands.iter_mut().enumerate() {

@@ -2,10 +2,10 @@
 //! a picture.
 //!
 //! Streaks lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
-//! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. Its streak is drawn w
-//! wide, where w is D or a minimum width in pixels, and L + w long. The mean cover over the streak is c = (pi D^2 / 4)
-//! / ((L + w) w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08
-//! times the square of their mean. For n drops per cubic metre the variance is therefore
+//! covers (Campbell 1909). A drop of diameter D at distance r moves by L during the exposure. Its streak has the length
+//! L + w and the width w, where w is the larger of D and a minimum width in pixels. The mean cover over the streak is c
+//! = (pi D^2 / 4) / ((L + w) w). Across the streak the cover follows the chords of a disc, whose mean square is 32 / (3
+//! pi^2) = 1.08 times the square of their mean. For n drops per cubic metre the variance is therefore
 //!
 //! ```text
 //! integral of 1.08 n (pi D^2 / 4)^2 / ((L + w) w) dr.
@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// Largest share of the streaks' contrast that cones miss. In the lab's chart the error of cones is a tenth of that of
-/// a veil without streaks (docs/lab/rain.csv: 0.21 % of 2.60 %), but single streaks near the eye hardly count in that
+/// rain without streaks (docs/lab/rain.csv: 0.21 % against 2.60 %), but single streaks near the eye hardly affect that
 /// chart's error.
 const CONES_MISS: f64 = 0.3;
 
@@ -63,11 +63,11 @@ fn gained(cover: f64, gain: f64) -> f64 {
     if gain == 1.0 { 1.0 } else { (1.0 - (1.0 - cover.min(1.0)).powf(gain)) / cover }
 }
 
-/// Distances between which drops are taken into account, m: from about where near drops have faded in to where cones
-/// end.
+/// Smallest and largest distance of the drops that are taken into account, m. At about the smallest, near drops have
+/// faded in. At the largest, the cones end.
 const COUNTED_M: (f64, f64) = (0.2, super::cones::BANDS_M[super::cones::CONES]);
 
-/// Change of a picture by its streaks.
+/// Change that streaks make to a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Streaks {
     seen: StreakContrast,
@@ -89,7 +89,7 @@ impl Streaks {
     }
 
     /// Returns the changes of pixel `i` with cones instead of drops and with no streaks at all, relative to the pixel's
-    /// luminance plus a hundredth of white. The light that the veil adds in place of the streaks is not counted.
+    /// luminance plus a hundredth of white. The light that the fog adds in place of the streaks is not included.
     /// `picture` is the luminance without streaks, `hidden` the optical depth of the streaks.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [streaks, contrast] = self.seen.at(i, ndc, picture, |d| self.light.radiance(d));

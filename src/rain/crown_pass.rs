@@ -24,7 +24,7 @@ pub(super) struct CrownPass {
     makes: PassPipelines<CrownKind, wgpu::ComputePipeline>,
     /// Pipelines of the draw, by how depth is read.
     draws: PassPipelines<DepthRead, wgpu::RenderPipeline>,
-    /// Whether pixels count how often they are drawn, instead of showing light.
+    /// Whether the pass counts how often each pixel is drawn, instead of drawing light.
     counts: bool,
 }
 

@@ -41,7 +41,7 @@ pub(super) struct CullPass {
     makes: PassPipelines<[bool; 3], wgpu::ComputePipeline>,
     /// Pipelines of the draw, by how depth is read.
     draws: PassPipelines<DepthRead, wgpu::RenderPipeline>,
-    /// Whether pixels count how often they are drawn, instead of showing light.
+    /// Whether the pass counts how often each pixel is drawn, instead of drawing light.
     counts: bool,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct DropLattice<'a> {
     pub shells: u32,
     /// Number of drops in a shell.
     pub per_shell: u32,
-    /// States of the drops, if they are stepped: [`source_layout`].
+    /// Bind group with the states of the drops, if they are stepped. Its layout is [`source_layout`].
     pub states: Option<&'a wgpu::BindGroup>,
     /// Whether a rim of a rain area is near.
     pub areas: bool,

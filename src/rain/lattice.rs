@@ -4,13 +4,13 @@
 //! A shell is a cube of side L, filled with drops at random places and repeated in all directions; each drop is drawn
 //! at the copy nearest to the camera. Positions are whole numbers of 2^-32 L. Their 32-bit sums wrap as the lattice
 //! does, so they are exact at any time and place: place = random(seed, shell, class, index) + displacement of the air -
-//! speed x fall phase, where the speed and the fall phase apply to the height only. Fall speeds are integer multiples
-//! of [`SPEED_UNIT`]; the fall phase is the distance fallen at a speed of one unit.
+//! speed x fall phase. The last term applies to the height only. Fall speeds are integer multiples of [`SPEED_UNIT`];
+//! the fall phase is the distance fallen at a speed of one unit.
 //!
 //! The innermost shell holds every drop in its volume from the smallest drawn size up or, above the limit of drawn
 //! drops, an equal share of each class. Each further shell is wider by the factor 2^(1/3) and holds the same number of
-//! drops, each of which represents twice as many as a drop of the next smaller shell. Where rain is drawn as single
-//! drops alone, these weights of 2, 4 and 8 make up for the contrast of all drops too far to be drawn
+//! drops, each of which represents twice as many drops as a drop of the next smaller shell does. Where rain is drawn as
+//! single drops alone, these weights of 2, 4 and 8 make up for the contrast of all drops too far to be drawn
 //! (`docs/lab/README.md`, the chart of rain).
 
 use glam::DVec3;

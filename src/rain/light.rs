@@ -9,9 +9,9 @@ pub use crate::moment::LightAround as DropLight;
 
 /// Returns the phase function of a drop, whose integral over all directions is 4 pi. `c` is the cosine of the
 /// scattering angle: 1 for light from straight behind the drop. The function is 0.93 h(0.9) + 0.07 h(-0.35) with the
-/// lobe h(g) = (1 - g^2) / (1 + g^2 - 2 g c)^1.5 of Henyey and Greenstein (1941): one for the rays through the sphere,
-/// one for the backward share that makes rainbows. The asymmetry is 0.93 x 0.9 - 0.07 x 0.35 = 0.81. Twin of
-/// `drop_phase` in `shaders/rain/phase.wgsl`.
+/// lobe h(g) = (1 - g^2) / (1 + g^2 - 2 g c)^1.5 of Henyey and Greenstein (1941). The first lobe is that of the rays
+/// through the sphere, the second that of the backward share that makes rainbows. The asymmetry is 0.93 x 0.9 - 0.07 x
+/// 0.35 = 0.81. Twin of `drop_phase` in `shaders/rain/phase.wgsl`.
 pub fn phase(c: f64) -> f64 {
     let lobe = |g: f64| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)

@@ -107,8 +107,8 @@ impl Classes {
         envelope
     }
 
-    /// Returns these classes for a part of all drops: flux, extinction and the number of all drops (drawn drops times
-    /// weight) are multiplied by `share`. Each drawn drop then represents one drop.
+    /// Returns these classes for the share `share` of all drops: flux, extinction and the number of all drops (drawn
+    /// drops times weight) are multiplied by `share`. Each drawn drop then represents one drop.
     pub(crate) fn part(&self, share: f64) -> Self {
         let mut part = *self;
         part.flux.iter_mut().for_each(|c| c.2 *= share);
@@ -138,8 +138,8 @@ impl Classes {
 }
 
 impl LocalUniform {
-    /// Creates the mixture of the `weather`'s drops with those of some columns, and classes with enough drops for all
-    /// of them.
+    /// Creates the mixture of the `weather`'s drops with those of some columns, and classes with enough drops for every
+    /// rain of the mixture.
     pub fn new<'a>(weather: &Classes, columns: impl Iterator<Item = LocalColumn<'a>>) -> (Self, Classes) {
         let mut block: Self = bytemuck::Zeroable::zeroed();
         let mut envelope = *weather;

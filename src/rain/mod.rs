@@ -10,8 +10,8 @@
 //!
 //! *Near and far*. [`cones`] show rain beyond the single drops. Drops that are too small or too far away for both are
 //! extinction, drawn with the fog. A rain area ([`RainArea`]) is a column of rain. Near the camera the number of its
-//! drops decreases over the area's rim. Farther away the column is drawn as a veil. [`contrast`] estimates how much all
-//! of this changes a picture.
+//! drops decreases over the area's rim. Farther away the column is drawn as one integral along the ray of each pixel.
+//! [`contrast`] estimates how much all of this changes a picture.
 //!
 //! There is no `reference.rs`: each file has the f64 side of its own shader. There is no `held.rs`: drops follow from
 //! seed and time. Stepped drops ([`RainModel::Integrated`]) belong to a view and are not saved.

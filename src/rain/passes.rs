@@ -278,7 +278,7 @@ impl RainLayer {
         }
     }
 
-    /// Draws into the layer. It is cleared first, unless `keeps`.
+    /// Draws into the layer. The layer is cleared first, unless `keeps` is set.
     fn draw_into(
         &self,
         encoder: &mut wgpu::CommandEncoder,

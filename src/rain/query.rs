@@ -31,7 +31,7 @@ pub struct RainAt {
     /// Number of drops that land on level ground, 1/(m^2 s).
     pub drops_per_m2_s: f64,
     /// Velocity, m/s (east, north, up), of the drop that divides the falling water into halves: one half falls more
-    /// steeply, the other less. Take occluder maps along this direction. The velocity is 0 if no rain falls.
+    /// steeply, the other less. Draw occluder maps along this direction. The velocity is 0 if no rain falls.
     pub fall_velocity_m_s: DVec3,
     /// Hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,

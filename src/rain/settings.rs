@@ -18,7 +18,8 @@ pub enum RainModel {
     /// No drops: all rain is extinction. This costs nothing in addition to the fog.
     Veil,
     /// Streaks on three nested cones around the camera ([`super::cones`]), without splashes. The cost depends only on
-    /// the picture's size; it is below that of drops only on devices without compute shaders.
+    /// the picture's size. This model costs less than drops on devices without compute shaders, but not on other
+    /// devices.
     Cones,
     /// Single drops only, up to 4 m from the camera. Each drop's place follows from (seed, number, time), without a
     /// state ([`super::lattice`]). If lamps light the rain, cones show it beyond 4 m.

@@ -117,7 +117,7 @@ pub(crate) struct AreaField {
     pub own_top: f64,
     /// Extinction of the weather's own drops that are drawn near the camera, 1/m.
     pub own_near: f64,
-    /// Distance up to which drops or cones are drawn instead of the veil, m.
+    /// Distance up to which rain is drawn as drops or cones instead of as extinction, m.
     pub near_m: f64,
     /// Wave numbers of the pattern to the right, ahead and up (1/m), and phases (rad).
     pub waves: [[f64; 4]; WAVES],
@@ -316,8 +316,8 @@ impl AreaField {
         }
     }
 
-    /// Returns the share of the rain at a camera-relative place that belongs to column `i`, less the share of later
-    /// columns that overlap it.
+    /// Returns the share of the rain at a camera-relative place that belongs to column `i`, without the rain that later
+    /// columns replace.
     pub fn share(&self, i: usize, p: DVec3) -> f64 {
         let over = |j: &usize| self.columns[i].later & (1 << j) != 0;
         let left: f64 = (i + 1..self.columns.len()).filter(over).map(|j| 1.0 - self.columns[j].share(p)).product();
@@ -333,13 +333,13 @@ impl AreaField {
         let q = c.turned(origin.truncate() - c.center - lean * (origin.z - c.ground));
         let u = c.turned(d.truncate() - lean * d.z);
         let [first, last] = c.chord(q, u, 0.0)?;
-        // Bounds the ray by the valleys and by the higher of the two clouds: above its own cloud the column still
-        // replaces the weather's rain.
+        // Bounds the ray by the valleys and by the higher of two clouds, the column's and the weather's: above its own
+        // cloud the column still replaces the weather's rain.
         let up = if d.z.abs() < 1e-6 { 1e-6f64.copysign(d.z) } else { d.z };
         let [a, b] = [(c.ground - BELOW_M - origin.z) / up, (c.top.max(self.own_top) - origin.z) / up];
         let mut end = range.min(a.max(b)).min(last);
         if range >= RANGE_SKY_M && d.z < 0.0 && origin.z > c.ground {
-            // Ends a ray that meets no object at the level of the ground.
+            // If a ray meets no object, ends it at the level of the ground.
             end = end.min((c.ground - origin.z) / up);
         }
         let begin = first.max(a.min(b)).max(0.0);
@@ -382,7 +382,7 @@ impl AreaField {
         Some(depth)
     }
 
-    /// Returns the optical depth that all columns add up to `range`, averaged over their pattern.
+    /// Returns the optical depth that all columns add within the distance `range`, m, averaged over their pattern.
     pub fn depth_along(&self, origin: DVec3, d: DVec3, range: f64) -> f64 {
         (0..self.columns.len()).filter_map(|i| self.met(i, origin, d, range, false)).sum()
     }

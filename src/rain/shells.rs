@@ -69,7 +69,7 @@ impl Moment {
     }
 
     /// Returns the place of a camera at `position_m` (east, north and up from a point fixed to the world) in the cell
-    /// that moves with the air. A drop's position relative to the camera is its start less its fall less this place.
+    /// that moves with the air. A drop's position relative to the camera is its start minus its fall minus this place.
     pub fn camera(&self, shell: usize, position_m: DVec3) -> [u32; 3] {
         let p = position_m.to_array().map(|x| fraction(x, side_m(shell)));
         [0, 1, 2].map(|i| p[i].wrapping_sub(self.air[i]))

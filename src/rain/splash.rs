@@ -66,7 +66,8 @@ pub struct Landing {
 pub struct Splashes {
     /// Number of drawn splashes per second and m^2 of level ground.
     pub drawn_per_m2_s: f64,
-    /// Number of splashes per second and m^2 that are left out because there are no more slots. These are the smallest.
+    /// Number of splashes per second and m^2 that are left out because there are no more slots. The smallest splashes
+    /// are left out.
     pub left_out_per_m2_s: f64,
     /// Mean diameter, mm, and fall speed, m/s, of groups of drawn splashes that are equal in number, the largest first.
     pub sizes: [(f64, f64); SIZES],
@@ -109,8 +110,8 @@ impl Splashes {
 
     /// Returns the drops that may have landed and whose splash is visible at `time_s`, within ten metres to each side
     /// of a camera at `position_m` (east, north and up from a point fixed to the world). They include drops that land
-    /// only on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`, for
-    /// any ground.
+    /// only on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`: the
+    /// height of the ground is not yet known.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;

@@ -36,7 +36,7 @@ pub(super) struct StonePass {
     group: wgpu::BindGroup,
     /// Pipelines of stones in the air and of stones that hop on the ground.
     pipelines: PassPipelines<StoneKind, [wgpu::RenderPipeline; 2]>,
-    /// Whether pixels count how often they are drawn, instead of showing light.
+    /// Whether the pass counts how often each pixel is drawn, instead of drawing light.
     counts: bool,
 }
 

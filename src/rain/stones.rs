@@ -3,8 +3,8 @@
 //!
 //! Stones have a lattice of their own, a repeated cube of air as for drops ([`super::lattice`]). Each shell is twice as
 //! wide as the one before and holds all stones of its volume, because hail is rare and seen from afar. Pellets are too
-//! many for that: each drawn pellet stands for several. Shells in which it would stand for more than `MOST_WEIGHT` are
-//! not drawn; their pellets are part of the veil.
+//! many for that, so each drawn pellet represents several. Shells in which a pellet would represent more than
+//! `MOST_WEIGHT` are not drawn: their pellets are extinction, drawn with the fog.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::{falling::lattice::fraction, weather::Falling};
 const SHELLS: usize = 4;
 /// Side of the innermost shell's cell, m.
 const SIDE_M: f64 = 4.0;
-/// Largest number of stones that one drawn stone may stand for.
+/// Largest number of stones that one drawn stone may represent.
 const MOST_WEIGHT: f64 = 16.0;
 /// Number of classes of diameter, for pellets and for hail each.
 const CLASSES: usize = 8;
@@ -102,7 +102,7 @@ pub struct Stones {
     table: [[f32; 4]; STONE_CLASSES],
     /// Per class and shell: number of drawn stones of the classes up to this one.
     upto: [[u32; SHELLS]; STONE_CLASSES],
-    /// Per class and shell: number of stones that each drawn stone stands for.
+    /// Per class and shell: number of stones that each drawn stone represents.
     weight: [[f32; SHELLS]; STONE_CLASSES],
     /// Number of stones drawn in the air.
     pub drawn: u32,
@@ -110,7 +110,8 @@ pub struct Stones {
     reach: [(f64, f64); 2],
     /// Number of drawn landings per second and m^2 of level ground.
     pub landings_per_m2_s: f64,
-    /// Number of landings per second and m^2 that are left out because there are no more slots. These are the smallest.
+    /// Number of landings per second and m^2 that are left out because there are no more slots. The landings of the
+    /// smallest stones are left out.
     pub left_out_per_m2_s: f64,
 }
 

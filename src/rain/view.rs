@@ -153,9 +153,9 @@ impl RainView {
     }
 
     /// Returns ([extinction, distance], share) for the weather's own rain and the stones. The extinction, 1/m, is that
-    /// of all drops and stones that can be drawn near the camera, the distance, m, is that up to which they are drawn,
-    /// and the share is the drawn share of this extinction. The extinction is that of the discs of drops and stones,
-    /// which is half of the total (the other half is diffraction), times the contrast gain.
+    /// of all drops and stones that can be drawn near the camera. The distance, m, is that up to which they are drawn.
+    /// The share is the drawn share of this extinction. The extinction is that of the discs of drops and stones alone,
+    /// half of the total (the other half is diffraction). It is multiplied by the contrast gain.
     fn hidden(&mut self, device: &Device, now: &SceneMoment<'_>) -> ([f32; 2], f32) {
         let scene = &now.scene;
         let falling = self.own;
@@ -171,7 +171,7 @@ impl RainView {
     }
 
     /// Returns whether there are cones: with the models that always have them, and beyond single drops where there are
-    /// lamps, because the veil is not lit by lamps.
+    /// lamps, because lamps do not light the rain that is drawn as extinction.
     fn has_cones(&self, now: &SceneMoment<'_>) -> bool {
         match self.settings.model {
             RainModel::Automatic | RainModel::Cones => true,
@@ -194,7 +194,8 @@ impl RainView {
         }
     }
 
-    /// Returns the extinction that is drawn as drops or cones near the camera and subtracted from the rain's veil, 1/m.
+    /// Returns the extinction, 1/m, that is drawn as drops or cones near the camera, and that is subtracted from the
+    /// rain drawn with the fog.
     fn near(&mut self, device: &Device, scene: &Scene, falling: &Falling) -> f64 {
         match self.settings.model {
             RainModel::Veil => 0.0,
@@ -236,7 +237,7 @@ impl RainView {
         let falling = self.own;
         self.field.near_m = self.reach(now);
         // Limits the gain to 2: no more than the whole extinction, twice that of the drops' discs, is subtracted from a
-        // veil.
+        // column.
         let share = f64::from(self.shares[0]) * self.settings.contrast_gain.min(2.0);
         self.field.own_near = share * self.near(device, scene, &falling);
         for i in 0..self.field.columns.len() {
@@ -338,8 +339,8 @@ impl RainView {
         Some(Streaks::new((&classes, wind), &self.camera(context), light, now.has_lamps()))
     }
 
-    /// Draws rain and ice around the camera into the layer, which already contains columns if `over_columns`. Returns
-    /// the report.
+    /// Draws rain and ice around the camera into the layer, which already contains columns if `over_columns` is set.
+    /// Returns the report.
     fn draw_near(
         &mut self,
         context: &DrawContext<'_>,

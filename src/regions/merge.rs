@@ -98,7 +98,7 @@ impl<'a> RegionsHere<'a> {
             std::array::from_fn(|_| singles.next())
         };
         // The weighted mean of several weathers is computed by blends of two: the mean so far, and the next region's
-        // weather, which gets its share divided by the sum of all shares so far.
+        // weather. The weight of the latter is its share over the sum of all shares up to and including it.
         let mut before = parts.map(|part| part.map_or(0.0, |(_, shares)| shares.base));
         let mut merged = *c;
         for (k, acting) in self.list.iter().flatten().enumerate() {

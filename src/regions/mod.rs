@@ -2,37 +2,38 @@
 //!
 //! A region has a shape on the ground plan ([`RegionShape`]), a perimeter outside the shape over which the region's
 //! weather fades into the weather around it, a velocity, and a whole [`Weather`](crate::weather::Weather) of which it
-//! takes some parts ([`WeatherParts`](crate::weather::WeatherParts)). Columns are vertical: height has no effect on the
-//! weight.
+//! takes some parts ([`WeatherParts`](crate::weather::WeatherParts)). Regions are vertical columns: the weight does not
+//! depend on height.
 //!
 //! # Weight
 //! Let d be the horizontal distance from the shape, m, 0 inside, and P the perimeter. The weight of a region is its
-//! strength times 1 - 3x^2 + 2x^3 with x = min(d / P, 1). Its slope is at most 1.5 / P. With P = 0 it is a step: the
-//! region holds up to its border and on it.
+//! strength times 1 - 3x^2 + 2x^3 with x = min(d / P, 1). The slope of the weight is at most 1.5 / P. With P = 0 the
+//! weight is a step: it has its full value inside the shape and on the border.
 //!
 //! # Overlap
 //! For each part of the weather, the world's weather and the regions have shares a_k whose sum is 1. Regions are taken
-//! in the order of the list. A region of weight w that *covers* a part gets the share w, and all earlier shares are
-//! multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge it. All these regions
-//! together get the share 1 - (1 - m)(1 - w), where m is the sum of the shares of the earlier ones so far. They divide
-//! it in proportion to their weights. All other shares are multiplied by 1 - w. A region that covers the part also
-//! multiplies the weights of the earlier merging regions by 1 - w. Two regions that merge and both have the weight 1
-//! thus give the mean of both. In a perimeter, a smaller weight gives a smaller share. The shares are continuous in all
-//! weights.
+//! in the order in which the host lists them. A region of weight w that *covers* a part gets the share w, and all
+//! earlier shares are multiplied by 1 - w. A region that *merges* a part joins the earlier regions that merge the same
+//! part. All these regions together get the share 1 - (1 - m)(1 - w), where m is the sum of the shares that the earlier
+//! merging regions have so far. They divide this share in proportion to their weights. All other shares are multiplied
+//! by 1 - w. A region that covers the part also multiplies the weights of the earlier merging regions by 1 - w. Two
+//! regions that merge and both have the weight 1 thus give the mean of their weathers. In a perimeter, a smaller weight
+//! gives a smaller share. The shares are continuous in all weights.
 //!
 //! # Merging
 //! A quantity x of a part is the sum of a_k x_k: extinction (not visibility), rates of precipitation, temperature,
 //! humidity, pressure, wind (as a vector), cover of each cloud slot. The geometry of a layer is weighted by the amount
 //! of the layer, as in a change over time ([`Conditions::lerp`](crate::weather::Conditions::lerp)). The total
-//! extinction is the sum of its parts. Rayleigh scattering and ozone remain the world's.
+//! extinction is the sum of the merged extinctions of air, aerosol, fog and precipitation. Rayleigh scattering and
+//! ozone remain the world's.
 //!
 //! # Along a path
 //! The optical depth between two points is the integral of the sum of a_k(s) e_k(s), where e_k is the extinction of the
-//! medium k with its own heights. The path (`RegionWay`) is divided into pieces: long ones where all weights are
-//! constant, and pieces of at most P / 32 in a perimeter, or longer ones where a weight changes by less than 1e-3 from
-//! the middle to either end. Within a piece the shares are those of its middle, and the optical depth of each medium
-//! has a closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at
-//! its ends. The error is below 1e-3 of the depth in the perimeter (`tests/weather/regions.rs`).
+//! medium k with its own heights. The path (`RegionWay`) is divided into pieces. Where all weights are constant, pieces
+//! are long. In a perimeter a piece is at most P / 32 long, or longer if the weight changes by less than 1e-3 from its
+//! middle to either end. Within a piece the shares are those of its middle, and the optical depth of each medium has a
+//! closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at the
+//! perimeter's edges. The error is below 1e-3 of the optical depth in the perimeter (`tests/weather/regions.rs`).
 
 mod field;
 mod merge;

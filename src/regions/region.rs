@@ -19,8 +19,8 @@ const MOST_PERIMETER_M: f64 = 1e6;
 const MOST_SPEED_M_S: f64 = 400.0;
 /// Largest vertical wind, m/s.
 const MOST_VERTICAL_M_S: f64 = 50.0;
-/// Distance from a region's perimeter beyond which a point is taken as outside, m. On the far side of the planet the
-/// ground plan would lie over the region again.
+/// Distance from a region's perimeter beyond which a point is taken as outside, m. Otherwise points on the far side of
+/// the planet would lie inside the region again, because the plan is flat.
 pub(super) const FARTHEST_M: f64 = 3e5;
 
 /// Shape, place, motion and strength of a region.
@@ -54,15 +54,16 @@ pub struct WeatherRegion {
     pub plan: RegionPlan,
     /// Parts of `weather` that the region has. Default none.
     pub has: WeatherParts,
-    /// Parts that are averaged with those of earlier regions that merge them too. The region's other parts cover those
-    /// of earlier regions. Default none.
+    /// Parts that are averaged with the same parts of earlier regions that merge them too. The region's other parts
+    /// cover those of earlier regions. Default none.
     pub merges: WeatherParts,
-    /// Weather inside. Its `station_altitude_m` is ignored: heights count from the station of the world's weather.
+    /// Weather inside. Its `station_altitude_m` is ignored: heights are measured from the station of the world's
+    /// weather.
     pub weather: Weather,
     /// Values of the host that replace derived ones inside the region.
     pub overrides: Overrides,
-    /// Upward velocity of the wind above 100 m, m/s, \[-50, 50\]; it decreases linearly to 0 at the ground. A part of
-    /// [`WeatherParts::WIND`]. Default 0.
+    /// Upward velocity of the wind above 100 m, m/s, \[-50, 50\]. Below 100 m it decreases linearly to 0 at the ground.
+    /// A part of [`WeatherParts::WIND`]. Default 0.
     pub vertical_wind_m_s: f64,
 }
 
@@ -94,7 +95,7 @@ impl Default for WeatherRegion {
 }
 
 impl RegionPlan {
-    /// Checks that every field but the time is within its range. The context checks the time.
+    /// Checks that every field but `at_s` is within its range. The context checks `at_s`.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -154,7 +155,7 @@ impl RegionPlan {
 
     /// Returns the weight of the region at a point and time.
     pub(super) fn weight_at(&self, world: &WorldFrame, point: &PlanPoint, time_s: f64) -> f64 {
-        // A region far away needs no frame of its own.
+        // A region far away needs no axes.
         let moved_m = DVec2::from(self.velocity_m_s).length() * (time_s - self.at_s).abs();
         let away_m = (point.position - DVec3::from(self.center_m)).length();
         if self.strength == 0.0 || away_m > self.reach_m() + moved_m {
@@ -232,7 +233,7 @@ pub(crate) struct HeldRegion {
     pub plan: RegionPlan,
     /// Parts of the weather that the region has.
     pub has: WeatherParts,
-    /// Parts that are averaged with those of earlier regions that merge them too.
+    /// Parts that are averaged with the same parts of earlier regions that merge them too.
     pub merges: WeatherParts,
     /// Weather inside.
     pub conditions: Conditions,
@@ -267,7 +268,7 @@ impl HeldRegion {
     }
 }
 
-/// Checks that a set contains only known parts.
+/// Checks that `parts` contains only known parts of the weather.
 fn check_parts(name: &str, parts: WeatherParts) -> Result<()> {
     if WeatherParts::ALL.has(parts) {
         return Ok(());

@@ -8,16 +8,16 @@ use crate::scene::{WorldFrame, WorldKind};
 /// Mean radius of the Earth, m.
 const RADIUS_M: f64 = 6.371e6;
 
-/// Region on its plan, about a camera.
+/// Region as a camera sees it on the region's plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenRegion<'a> {
     pub region: &'a HeldRegion,
     /// Position of the camera on the plan, m to the right of the centre and ahead of it.
     pub camera_m: DVec2,
-    /// Vector to the right on the plan, (east, north) at the camera. Its length is the length on the plan of a metre at
-    /// the camera.
+    /// Vector to the right on the plan, (east, north) at the camera. Its length is the length, measured on the plan, of
+    /// a metre at the camera.
     pub right: DVec2,
-    /// Vector ahead on the plan, (east, north) at the camera, of the same length.
+    /// Vector ahead on the plan, (east, north) at the camera, as long as `right`.
     pub ahead: DVec2,
     /// Distance of the camera from the border, m, negative inside. Beyond the perimeter it may be less than the true
     /// distance, but not less than the perimeter.

@@ -23,7 +23,7 @@ pub enum RegionShape {
     Rectangle {
         /// Half extents to the right and along the heading, m, each \[1, 1e6\].
         half_m: [f64; 2],
-        /// Radius of the corners, m, \[0, the smaller half extent\]. The largest turns a square into a circle.
+        /// Radius of the corners, m, \[0, the smaller half extent\]. The largest radius turns a square into a circle.
         corner_radius_m: f64,
     },
     /// Ellipse.
@@ -70,8 +70,8 @@ impl RegionShape {
         }
     }
 
-    /// Returns the radius, m, of the smallest circle around the centre that holds the shape; for a rectangle with round
-    /// corners, of a larger one.
+    /// Returns the radius, m, of the smallest circle around the centre that holds the shape. For a rectangle with round
+    /// corners it is the larger circle through the corners without rounding.
     pub(crate) fn radius_m(&self) -> f64 {
         match self {
             Self::Rectangle { half_m, .. } => DVec2::from(*half_m).length(),

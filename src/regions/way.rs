@@ -31,9 +31,9 @@ pub(crate) struct RegionWay<'a> {
     length_m: f64,
 }
 
-/// Part of a path on the plan of a region.
+/// Stretch of a path on the plan of a region.
 struct PlanStretch {
-    /// Distances of the part's start, middle and end from the border, m, negative inside.
+    /// Distances of the stretch's start, middle and end from the border, m, negative inside.
     distances_m: [f64; 3],
     /// Half length on the plan, m.
     reach_m: f64,
@@ -92,7 +92,7 @@ impl<'a> RegionWay<'a> {
         self.over.list.iter().map(|on| on.region)
     }
 
-    /// Returns start, middle and end of a part of the path.
+    /// Returns start, middle and end of a stretch of the path.
     fn points(&self, from_m: f64, to_m: f64) -> [PlanPoint; 3] {
         [from_m, 0.5 * (from_m + to_m), to_m].map(|s| PlanPoint::new(self.over.world, self.start + self.direction * s))
     }

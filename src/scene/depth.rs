@@ -1,8 +1,8 @@
 //! Depth conventions: conversion of a host's projection to rays in the world, and of its depth samples to metres along
 //! the rays.
 //!
-//! A depth buffer holds the ratio of two linear forms of the eye-space point p = (x, y, z, 1). With the rows r_x, r_y,
-//! r_z and r_w of the host's projection:
+//! A depth buffer holds the ratio of two linear forms of p, the eye-space point in homogeneous coordinates. With the
+//! rows r_x, r_y, r_z and r_w of the host's projection:
 //!
 //! ```text
 //! d = (r_z . p) / (r_w . p)                                clip space from 0 to 1
@@ -321,7 +321,8 @@ impl ViewRays {
         (e - self.turn.x) / self.turn.y
     }
 
-    /// Returns the least distance between two surfaces at `range_m` whose depths differ in a buffer of `format`, m.
+    /// Returns the least distance, m, between two surfaces at about `range_m` whose depths differ in a buffer of
+    /// `format`.
     pub fn resolution_m(&self, range_m: f64, ndc: DVec2, format: DepthFormat) -> f64 {
         let depth = self.depth_at(range_m, ndc);
         let h = range_m * 1e-4;

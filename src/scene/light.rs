@@ -125,8 +125,8 @@ impl HostLight {
         [end, 1.0 / (inner - end).max(1e-4)]
     }
 
-    /// Returns the illuminance on a surface at `p` in the host's world that faces the lamp, lux per channel. Distances
-    /// below 0.1 m count as 0.1 m.
+    /// Returns the illuminance, lux per channel, at `p` in the host's world, on a surface that faces the lamp.
+    /// Distances below 0.1 m count as 0.1 m.
     pub fn illuminance_lux(&self, p: DVec3) -> [f64; 3] {
         let to = p - self.position_m;
         let d2 = to.length_squared().max(0.01);

@@ -15,7 +15,7 @@ const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
 const GEOID_M: f64 = 120.0;
 /// Lowest and highest altitude of a place, m.
 const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
-/// Tolerance of the altitude range, m: an altitude outside by at most this counts as the end of the range. At 1e9 m
+/// Tolerance of the altitude range, m: an altitude outside the range by at most this counts as its nearer end. At 1e9 m
 /// coordinates are rounded to 1e-7 m, and values computed from them to somewhat more.
 const ROUNDING_M: f64 = 1e-3;
 /// Farthest position from the world's origin, m.
@@ -55,8 +55,8 @@ impl Place {
 
     /// Computes the place of Earth-centred coordinates, with its altitude above the ellipsoid. Eight steps of the
     /// iteration tan B = (z + e^2 N(B) sin B) / rho give the latitude B, where rho is the distance from the axis and N
-    /// the radius of curvature in the prime vertical. It inverts [`Self::to_ecef`] within 1e-6 m, from 1000 km from the
-    /// Earth's centre up to 1e9 m.
+    /// the radius of curvature in the prime vertical. The result inverts [`Self::to_ecef`] within 1e-6 m, at 1000 km to
+    /// 1e9 m from the Earth's centre.
     pub fn from_ecef(p: DVec3) -> Self {
         let rho = libm::hypot(p.x, p.y);
         let longitude = libm::atan2(p.y, p.x);

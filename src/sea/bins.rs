@@ -28,7 +28,7 @@ const HANDOVER: [f64; 2] = [3.0, 4.0];
 /// Ratio of the tiles' highest wave number to the wave number at which they begin. At most three tiles of the ladder
 /// then have energy.
 const TILED_RANGE: f64 = 45.0;
-/// Highest wave number of the tiles, 1/m: the finest tile has none above.
+/// Highest wave number of the tiles, 1/m: the finest tile has no higher one.
 const FINEST_PER_M: f64 = 560.0;
 /// Ratio of the two wave numbers between which the tiles' energy fades to 0.
 const END_RATIO: f64 = 1.5;
@@ -36,7 +36,7 @@ const END_RATIO: f64 = 1.5;
 /// Form of the spreading of a system over directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Spreading {
-    /// Donelan and Banner's, by w / wp.
+    /// Donelan and Banner's, whose parameter depends on w / wp, the frequency over the peak frequency.
     WindSea,
     /// Donelan and Banner's form with one parameter beta at all frequencies.
     Even(f64),
@@ -81,7 +81,7 @@ impl WaveSystem {
     }
 }
 
-/// Direction of a system: the share of its waves that has one, and this direction, rad from east to north.
+/// Share of a system's waves that travel in the system's direction, and this direction, rad from east to north.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Heading {
     certain: f64,
@@ -109,7 +109,7 @@ impl Heading {
     }
 }
 
-/// Returns the unit vector (east, north) in which waves travel that come from a direction.
+/// Returns the unit vector (east, north) along which waves travel that come from the direction `from_deg`.
 pub(super) fn toward_of(from_deg: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(from_deg.to_radians());
     DVec2::new(-sin, -cos)
@@ -120,7 +120,8 @@ pub(super) fn wrapped(angle: f64) -> f64 {
     angle - 2.0 * PI * (angle / (2.0 * PI) + 0.5).floor()
 }
 
-/// Returns the frequency of the middle of a bin, rad/s.
+/// Returns the frequency at a place on the grid, rad/s. A bin begins at the place of its own number and has its middle
+/// 0.5 beyond that.
 pub(super) fn bin_rad_s(bin: f64) -> f64 {
     LOWEST_RAD_S * libm::exp2(bin / BINS_PER_OCTAVE as f64)
 }
@@ -191,7 +192,7 @@ impl Bins {
                 drawn += self.tiles_m2[b][s] + self.waves_m2[b][s];
             }
         }
-        // What lies beyond the tiles' end is some 1e-4 of the variance; the drawn waves make up for it.
+        // Waves beyond the tiles' end have some 1e-4 of the variance. The drawn waves are strengthened by as much.
         let factor = if drawn > 0.0 { asked / drawn } else { 1.0 };
         self.waves_m2.iter_mut().chain(&mut self.tiles_m2).flatten().for_each(|e| *e *= factor);
         self.level.iter_mut().for_each(|level| *level *= factor);
@@ -259,7 +260,8 @@ impl Bins {
         range
     }
 
-    /// Returns the share of the energy at a frequency that tiles draw, and the share of these tiles that is kept.
+    /// Returns the share of the energy at a frequency that belongs to tiles, and the share of the tiles' energy that is
+    /// kept.
     pub fn shares(&self, w_rad_s: f64, k_per_m: f64) -> (f64, f64) {
         let log = libm::log(w_rad_s / self.peak_rad_s);
         let tiled = smoothstep(libm::log(HANDOVER[0]), libm::log(HANDOVER[1]), log);

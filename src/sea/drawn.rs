@@ -138,7 +138,8 @@ impl DrawnTiles {
     }
 }
 
-/// Calls `act` with each mip level of the texels in `work[0]`: each texel is the mean of four of the level before.
+/// Calls `act` with each mip level of the texels in `work[0]`: each texel is the mean of four texels of the next finer
+/// level.
 fn each_mip(work: &mut [Vec<Vec4>; 2], mut act: impl FnMut(usize, &[Vec4])) {
     for mip in 0..MIPS {
         let side = SIDE >> mip;
@@ -161,8 +162,9 @@ fn store(level: &mut HalfTexels, t: usize, texels: &[Vec4]) {
     to.as_flattened_mut().reinterpret_cast_mut::<f16>().convert_from_f32_slice(bytemuck::cast_slice(texels));
 }
 
-/// Writes the slopes and the compression at a tile's samples: the derivatives of its B-splines there. Weights are 1/6,
-/// 2/3, 1/6 across, and half the difference along.
+/// Writes the slopes and the compression at a tile's samples: the derivatives of its B-splines there. A derivative
+/// along an axis is half the difference of the two neighbours on that axis, averaged across the axis with the weights
+/// 1/6, 2/3 and 1/6.
 fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
     let factor = (SIDE as f64 / length_m / 12.0) as f32;
     let row = |y: usize| &shapes[(y % SIDE) * SIDE..][..SIDE];
@@ -189,7 +191,8 @@ fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
 /// times longer than the shortest ripples.
 pub(super) const FOAM_MIPS: f32 = 0.8;
 
-/// Makes the compression of texels smoother, by the next coarser level, which has `side` texels along a side.
+/// Makes the compression of a level's texels smoother, by mixing in that of the next coarser level, which has `side`
+/// texels along a side.
 fn smooth_compression(texels: &mut [Vec4], coarser: &[Vec4], side: usize) {
     let beside =
         |at: usize| (at / 2, if at.is_multiple_of(2) { (at / 2 + side - 1) % side } else { (at / 2 + 1) % side });
@@ -207,8 +210,8 @@ fn smooth_compression(texels: &mut [Vec4], coarser: &[Vec4], side: usize) {
 /// Returns the covariances of the first two values that a bilinear look-up finds, over all places. Its weights along an
 /// axis are 1 - a and a with a between 0 and 1. Their mean products over a are 1/3 for a texel with itself and 1/6 for
 /// two neighbours. Over a bilinear patch the product of two functions has the mean 1/9 of the products at the same
-/// corners, 1/18 of those at neighbours and 1/36 of those across; the sum over all patches has each pair of texels
-/// several times.
+/// corners, 1/18 of those at neighbours and 1/36 of those at opposite corners. The sum over all patches has each pair
+/// of texels several times.
 fn filtered_covariances(texels: &[Vec4], side: usize) -> [f64; 3] {
     let mut sums = [0.0f64; 3];
     for y in 0..side {
@@ -217,7 +220,7 @@ fn filtered_covariances(texels: &[Vec4], side: usize) -> [f64; 3] {
         for x in 0..side {
             let next = if x + 1 == side { 0 } else { x + 1 };
             let [a, b, c, d] = [row[x], row[next], next_row[x], next_row[next]];
-            // What each texel is multiplied by: itself, and its neighbours to one side.
+            // Factor of each texel: the weighted sum of the texel itself and its neighbours to one side.
             let near = 4.0 / 9.0 * a + 2.0 / 9.0 * (b + c) + 1.0 / 18.0 * d;
             squares += a * near + 1.0 / 18.0 * (b * c);
             let half = 1.0 / 9.0 * (b + c) + 1.0 / 36.0 * d;

@@ -22,7 +22,7 @@ pub fn ice_attenuation_per_m(frequency_hz: f64) -> f64 {
     2.12e-3 * square + 4.59e-2 * square * square
 }
 
-/// Returns the share of the height of waves of a period that passes a width of ice, m.
+/// Returns the share of their height that waves of a period keep behind ice of the width `width_m`, m.
 pub fn height_through_ice(period_s: f64, width_m: f64) -> f64 {
     libm::exp(-0.5 * ice_attenuation_per_m(1.0 / period_s) * width_m)
 }

@@ -159,8 +159,8 @@ impl Transform {
         }
     }
 
-    /// Transforms a square in place, of which only rows within `filled` of row 0 (cyclically) are not zero. The first
-    /// index is the row (y), the second the column (x).
+    /// Transforms a square in place. Only rows at most `filled` away from row 0, counted cyclically, may have values
+    /// other than zero. The first index is the row (y), the second the column (x).
     pub fn square(&mut self, square: &mut [[Complex; SIDE]], filled: usize) {
         let Self { factors, order, lines } = self;
         for (n, rows) in square.chunks_exact_mut(LINES).enumerate() {

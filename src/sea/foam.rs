@@ -41,16 +41,17 @@ pub fn callaghan_share(wind_m_s: f64) -> f64 {
 }
 
 /// Returns the compression c such that the surface is compressed by more than c on `share` of its area, for a sum of
-/// waves whose compression has the variance `variance`: the mean square slope of the drawn waves if their horizontal
-/// motion is that of Gerstner's waves. A compressed place covers 1 - c of its area at rest; therefore the share is
-/// Q(c / s) - s q(c / s) with the normal distribution's tail Q and density q.
+/// waves whose compression has the variance `variance`. If their horizontal motion is that of Gerstner's waves, this is
+/// the mean square slope of the drawn waves. A compressed place covers 1 - c of its area at rest. Therefore the share
+/// is Q(c / s) - s q(c / s) with the root s of the variance, and the tail Q and the density q of the normal
+/// distribution.
 pub fn fold_threshold(share: f64, variance: f64) -> f64 {
     let s = variance.max(0.0).sqrt();
     if s <= 0.0 || share <= 0.0 {
         return f64::INFINITY;
     }
     let area = |x: f64| compressed_area(s * x, 0.0, s);
-    // The area falls from x = -1/s on, where whole compression begins; it is sought where places are compressed.
+    // The area falls with x up to x = 1/s, at which c is 1. The search covers all c from -1 to 1.
     let (mut low, mut high) = (-1.0 / s, 1.0 / s);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -59,11 +60,11 @@ pub fn fold_threshold(share: f64, variance: f64) -> f64 {
     s * 0.5 * (low + high)
 }
 
-/// Returns the area of what is compressed by more than a threshold, over its area at rest, where a normal distribution
-/// of deviation `s` is added to a known compression.
+/// Returns the area of the water that is compressed by more than a threshold, over the area of all the water at rest.
+/// The compression is a known one plus one that has a normal distribution with the standard deviation `s`.
 fn compressed_area(threshold: f64, known: f64, s: f64) -> f64 {
     let x = (threshold - known) / s;
-    // The rest is a billionth. Without it calm water has no foam at all.
+    // The tail beyond is a billionth. It is left out so that calm water has no foam at all.
     if x > FARTHEST_TAIL {
         return 0.0;
     }
@@ -80,8 +81,8 @@ pub(super) struct FoamLaw {
     pub variance: f64,
     /// Standard deviation of the compression by short waves, whose past is known by their variance alone.
     pub short_deviation: f64,
-    /// Weight of foam at each age: the share of its first area that is left, times one factor for all ages. With it,
-    /// foam of all ages covers the area that breaking waves do not.
+    /// Weight of foam at each age: the share of the foam's first area that is left, times one factor for all ages. With
+    /// this factor, foam of all ages covers the area under whitecaps that breaking waves do not cover.
     pub kept: [f64; AGES],
 }
 
@@ -95,7 +96,7 @@ impl FoamLaw {
         let salt = (salinity_g_kg / SALT_G_KG).clamp(0.0, 1.0);
         let decay_s = FRESH_DECAY_S + (SALT_DECAY_S - FRESH_DECAY_S) * salt;
         let left: [f64; AGES] = std::array::from_fn(|i| libm::exp(-AGE_STEP_S * (i + 1) as f64 / decay_s));
-        // What is left of all ages covers the rest of the share.
+        // The foam that is left at all ages covers the rest of the share.
         let factor = (1.0 / BREAKING_SHARE - 1.0) / left.iter().sum::<f64>();
         Self {
             from: fold_threshold(BREAKING_SHARE * share, all),
@@ -106,7 +107,7 @@ impl FoamLaw {
     }
 
     /// Returns the share of a place under foam, from its compression now and that by long waves at each age.
-    /// `height_share` is the height of the waves over that on the open sea.
+    /// `height_share` is the ratio of the height of the waves to that on the open sea.
     pub fn share(&self, now: f64, past: [f64; AGES], height_share: f64) -> f64 {
         let edge = EDGE * self.from.abs() + LEAST_EDGE;
         let breaking = smoothstep(self.from - edge, self.from + edge, now);

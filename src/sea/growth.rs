@@ -23,15 +23,15 @@ const PEAK_POWER: f64 = -0.27;
 /// Coefficients of the time that a fetch needs: t = 77.23 F^0.67 / (U^0.34 g^0.33) (Coastal Engineering Manual 2002).
 const DURATION: f64 = 77.23;
 const DURATION_POWER: f64 = 0.67;
-/// Size of the region, m, that the waves of an open sea leave after the wind has fallen: that of a depression.
+/// Size of the region, m, that the waves of an open sea leave after the wind has fallen: that of a low-pressure area.
 const OPEN_REGION_M: f64 = 5e5;
 /// Range of the peak, rad/s: periods of 31 s to 1 s.
 const PEAKS_RAD_S: [f64; 2] = [0.2, 6.0];
 /// Wind up to which the sea is taken as calm, m/s.
 const CALM_M_S: f64 = 0.5;
-/// Times, s, in which the difference from the weather falls to 1/e: that of the peak and of a given height, that of the
-/// mean direction, and that of the shortest waves. They keep every amplitude continuous when the weather changes at
-/// once.
+/// Times, s, in which the sea's difference from the weather falls to 1/e: for the peak and a given height, for the mean
+/// direction, and for the shortest waves. These times keep every amplitude continuous when the weather changes
+/// abruptly.
 const PEAK_TIME_S: f64 = 600.0;
 const TURNING_TIME_S: f64 = 3600.0;
 const SHORT_TIME_S: f64 = 60.0;
@@ -71,8 +71,8 @@ pub fn developed_variance_m2(wind_m_s: f64) -> f64 {
     quarter * quarter
 }
 
-/// Returns the variance, m^2, that a wind keeps up: that of the fetch, at most the fully developed sea. `None` is the
-/// open sea.
+/// Returns the variance, m^2, that a wind keeps up: that of the fetch, at most that of the fully developed sea.
+/// `fetch_m` is `None` for the open sea.
 pub fn kept_variance_m2(wind_m_s: f64, fetch_m: Option<f64>) -> f64 {
     let developed = developed_variance_m2(wind_m_s);
     match fetch_m {
@@ -114,8 +114,8 @@ pub(super) struct WaveForcing {
     /// Unit vector in which the wind blows, east and north; zero without wind.
     pub toward: DVec2,
     pub fetch_m: Option<f64>,
-    /// Share in which a height that the weather gives replaces that of the wind, 0 to 1, and the variance of the given
-    /// height, m^2.
+    /// Share, 0 to 1, by which a height that the weather gives replaces the height that the wind raises, and the
+    /// variance of the given height, m^2.
     pub given: f64,
     pub given_m2: f64,
     /// Variance of the swell, m^2, its peak, rad/s, and the unit vector in which it travels.
@@ -187,8 +187,9 @@ impl GrowthState {
         }
     }
 
-    /// Returns the state after `dt_s` more seconds under a constant weather, in closed form: two steps in succession
-    /// are one step of their sum.
+    /// Returns the state after `dt_s` more seconds under a constant weather, in closed form. Two steps in succession
+    /// give the same state as one step of both lengths together, except that a fading sea takes the group speed at the
+    /// start of a step.
     pub fn after(&self, f: &WaveForcing, dt_s: f64) -> Self {
         let left = |time_s: f64| libm::exp(-dt_s / time_s);
         let toward = |now: f64, aim: f64, time_s: f64| aim + (now - aim) * left(time_s);

@@ -1,4 +1,5 @@
-//! The sea of a context: its settings, the state of growth that the timeline has forgotten, and what queries keep.
+//! The sea of a context: its settings, the states of growth after changes that the timeline has forgotten, and the
+//! results that queries keep.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -36,7 +37,7 @@ pub(crate) struct HeldSea {
     wakes: Mutex<KeptWakes>,
     /// Revision of the settings: a number that no other settings have had.
     revision: u64,
-    /// States at the ends of changes that the timeline has forgotten or may forget next.
+    /// States of growth at the ends of changes that the timeline has forgotten or may forget next.
     kept: Vec<DatedGrowth>,
     /// Values that follow from the settings, from `kept` and from the timeline; empty until the first query.
     workshop: Mutex<Option<Box<SeaWorkshop>>>,
@@ -59,7 +60,7 @@ struct KeptWakes {
     wakes: Arc<Vec<Wake>>,
 }
 
-/// Saved form of the settings and of the state that the timeline has forgotten.
+/// Saved form of the settings and of the state of growth after the changes that the timeline has forgotten.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedSea {
@@ -86,11 +87,11 @@ struct SavedSea {
     without_whitecaps: bool,
     #[serde(default, skip_serializing_if = "is_default")]
     only_in_regions: bool,
-    /// Time, then the fields of the state.
+    /// Time, then the fields of the state of growth in the order of [`numbers_of`].
     grown: Option<[f64; 12]>,
 }
 
-/// Most tracks: those of the hulls that the host lists, and as many that have ended.
+/// Largest number of tracks: those of the hulls that the host lists, and as many that have ended.
 pub(super) const MOST_TRACKS: usize = 2 * MAX_SEA_HULLS;
 /// Keys of the sea, of its regions and of its hulls in a saved state.
 const KEY: &str = "sea";
@@ -288,7 +289,7 @@ impl HeldSea {
     /// Replaces the regions.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for too many, or naming the region and its field; nothing changes then.
+    /// [`Status::InvalidArgument`] for too many regions, or naming the region and its field; nothing changes then.
     pub fn set_regions(&mut self, world: &World, regions: Vec<SeaRegion>) -> Result<()> {
         self.regions = placed(world, regions)?;
         Ok(())
@@ -303,8 +304,8 @@ impl HeldSea {
     /// listed stay until they have faded.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for too many, for two of the same number, or naming the hull and its field; nothing
-    /// changes then.
+    /// [`Status::InvalidArgument`] for too many hulls, for two hulls with the same `id`, or naming the hull and its
+    /// field; nothing changes then.
     pub fn set_hulls(&mut self, world: &World, hulls: &[SeaHull]) -> Result<()> {
         if hulls.len() > MAX_SEA_HULLS {
             return Err(Error::range("hulls", &format!("at most {MAX_SEA_HULLS} hulls"), hulls.len()));
@@ -327,7 +328,7 @@ impl HeldSea {
             }
         }
         self.tracks.retain(|track| track.has_waves(world.time_s));
-        // The oldest of those that have ended go first.
+        // Of the tracks that have ended, the one that was added first goes first.
         while self.tracks.len() > MOST_TRACKS {
             let gone = self.tracks.iter().position(|track| track.ended_s.is_some()).unwrap_or(0);
             self.tracks.remove(gone);
@@ -360,7 +361,7 @@ impl HeldSea {
         &self.regions
     }
 
-    /// Returns the water at a position and time; `None` where there is none around.
+    /// Returns the water at a position and time; `None` where there is no water, nor a dry region with water around it.
     pub fn water_at(&self, position: DVec3, time_s: f64) -> Option<WaterBody> {
         let is_sea = self.settings().is_some_and(|settings| !settings.only_in_regions);
         water_at(&self.regions, is_sea, position, time_s)
@@ -383,7 +384,7 @@ impl HeldSea {
     /// Returns the surface at a time, kept from an earlier query or worked out now.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] without a sea; for times as [`World::weather_at`].
+    /// [`Status::WrongOrder`] without a sea; for a time that is refused, the error of [`World::weather_at`].
     pub fn surface(&self, world: &World, time_s: f64) -> Result<Arc<SeaSurface>> {
         world.over().check_time(time_s)?;
         let past = (&world.timeline, world.timeline_revision());

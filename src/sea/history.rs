@@ -5,7 +5,7 @@
 //! change alone. The state at a time therefore depends neither on earlier calls nor on changes that begin later.
 //!
 //! The weather before all changes is taken to have lasted for ever. If the first change of all takes no time, the
-//! weather that it brings is taken so too, because it is the weather with which a host begins.
+//! weather after it is also taken to have lasted for ever, because a host begins with that weather.
 
 use super::growth::{GrowthState, WaveForcing};
 use crate::weather::Timeline;
@@ -30,7 +30,7 @@ fn led(timeline: &Timeline, fetch_m: Option<f64>, start: &DatedGrowth, until_s: 
     let forcing = |time_s: f64| WaveForcing::new(&timeline.at(time_s), fetch_m);
     if step_s.is_infinite() {
         let lasting = forcing(start.time_s);
-        // A sea that is at rest stays so to the last bit.
+        // A sea in the state of a weather that has lasted for ever stays the same to the last bit.
         let is_resting = start.state == GrowthState::lasting(&lasting);
         return if is_resting { start.state } else { start.state.after(&lasting, until_s - start.time_s) };
     }

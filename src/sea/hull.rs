@@ -1,4 +1,4 @@
-//! Hulls that raise wakes: what the host says of each.
+//! Hulls that raise wakes, as the host describes them.
 
 use serde::{Deserialize, Serialize};
 

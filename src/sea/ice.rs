@@ -1,4 +1,4 @@
-//! Ice on the sea: what a field of floes leaves of waves of a frequency.
+//! Ice on the sea: the share of its amplitude that a wave keeps in a field of floes.
 //!
 //! Two laws act together. Energy fades along the way through the ice at the rate of Meylan, Bennetts and Kohout (2014).
 //! The rate was measured where floes covered nearly all of the sea; here it is multiplied by the share that floes

@@ -1,5 +1,6 @@
-//! The single waves at a time, four side by side. Phases are reduced in f64; sines, amplitudes and sums are in f32,
-//! always in one order, so that every machine gives the same bits. Their rounding moves a height by some micrometres.
+//! The single waves at a time, four side by side. Phases are reduced in f64; sines, amplitudes and sums are in f32.
+//! Terms are always added in the same order, so that every machine gives the same bits. Rounding moves a height by some
+//! micrometres.
 
 use std::f64::consts::TAU;
 
@@ -88,7 +89,7 @@ fn sum(v: Vec4) -> f64 {
     (f64::from(v.x) + f64::from(v.y)) + (f64::from(v.z) + f64::from(v.w))
 }
 
-/// A single wave at the surface's time, for what draws it.
+/// A single wave at the surface's time, in the form that drawing uses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceWave {
     /// Wave vector, turns per metre.

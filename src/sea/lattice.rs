@@ -1,15 +1,16 @@
 //! Single waves on a fixed lattice of frequencies and directions.
 //!
-//! The lattice is a tree of cells: half octaves of frequency over the whole circle, halved again and again in direction
-//! and frequency. Each cell has one wave, whose frequency, direction and phase follow from the seed and the cell alone.
-//! The spectrum decides only which cells hold energy, so a change of weather changes amplitudes and never a phase.
-//! Cells are jittered, so the sum never repeats.
+//! The lattice is a tree of cells. Its roots are half octaves of frequency over the whole circle of directions. Cells
+//! are halved again and again in direction and frequency. Each cell has one wave, whose frequency, direction and phase
+//! follow from the seed and the cell alone. The spectrum decides only which cells hold energy, so a change of weather
+//! changes amplitudes and never a phase. Cells are jittered, so the sum never repeats.
 //!
-//! A cell hands its energy to its halves. Of each half's energy a share is handed down that rises smoothly from 0 at
-//! 0.94 of a threshold to 1 at the threshold. The energy that a weak half does not take goes to the other half if that
-//! is strong enough. Otherwise it stays with the cell's own wave. So every sea has about the same number of waves, all
-//! about equally strong. Every amplitude is a continuous function of the spectrum, and the energy of each half octave
-//! is kept exactly.
+//! A cell hands its energy to its halves. The share of a half's energy that is handed down depends on the half's
+//! measure, a weighted sum of its energy and its slope. The share rises smoothly from 0 at 0.94 of a threshold to 1 at
+//! the threshold. The energy that a weak half does not take goes to the other half if that half is strong enough.
+//! Otherwise the energy stays with the cell's own wave. So every sea has about the same number of waves, all about
+//! equally strong. Every amplitude is a continuous function of the spectrum, and the energy of each half octave is kept
+//! exactly.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +56,7 @@ pub(super) struct SeaWave {
     pub frequency_hz: f64,
     /// Phase at time and place 0, turns.
     pub phase: f64,
-    /// Horizontal over vertical amplitude: coth(k h).
+    /// Ratio of horizontal to vertical amplitude: coth(k h).
     pub stretch: f64,
 }
 

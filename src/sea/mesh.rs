@@ -3,13 +3,13 @@
 //! A level has blocks of 8 by 8 cells. Its cells are twice as long as those of the level inside it. Around the camera a
 //! level is a square of 8 by 8 blocks with a hole where the finer level lies (geometry clipmaps, Losasso and Hoppe
 //! 2004). Towards its outer edge every second vertex moves onto its even neighbour, until the level has the vertices of
-//! the next coarser one (continuous distance-dependent level of detail, Strugar 2010). The distance is the largest of
-//! the two horizontal coordinates and the camera's height, so that a camera that rises leaves the finest level without
-//! a jump.
+//! the next coarser one (continuous distance-dependent level of detail, Strugar 2010). How far vertices have moved
+//! depends on their distance from the camera. This distance is the largest of the two horizontal coordinates and the
+//! camera's height, so that a camera that rises leaves the finest level without a jump.
 //!
-//! Vertices are whole numbers of the finest cell. Two levels that meet therefore have the same bits at their common
-//! vertices, and the same function of the place displaces both: there are no cracks. Vertices stay at their places in
-//! the world while the camera moves: nothing swims.
+//! Coordinates of vertices are whole multiples of the finest cell. Two levels that meet therefore have the same bits at
+//! their common vertices, and the same function of the place displaces both: there are no cracks. Vertices stay at
+//! their places in the world while the camera moves: nothing swims.
 
 use glam::DVec2;
 
@@ -20,7 +20,8 @@ pub(super) const CELLS: u32 = 8;
 /// Blocks from the middle of a level to its edge.
 const HALF: i64 = 4;
 /// Distances from the camera, in sides of a level's blocks, between which its vertices move onto those of the next
-/// coarser one. The hole of a level ends nearer than the first (2.5), and the level ends beyond the second (3).
+/// coarser one. The hole of a level ends before the first of these distances, at 2.5 sides. The level itself ends
+/// beyond the second, at 3 sides.
 pub(super) const MORPH: [f64; 2] = [2.52, 2.98];
 /// Levels, at most: the coarsest has cells of 32 km.
 pub(super) const LEVELS: u32 = 21;
@@ -46,8 +47,8 @@ pub(super) struct MeshBlock {
     pub corner: [i32; 2],
     /// Level: the block's cells are 2^level finest cells long.
     pub level: i32,
-    /// [`REGION_MARK`] if regions may reach the block, plus [`WAKE_MARK`] if wakes may. Blocks of other marks are drawn
-    /// apart.
+    /// [`REGION_MARK`] if regions may reach the block, plus [`WAKE_MARK`] if wakes may. Blocks with different marks are
+    /// drawn separately.
     pub marks: i32,
 }
 
@@ -128,13 +129,13 @@ pub(super) fn side_m(level: u32) -> f64 {
     f64::from(CELLS) * FINEST_M * f64::from(1u32 << level)
 }
 
-/// Returns the middle of a level around a place: the nearest corner of four blocks of the next level.
+/// Returns the middle of a level around a place: the nearest place at which four blocks of the next coarser level meet.
 fn middle_m(place_m: DVec2, level: u32) -> DVec2 {
     let step = 2.0 * side_m(level);
     (place_m / step).round() * step
 }
 
-/// Returns the vertices' indices of a block's triangles.
+/// Returns the vertex indices of a block's triangles.
 pub(super) fn indices() -> Vec<u16> {
     let row = CELLS as u16 + 1;
     let cell = |i: u16, j: u16| {

@@ -1,64 +1,68 @@
-//! The sea: waves that have the spectrum and the height that were asked for, queries of their surface, and its picture.
+//! The sea: waves with the spectrum and the height that the host asks for, queries of the surface, and the drawn
+//! picture.
 //!
-//! The surface is a function of (seed, time, settings, the weather's timeline). All views and machines see the same
-//! sea, and any time can be asked, past or future. Waves, laws and queries are in f64; tests compare the picture with
-//! them.
+//! The surface is a function of (seed, time, settings, the weather's timeline). All views and machines have the same
+//! sea, and queries may ask for any time, past or future. Waves, laws and queries are in f64; tests compare the picture
+//! with them.
 //!
 //! # Model
 //! * [`spectrum`]: JONSWAP with the depth function of TMA. The height comes from the host, from the weather, or from
 //!   one law of growth (Kahma and Calkoen 1992 by fetch and duration, capped by Pierson and Moskowitz 1964); the level
-//!   of the spectrum is solved for it. [`spreading`] is Donelan and Banner's, for swells narrowed by Horvath's (2015)
-//!   parameter.
-//! * Waves longer than about a tenth of those at the peak are single waves on a fixed lattice of frequencies and
-//!   directions, 250 to 310 at a time. They do not repeat.
-//! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. They hold about
-//!   0.6 % of the variance, and half of the slopes. They end where the mean square slope of all drawn waves reaches
-//!   that of Cox and Munk (1954) for the wind, at the latest at 45 times the wave number at which they begin. Of
-//!   shorter waves only the variance is known.
-//! * Every wave has a fixed frequency, direction and phase and an amplitude that follows the spectrum: no random
-//!   amplitudes, so the height holds for every seed; and no phase that the weather could move.
-//! * [`SingleWave`]s of the host are added to the surface, after the spectrum.
+//!   of the spectrum is solved for this height. The spreading over directions ([`spreading`]) is Donelan and Banner's.
+//!   For swells it is narrowed by Horvath's (2015) parameter.
+//! * Waves longer than about a tenth of the wave length at the peak are single waves on a fixed lattice of frequencies
+//!   and directions, 250 to 310 at a time. They do not repeat.
+//! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. The tiles hold
+//!   about 0.6 % of the variance, and half of the slopes. Their waves end where the mean square slope of all drawn
+//!   waves reaches that of Cox and Munk (1954) for the wind, at the latest at 45 times the wave number at which they
+//!   begin. Of shorter waves only the variance of the slopes is known.
+//! * Every wave has a fixed frequency, direction and phase, and an amplitude that follows the spectrum. No amplitude is
+//!   random, so every seed gives the same significant height. The weather moves no phase.
+//! * [`SingleWave`]s of the host are added to the waves of the spectrum.
 //! * [`SeaIce`] dampens each wave by its frequency and length.
 //! * [`SeaHull`]s raise wakes along their tracks: bow and stern waves by length, beam, draught and speed (Michell
-//!   1898). They are carried on as rays, so that they bend where the hull turned. The hull's wash adds foam.
-//! * [`SeaRegion`]s are water with a level or a share of the waves of its own, or places without water.
+//!   1898). The waves travel as rays, so that wakes bend where the hull turned. The hull's wash adds foam.
+//! * [`SeaRegion`]s are waters with their own level or their own share of the wave height, or places without water.
 //! * Waves move the water sideways as well (Gerstner 1809), so crests are sharper than troughs; the mean level is
-//!   corrected for it. A query solves for the particle that is at the place.
+//!   corrected for this motion. A query solves for the particle that is at the queried place.
 //!
-//! [`dispersion`], [`slopes`], [`water`], [`foam`], [`shore`], [`wake`] and [`far`] have the laws of lengths and
-//! speeds, slopes, light, whitecaps, shores, ships' wakes, ice and the horizon, each with its author.
+//! The laws, each with its author, are in [`dispersion`] (lengths and speeds), [`slopes`], [`water`] (light), [`foam`]
+//! (whitecaps), [`shore`], [`wake`] (ships' wakes) and [`far`] (ice and the horizon).
 //!
 //! # Picture
-//! The sea is an opaque thing in the host's depth. Its mesh is square rings around the camera on a lattice that is
-//! fixed in the world (`mesh.rs`). A vertex sums the single waves and looks the tiles up, as far as the cells there
-//! resolve them. Waves that the cells do not resolve are in the slopes of the pixels. Of waves that a pixel does not
-//! resolve, only the covariances of the slopes are known. All slopes together have Cox and Munk's variance at every
-//! distance (`shaders/sea/surface.wgsl`). Pixels mirror the sky with the mean reflectance of such slopes, sun and moon
-//! by their distribution, and show the light out of the water (`shaders/sea/light.wgsl`). Foam is where waves are
-//! compressed, and where they were 0.9 to 3.6 s ago: it stays with the water, thins, and breaks up into lace and, in
-//! strong wind, streaks (`shaders/sea/foam.wgsl`). Phases are reduced in f64 about an anchor near the camera.
+//! The sea is drawn as an opaque surface into the host's depth. Its mesh is square rings around the camera on a lattice
+//! that is fixed in the world (`mesh.rs`). A vertex sums the single waves and looks the tiles up, as far as the mesh's
+//! cells there resolve these waves. Waves that the cells do not resolve appear in the slopes of the pixels. Of waves
+//! that a pixel does not resolve, only the covariances of the slopes are known. All slopes together have Cox and Munk's
+//! variance at every distance (`shaders/sea/surface.wgsl`). Pixels mirror the sky with the mean reflectance of such
+//! slopes, and sun and moon by the distribution of the slopes. They also show the light that comes out of the water
+//! (`shaders/sea/light.wgsl`). Foam lies where the water is compressed, and where it was 0.9 to 3.6 s ago. Foam stays
+//! with the water, thins, and breaks up into lace and, in strong wind, into streaks (`shaders/sea/foam.wgsl`). Phases
+//! are reduced in f64 about an anchor near the camera.
 //!
 //! # Settings
 //! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
-//! settings there is no sea. Regions have a call of their own, since hulls move.
+//! settings there is no sea. Regions are set by a call of their own, since hulls move.
 //!
 //! # Cost
-//! None without a query. A new time costs some milliseconds once (15 transforms of 128^2 in f64); a point at a time
-//! that was asked before costs some microseconds. A weather that changes adds some milliseconds a time for its
-//! spectrum. The sums of two times are kept: 7 MB. A view holds 2 MB of textures; nothing is worked out for it where no
-//! sea is seen.
+//! There is no cost without a query. The first query of a time costs some milliseconds (15 transforms of 128^2 in f64).
+//! Each further query of that time costs some microseconds. While the weather changes, each time costs some more
+//! milliseconds for its spectrum. The sums of two times are kept: 7 MB. A view holds 2 MB of textures, and computes
+//! nothing while no sea is seen.
 //!
 //! # Error
-//! Significant height within 1 % and mean level within 5 mm over 100 wave lengths square; variance of each half octave
-//! of frequency exact, but for the strengthening by less than 1 % that narrow crests need to keep the height; the place
-//! of a query within 1 mm. [`SeaPoint::height_error_m`] bounds the height. Heights 300 m to 5 km
-//! apart correlate by at most 0.26 more than the spectrum's own do. Waves are linear: crests of steep seas are
-//! some percent too low, and the surface's heights are hardly skewed.
+//! Over a square of 100 wave lengths the significant height is within 1 % and the mean level within 5 mm. The variance
+//! of each half octave of frequency is exact, except for the strengthening by less than 1 % that makes up for narrow
+//! crests. The particle of a query is within 1 mm of the queried place. [`SeaPoint::height_error_m`] bounds the error
+//! of the height. The correlation of heights 300 m to 5 km apart differs by at most 0.26 from that of the spectrum
+//! itself. Waves are linear: crests of steep seas are some percent too low, and the surface's heights are hardly
+//! skewed.
 //!
 //! # What is not here
 //! No shore: its laws are here, but the surface does not use them yet. Wakes are those of deep water. A lake has the
-//! waves of the sea around it, as high as its region says; pictures show no lakes. There is no `candidates.rs`, because
-//! there is one way to draw the sea; no `reference.rs`, because all that queries use is the f64 reference.
+//! waves of the sea around it, with the height that its region sets. Pictures show no lakes. There is no
+//! `candidates.rs`, because there is one way to draw the sea. There is no `reference.rs`, because the f64 code of the
+//! queries is the reference.
 
 mod bins;
 mod clarity;

@@ -24,7 +24,7 @@ use crate::weather::{Timeline, wave_height_of_state_m};
 
 /// Peak enhancement of swells: between that of a wind sea and the 10 of very distant swells (Goda 2010, 2.3).
 const SWELL_GAMMA: f64 = 7.0;
-/// Surfaces that are kept, each for a time.
+/// Number of surfaces that are kept, each for one time.
 const KEPT_SURFACES: usize = 2;
 /// Largest share of the variance that narrow crests take and strengthening gives back.
 const MOST_LOST: f64 = 0.05;
@@ -42,10 +42,11 @@ pub struct SeaStatistics {
     pub significant_height_m: f64,
     /// Period of the strongest waves, s; that of the highest single wave if there are no others, 0 without waves.
     pub peak_period_s: f64,
-    /// Direction that the waves come from, degrees clockwise from true north, the mean weighted by variance; 0 without
+    /// Mean direction that the waves come from, weighted by variance, degrees clockwise from true north; 0 without
     /// waves.
     pub mean_from_deg: f64,
-    /// Mean square slope of the surface: Cox and Munk's for the wind, or that of the waves if it is larger.
+    /// Mean square slope of the surface: Cox and Munk's (1954) for the wind, less under ice, or `drawn_square_slope` if
+    /// that is larger.
     pub mean_square_slope: f64,
     /// Mean square slope of the waves of the surface. The rest of `mean_square_slope` is in waves too short for the
     /// surface.
@@ -81,7 +82,7 @@ pub(super) struct PreparedSea {
     swells: [WaveSystem; MAX_SWELLS],
     /// Single waves of the settings, as ice leaves them.
     singles: Vec<SeaWave>,
-    /// The weather's swell, but for height, period and direction.
+    /// The weather's swell, except for height, period and direction.
     weathers_swell: WaveSystem,
 }
 
@@ -144,7 +145,7 @@ impl PreparedSea {
     fn wind_sea(&self, grown: &GrowthState) -> (WaveSystem, f64, f64) {
         let toward = match self.settings.from_deg {
             Some(deg) => toward_of(deg),
-            // If a height is set and there has been no wind, the waves come from north, as a calm does.
+            // If a height is set and there has been no wind, the waves come from north, as the wind of a calm does.
             None if grown.toward == DVec2::ZERO => toward_of(0.0),
             None => grown.toward,
         };
@@ -268,15 +269,16 @@ impl SeaWorkshop {
         self.sort_waves();
     }
 
-    /// Sorts the waves from long to short; those of a length by their phases.
+    /// Sorts the waves from long to short; waves of the same length by their phases.
     fn sort_waves(&mut self) {
         self.waves.sort_unstable_by(|a, b| a.turns_per_m.total_cmp(&b.turns_per_m).then(a.phase.total_cmp(&b.phase)));
     }
 
-    /// Strengthens all waves so that heights at fixed places have the variance that was asked. Horizontal motion
-    /// narrows crests: with a and b the sums of k coth(k h) times variance times cos^2 and sin^2 of the direction, and
-    /// c that with cos sin, the variance at fixed places is m0 - a^2 - b^2 - 2 c^2 to second order (the mean of h^2 J,
-    /// less the square of that of h J, with J the Jacobian). Returns the factor, at most some 1.01.
+    /// Strengthens all waves so that heights at fixed places have the variance that was asked for. Horizontal motion
+    /// narrows crests. Let a, b and c be the sums over the waves of k coth(k h) times variance times cos^2, sin^2 and
+    /// cos sin of the direction. The variance at fixed places is then m0 - a^2 - b^2 - 2 c^2 to second order: the mean
+    /// of z^2 J less the square of the mean of z J, with the height z and the Jacobian J. Returns the factor on the
+    /// variance, at most some 1.01.
     fn strengthen(&mut self) -> f64 {
         let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
         let mut sums = [0.0; 3];
@@ -302,7 +304,8 @@ impl SeaWorkshop {
         factor
     }
 
-    /// Works out the statistics of the waves, which were strengthened by a factor, and of the single waves.
+    /// Works out the statistics of the waves, whose variance was strengthened by `factor`, and of the host's single
+    /// waves.
     fn count(&mut self, sea: &PreparedSea, systems: &Systems, factor: f64) {
         let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
         let mut slope = self.tiles.tiles.iter().map(|t| t.mean_square_slope).sum::<f64>();

@@ -58,8 +58,8 @@ pub(super) fn validate(corners: &[[f64; 2]]) -> Result<()> {
             return Err(Error::range("corners_m", "those of an outline whose corners differ", got));
         }
         for (j, other) in sides(corners).enumerate().skip(i + 2) {
-            // The last side is a neighbour of the first. Neighbours share a corner. Where one runs back on the other,
-            // it also meets the next one.
+            // The last side is a neighbour of the first. Neighbours share a corner. A side that runs back on its
+            // neighbour also meets the side after that.
             let is_neighbour = i == 0 && j + 1 == corners.len();
             if !is_neighbour && meet(side, other) {
                 let got = format!("sides {i} and {j} that meet");

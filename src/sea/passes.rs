@@ -64,7 +64,7 @@ pub(super) struct SeaPasses {
     /// Texels of `seen`.
     seen_texels: Vec<[u16; 4]>,
     pub(super) bands: SeaBands,
-    /// Index that the table of reflectances is for.
+    /// Refractive index for which the table of reflectances was computed.
     table_index: Option<f64>,
     pipeline: Option<SeaPipeline>,
 }
@@ -84,8 +84,8 @@ pub(super) struct SeaDraw<'a> {
 }
 
 impl SeaDraw<'_> {
-    /// Returns the blocks that are drawn together, with the number of their band: those of each level in turn,
-    /// separated by their marks.
+    /// Returns the groups of blocks that are drawn together, each with the number of its band. A group has the blocks
+    /// of one level with the same marks.
     fn bands(&self) -> impl Iterator<Item = (usize, &[MeshBlock])> {
         let alike = |a: &MeshBlock, b: &MeshBlock| (a.level, a.marks) == (b.level, b.marks);
         self.blocks.chunk_by(alike).map(|blocks| (MARKS * blocks[0].level as usize + blocks[0].marks as usize, blocks))

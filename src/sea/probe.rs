@@ -35,8 +35,8 @@ impl SeaProbe {
         Ok(Self { sea, timeline: Timeline::new(derive(weather)?), workshop })
     }
 
-    /// Returns all waves, single ones and those of tiles, as they are drawn: strengthened by less than 1 % of variance
-    /// for what narrow crests take from the heights at fixed places.
+    /// Returns all waves, single ones and those of tiles, as they are drawn: strengthened by less than 1 % of variance,
+    /// which makes up for what narrow crests take from the heights at fixed places.
     pub fn modes(&mut self) -> Vec<SeaMode> {
         let past = WeatherPast { timeline: &self.timeline, revision: 0, kept: &[] };
         let (waves, tiles) = self.workshop.waves(&self.sea, &past, 0.0);

@@ -13,8 +13,7 @@ use crate::{
 
 /// Maximum number of regions.
 pub const MAX_SEA_REGIONS: usize = 64;
-/// Depth below a region's centre, and height above it, from which on a position is taken to be on the planet's other
-/// side, m.
+/// Vertical distance from a region's centre from which on a position is taken to be on the planet's other side, m.
 const OTHER_SIDE_M: f64 = 3e6;
 /// Largest speed of a region, m/s.
 const MOST_SPEED_M_S: f64 = 60.0;
@@ -25,7 +24,7 @@ pub enum SeaRegionKind {
     /// No water: inside a hull or an empty dock. A dry region takes precedence over all other kinds. Queries inside it
     /// return the surface of the water around, by which a hull floats.
     Dry,
-    /// The sea, at its own level, with lower waves: a harbour.
+    /// Water at the level of the sea, with lower waves: a harbour.
     Sheltered,
     /// Water with a level of its own: a lake, a lock.
     Lake {
@@ -43,21 +42,21 @@ pub enum SeaRegionKind {
 pub struct SeaRegion {
     /// Kind of water inside.
     pub kind: SeaRegionKind,
-    /// Corners of the outline, m to the right and ahead of the centre, in order, either way around. 3 to 64, each
-    /// within 1e6 m. The outline must not cross or touch itself.
+    /// Corners of the outline, m to the right and ahead of the centre, in order, either way around. 3 to 64 corners,
+    /// each coordinate within 1e6 m. The outline must not cross or touch itself.
     pub corners_m: Vec<[f64; 2]>,
     /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
     /// matter.
     pub center_m: [f64; 3],
     /// Heading of the direction ahead at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0.
     pub heading_deg: f64,
-    /// Velocity east and north, m/s, of at most 60 m/s. Default 0: the region stands.
+    /// Velocity east and north, m/s. Its magnitude is at most 60 m/s. Default 0: the region stands.
     pub velocity_m_s: [f64; 2],
     /// Rate of turn, degrees clockwise a second. Range [-90, 90], default 0.
     pub turn_deg_s: f64,
     /// Simulation time at which the centre is at `center_m`, s. Range [-1e10, 1e10], default 0.
     pub at_s: f64,
-    /// Height of waves inside over that on the open sea. Range [0, 1], default 1. Not used by dry regions.
+    /// Ratio of the height of waves inside to that on the open sea. Range [0, 1], default 1. Not used by dry regions.
     pub wave_share: f64,
     /// Width of the band inside the outline over which the waves of a sheltered region become lower, m. Range [0, 1e4],
     /// default 0: at once.
@@ -108,9 +107,9 @@ impl SeaRegion {
 /// Water at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WaterBody {
-    /// Level and depth without waves, m, where they are not the sea's.
+    /// Level and depth without waves, m; `None` where they are the sea's.
     pub lake: Option<[f64; 2]>,
-    /// Height of waves over that on the open sea.
+    /// Ratio of the height of waves to that on the open sea.
     pub wave_share: f64,
     /// Whether a dry region keeps the water off the place.
     pub is_dry: bool,
@@ -174,8 +173,8 @@ impl PlacedRegion {
         self.headed((self.to_enu * v).truncate(), time_s)
     }
 
-    /// Returns a position in metres to the right and ahead of the centre at a time; `None` farther away than all
-    /// corners.
+    /// Returns a position in metres to the right and ahead of the centre at a time; `None` if the position is farther
+    /// from the centre than all corners.
     fn within(&self, position: DVec3, time_s: f64) -> Option<DVec2> {
         let offset = self.offset_from_center(position, time_s)?;
         let is_near = offset.length_squared() <= self.radius_m * self.radius_m;
@@ -183,8 +182,9 @@ impl PlacedRegion {
     }
 }
 
-/// Returns the water at a position and time; `None` where there is none around. `is_sea` says whether there is sea
-/// outside all regions. Later regions are applied to the water of earlier ones, and dry ones after all others.
+/// Returns the water at a position and time; `None` where there is no water, nor a dry region with water around it.
+/// `is_sea` says whether there is sea outside all regions. Later regions are applied to the water of earlier ones, and
+/// dry ones after all others.
 pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, time_s: f64) -> Option<WaterBody> {
     let mut water = is_sea.then_some(WaterBody::OPEN);
     let mut is_dry = false;

@@ -91,7 +91,7 @@ fn seen_slopes(sea: &SeaUniform, waves: &[WaveUniform], range: f32, direction: [
 /// Returns the unit vector of a row of the table; the shaders find rows by `seen_row`.
 fn direction(row: usize) -> [f32; 2] {
     let v = row as f32 / SEEN_SIDES[1] as f32;
-    // Cosine and sine of twice the angle, but for their length.
+    // Cosine and sine of twice the angle, up to a common factor.
     let sine = if v < 0.25 {
         4.0 * v
     } else if v < 0.75 {
@@ -112,8 +112,8 @@ fn shown_slopes(tile: &TileSlopes, mip: f32) -> [f32; 3] {
     std::array::from_fn(|n| coarse[n] + (fine[n] - coarse[n]) * (part * part))
 }
 
-/// Returns what a pixel at a distance shows of the tiles' slopes: their covariances, and the variance of the smoother
-/// ones that make foam.
+/// Returns the covariances of those slopes of the tiles that a pixel at a distance shows, and the variance of the
+/// smoother slopes that make foam.
 fn seen_tiles(sea: &SeaUniform, tiles: &[TileSlopes; TILES], range: f32) -> ([f32; 3], f32) {
     let filter = PixelFilter::at(sea, range);
     let width = filter.across.max(filter.along / MOST_LENGTHENED) / PIXEL_DEVIATION;
@@ -129,8 +129,8 @@ fn seen_tiles(sea: &SeaUniform, tiles: &[TileSlopes; TILES], range: f32) -> ([f3
     (seen, smooth)
 }
 
-/// Writes the two layers of the table: distances in equal ratios from the camera's height to the farthest place, row
-/// after row of directions.
+/// Writes the two layers of the table. Columns are distances in equal ratios from the camera's height to the farthest
+/// place, rows are directions.
 pub(super) fn fill_seen(
     sea: &SeaUniform,
     waves: &[WaveUniform],

@@ -1,4 +1,4 @@
-//! Settings by which a host says what its sea is like: level, tide, fetch, depth, waves, water.
+//! Settings with which a host describes the sea: level, tide, fetch, depth, waves, water.
 
 use super::{
     clarity::WaterClarity,
@@ -15,7 +15,8 @@ use crate::{
 
 /// Maximum number of swells.
 pub const MAX_SWELLS: usize = 4;
-/// Largest significant height over the length of the waves at the peak: steeper seas break (DNV-RP-C205, 3.5.5).
+/// Largest ratio of the significant height to the length of the waves at the peak: steeper seas break (DNV-RP-C205,
+/// 3.5.5).
 pub const MOST_STEEPNESS: f64 = 1.0 / 15.0;
 
 /// Source of the wind sea's height.
@@ -48,12 +49,12 @@ pub struct SeaSwell {
     pub period_s: f64,
     /// Direction that it comes from, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
-    /// Directional width, degrees. Range [1, 60]; `None` is 15, Donelan and Banner's at the peak narrowed by Horvath's
-    /// swell parameter 1.
+    /// Directional width, degrees. Range [1, 60]; `None` is 15: the width of Donelan and Banner's spreading at the
+    /// peak, narrowed by Horvath's swell parameter 1.
     pub spread_deg: Option<f64>,
 }
 
-/// Tide: one lunar half-day, 12.4206 h, about the mean level.
+/// Tide about the mean level, with a period of half a lunar day, 12.4206 h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tide {
     /// Height of high water above the mean level, m. Range [0, 10].

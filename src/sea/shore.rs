@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use super::dispersion::{GRAVITY_M_S2, group_speed_m_s, wave_number};
 
-/// Height of breaking waves over the depth (McCowan 1894).
+/// Ratio of the height of breaking waves to the depth (McCowan 1894).
 pub const BREAKING_INDEX: f64 = 0.78;
 /// Period of the principal lunar tide M2, s (12.4206 h).
 pub const LUNAR_TIDE_S: f64 = 44_714.16;
 
-/// How waves break on a slope.
+/// Form in which waves break on a slope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Breaker {
     /// Foam slides down the front: gentle slopes.
@@ -20,8 +20,8 @@ pub enum Breaker {
     Surging,
 }
 
-/// Returns the height of waves at a depth over that in deep water, without turning: sqrt(cg0 / cg), the flux of energy
-/// being kept (Rayleigh 1911).
+/// Returns the ratio of the height of waves at a depth to that in deep water, without turning: sqrt(cg0 / cg), because
+/// the flux of energy stays the same (Rayleigh 1911).
 pub fn shoaling(period_s: f64, depth_m: f64) -> f64 {
     let w = 2.0 * PI / period_s;
     let deep_m_s = 0.5 * GRAVITY_M_S2 / w;

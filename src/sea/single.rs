@@ -13,8 +13,8 @@ use crate::error::{Error, Result, check_range};
 
 /// Maximum number of single waves.
 pub const MAX_SINGLE_WAVES: usize = 16;
-/// Largest height of a regular wave over its length in deep water. At a depth the limit is this times tanh(k h) (Miche
-/// 1944).
+/// Largest ratio of a regular wave's height to its length in deep water. At a depth the limit is this times tanh(k h)
+/// (Miche 1944).
 pub const MOST_SINGLE_STEEPNESS: f64 = 0.142;
 
 /// Length or period of a wave; the other follows from the depth.
@@ -26,7 +26,7 @@ pub enum WaveScale {
     Period(f64),
 }
 
-/// A regular wave of infinite crests, added to all others.
+/// A regular wave whose crests are infinitely long, added to all others.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SingleWave {

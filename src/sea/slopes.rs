@@ -71,8 +71,8 @@ pub fn glint_reflectance(sun: f64, view: f64, mean_square: f64, index: f64) -> f
 }
 
 /// Returns the half-widths of the glitter, rad, in elevation and in azimuth, where its density has fallen to e^-1/2: 2
-/// atan(s) and 2 asin(s tan h) with s = sqrt(mss / 2), for a sun at height `sun_height` whose rays meet the eye at the
-/// same angle.
+/// atan(s) and 2 asin(s tan h) with s = sqrt(`mean_square` / 2) and the sun's height h = `sun_height`, rad. The rays
+/// meet the eye at the same angle.
 pub fn glitter_half_widths(mean_square: f64, sun_height: f64) -> [f64; 2] {
     let s = (0.5 * mean_square).sqrt();
     [2.0 * libm::atan(s), 2.0 * libm::asin((s * libm::tan(sun_height)).min(1.0))]

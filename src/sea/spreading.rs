@@ -19,8 +19,9 @@ pub fn cosine_power_width(s: f64) -> f64 {
     libm::sqrt(2.0 / (s + 1.0))
 }
 
-/// Returns the exponent `s` of Mitsuyasu et al. (1975) at `r` = w / wp, for a wind over phase speed of the peak: 11.5
-/// (U / cp)^-2.5 at the peak, times r^5 below it and r^-2.5 above.
+/// Returns the exponent `s` of Mitsuyasu et al. (1975) at `r` = w / wp. `wind_over_speed` is U / cp, the ratio of the
+/// wind to the phase speed of waves at the peak. The exponent is 11.5 (U / cp)^-2.5 at the peak, times r^5 below it and
+/// r^-2.5 above.
 pub fn mitsuyasu_exponent(r: f64, wind_over_speed: f64) -> f64 {
     let peak = 11.5 * libm::pow(wind_over_speed, -2.5);
     peak * libm::pow(r, if r < 1.0 { 5.0 } else { -2.5 })

@@ -1,9 +1,10 @@
 //! The sea's surface at a time: waves and tiles with their phases, and the solution for a fixed place.
 //!
-//! Waves carry the water around: a particle at rest at X is at X + D(X), at the height h(X) (Gerstner 1809; Tessendorf
-//! 2001). A query at a place x solves X + D(X) = x by Newton's method and reads height, slope, velocity and
-//! acceleration of that particle. Because crests are narrower than troughs, the mean level over fixed places would fall
-//! by the sum of k coth(k h) times variance; the surface is raised by as much.
+//! Waves carry the water around: the particle whose place at rest is X is at the place X + D(X), at the height h(X)
+//! (Gerstner 1809; Tessendorf 2001). A query at a place x solves X + D(X) = x by Newton's method and reads height,
+//! slope, velocity and acceleration of that particle. Because crests are narrower than troughs, the mean level over
+//! fixed places would fall. The fall is the sum over the waves of k coth(k d) times variance, with the depth d. The
+//! surface is raised by as much.
 
 use glam::{DVec2, DVec3};
 
@@ -17,17 +18,18 @@ use super::{
     wake_field::{Wake, WakePoint},
 };
 
-/// Largest distance, m, between the place asked for and the one solved for, and most steps towards it.
+/// Largest distance, m, between the place asked for and the one solved for, and largest number of steps of the
+/// solution.
 const SOLVED_M: f64 = 5e-4;
 const MOST_STEPS: usize = 12;
-/// Standard deviations that a stated bound allows for: 1 place in 16,000 is off by more.
+/// Standard deviations that a stated bound allows for: at 1 place in 16,000 the error is larger.
 const BOUND_DEVIATIONS: f64 = 4.0;
 
-/// The sea at a place and time. Where there is no water all numbers are 0, and the normal is up. In a dry region they
-/// are those of the water around, by which a hull floats.
+/// The sea at a place and time. Where there is no water all numbers are 0, and the normal is up. In a dry region the
+/// numbers are those of the water around, by which a hull floats.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SeaPoint {
-    /// Whether there is water: not in a dry region.
+    /// Whether there is water. `false` also in a dry region.
     pub has_water: bool,
     /// Point of the surface above or below the place that was asked about, in the host's world, m; without water that
     /// place itself.
@@ -39,14 +41,14 @@ pub struct SeaPoint {
     pub height_error_m: f64,
     /// Unit normal of the surface (east, north, up).
     pub normal: DVec3,
-    /// Velocity of the water at the surface, m/s (east, north, up), without the drift.
+    /// Velocity of the water at the surface by waves alone, without any drift, m/s (east, north, up).
     pub velocity_m_s: DVec3,
     /// Acceleration of the water at the surface, m/s^2 (east, north, up).
     pub acceleration_m_s2: DVec3,
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam, 0 to 1: of waves that break now, what those of the last 3.6 s left, and the wash
-    /// of hulls.
+    /// Share of the place under foam, 0 to 1: foam of waves that break now, foam that waves of the last 3.6 s have
+    /// left, and the wash of hulls.
     pub foam: f64,
 }
 
@@ -58,7 +60,7 @@ pub(super) struct TileFields {
     pub length_m: f64,
     /// Cosine and sine of the tile's turn.
     pub turn: DVec2,
-    /// Variance of heights, m^2; the fields of a tile without any are those of an earlier time.
+    /// Variance of heights, m^2. If it is 0, the tile's fields are those of an earlier time.
     pub variance_m2: f64,
     /// Lowering of the mean level, m.
     pub lowering_m: f64,
@@ -72,7 +74,7 @@ pub(super) struct TileFields {
 pub(super) struct StillSea {
     /// Level without waves, m.
     pub level_m: f64,
-    /// Depth below it, m.
+    /// Depth below the level, m.
     pub depth_m: f64,
     /// Foam.
     pub foam: FoamLaw,
@@ -84,7 +86,7 @@ pub(crate) struct SeaSurface {
     lanes: WaveLanes,
     tiles: Vec<TileFields>,
     still: StillSea,
-    /// Variance of all that is drawn, m^2.
+    /// Variance of the heights of all waves, m^2.
     variance_m2: f64,
 }
 
@@ -180,9 +182,9 @@ impl SeaSurface {
         self.within(&WaterBody::OPEN, place_m, shortest_m)
     }
 
-    /// Returns the water at a place (east and north of the world's origin, m), with waves of at least `shortest_m` and
-    /// tiles that have such waves. The amplitudes of all waves are multiplied by the water's `wave_share`. The caller,
-    /// who knows the world, fills in the point's `surface`.
+    /// Returns the water at a place (east and north of the world's origin, m), with the single waves of at least the
+    /// length `shortest_m` and the tiles that have such waves. The amplitudes of all waves are multiplied by the
+    /// water's `wave_share`. The caller fills in the point's `surface`.
     pub fn within(&self, water: &WaterBody, place_m: DVec2, shortest_m: f64) -> SeaPoint {
         let share = water.wave_share;
         let included = IncludedWaves { share, ..self.included(shortest_m) };
@@ -190,7 +192,7 @@ impl SeaSurface {
         let SolvedParticle { rest, moved, off } = self.solve(place_m, &included, &mut phases, MOST_STEPS);
         let motion = self.motion(rest, &included, &phases);
         let slope = transposed_inverse_times(&moved.slopes, motion.slope);
-        // The level falls by the square of the amplitudes.
+        // The fall of the level is proportional to the square of the amplitudes.
         let height = motion.height + share * share * included.raised_m + slope.dot(off);
         let [level_m, depth_m] = water.lake.unwrap_or([self.still.level_m, self.still.depth_m]);
         let compression = -(moved.slopes[0] + moved.slopes[3]);
@@ -213,7 +215,7 @@ impl SeaSurface {
         }
     }
 
-    /// Returns how far from a place the solution for it is after some steps, m.
+    /// Returns the distance, m, between a place and the solution for it after `steps` steps.
     #[cfg(test)]
     pub(super) fn solved_off_m(&self, place_m: DVec2, steps: usize) -> f64 {
         let mut phases = Phases::new();
@@ -326,7 +328,7 @@ impl SeaSurface {
     }
 }
 
-/// Returns the determinant of 1 + `slopes`, at least 0.1: where waves fold, Newton's steps stay short.
+/// Returns the determinant of 1 + `slopes`, at least 0.1, so that Newton's steps stay short where waves fold.
 fn determinant(slopes: &[f64; 4]) -> f64 {
     ((1.0 + slopes[0]) * (1.0 + slopes[3]) - slopes[1] * slopes[2]).max(0.1)
 }
@@ -338,7 +340,8 @@ fn inverse_times(slopes: &[f64; 4], v: DVec2) -> DVec2 {
     DVec2::new((1.0 + yy) * v.x - xy * v.y, (1.0 + xx) * v.y - yx * v.x) / d
 }
 
-/// Returns the transposed inverse of 1 + `slopes` times a vector: a gradient over rest places as one over fixed places.
+/// Returns the transposed inverse of 1 + `slopes` times a vector. This turns a gradient over places at rest into one
+/// over fixed places.
 fn transposed_inverse_times(slopes: &[f64; 4], v: DVec2) -> DVec2 {
     let d = determinant(slopes);
     let [xx, xy, yx, yy] = *slopes;

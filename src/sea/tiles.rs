@@ -1,10 +1,10 @@
-//! Short waves in square tiles that repeat: a fixed ladder of tiles, each eight times as long as the next and turned
-//! against it, whose waves are summed by Fourier transforms.
+//! Short waves in square tiles that repeat, summed by Fourier transforms. The tiles are a fixed ladder: each is eight
+//! times as long as the next shorter one, and turned against that one.
 //!
 //! A tile has waves of 4 to 45 periods in its length. Between 4 and 5.7 periods the energy passes to it from the next
 //! longer tile. These wave numbers are fixed, so that a change of weather changes amplitudes and no phase. Heights
-//! between the samples come from cubic B-splines. Their coefficients are transformed in place of the heights, so that
-//! each wave comes back with its own amplitude, and what is left of the error is images of the shortest waves.
+//! between the samples come from cubic B-splines. The transforms give the coefficients of the splines, not the heights,
+//! so that each wave keeps its own amplitude. The error that is left is images of the shortest waves.
 
 use std::f64::consts::{PI, TAU};
 
@@ -58,9 +58,10 @@ struct WavePair {
 struct WaveRing {
     k_per_m: f64,
     frequency_hz: f64,
-    /// Horizontal over vertical amplitude: coth(k h).
+    /// Ratio of horizontal to vertical amplitude: coth(k h).
     stretch: f64,
-    /// Variance per area of wave vectors of each system, m^4, before spreading, and the spreading's parameter.
+    /// Variance of each system per unit area of wave vectors, before the spreading over directions, m^4, and the
+    /// parameter of the spreading.
     densities: [f64; MAX_SYSTEMS],
     betas: [f64; MAX_SYSTEMS],
 }
@@ -77,8 +78,8 @@ pub(super) struct WaveTile {
     /// Variance of heights, m^2, and mean square slope.
     pub variance_m2: f64,
     pub mean_square_slope: f64,
-    /// Sums of k coth(k h) times variance times the squares of the direction's cosine and sine, and their product, m.
-    /// The first two together are how far the mean level falls by horizontal motion.
+    /// Sums over the waves of k coth(k h) times variance times cos^2, sin^2 and cos sin of the direction, m. The first
+    /// two add up to the fall of the mean level by horizontal motion.
     pub narrowing_m: [f64; 3],
     /// Variance of the compression of the surface.
     pub compression: f64,
@@ -93,8 +94,8 @@ fn length_m(level: usize) -> f64 {
     (0..level).fold(FINEST_M, |length, _| length * RATIO)
 }
 
-/// Returns the variance of the images of a wave with `periods` periods along a side over its own variance: the spline
-/// lets them through as ((n / (N - n))^4)^2.
+/// Returns the ratio of the variance of a wave's images to that of the wave: the spline lets the images through as ((n
+/// / (N - n))^4)^2, with n = `periods` along a side and N = [`SIDE`].
 fn image_share(periods: i32) -> f64 {
     let n = f64::from(periods.abs());
     let ratio = n / (SIDE as f64 - n);
@@ -102,7 +103,7 @@ fn image_share(periods: i32) -> f64 {
     fourth * fourth
 }
 
-/// Returns the share of the tiles' energy at a wave number that a tile of the ladder holds.
+/// Returns the share that one tile of the ladder holds of the energy of all tiles at a wave number.
 fn ladder_share(level: usize, k_per_m: f64) -> f64 {
     let log = libm::log(k_per_m * length_m(level) / TAU);
     let [low, high] = TAKEOVER.map(libm::log);
@@ -236,7 +237,8 @@ impl WaveTile {
             if share <= 0.0 || w < LOWEST_RAD_S {
                 continue;
             }
-            // From a density over frequency to one over wave vectors: dw/dk over the circle's k dk dtheta.
+            // Turns a density over frequency into one over wave vectors: dw/dk over k, since an element of their area
+            // is k dk dtheta.
             let into = share * group_speed_m_s(ring.k_per_m, depth_m) / ring.k_per_m;
             for (s, system) in bins.systems.iter().enumerate() {
                 ring.densities[s] = into * bins.density(s, w, ring.k_per_m);
@@ -289,7 +291,7 @@ impl WaveTile {
     }
 }
 
-/// Room for the transforms of one tile.
+/// Scratch space for the transforms of one tile.
 #[derive(Clone, Debug)]
 pub(super) struct TileWork {
     transform: Transform,
@@ -356,7 +358,7 @@ impl TileWork {
 pub(super) struct WaveTiles {
     seed: u64,
     depth_m: f64,
-    /// Tiles of three neighbouring levels, at the place of the level modulo 3.
+    /// Tiles of three neighbouring levels, indexed by the level modulo 3.
     pub tiles: Vec<WaveTile>,
 }
 
@@ -368,7 +370,7 @@ impl WaveTiles {
 
     /// Gives the tiles the energy of a spectrum.
     pub fn fill(&mut self, bins: &Bins) {
-        // The longest tile that holds energy, by the longest wave that does.
+        // The longest tile that holds energy follows from the longest wave in tiles that has energy.
         let tiled = |b: &usize| bins.tiles_m2[*b].iter().sum::<f64>() > 0.0;
         let longest_per_m = (0..bins.tiles_m2.len()).find(tiled).map_or(1e9, |b| bins.k_per_m[b]);
         let holds = |level: &usize| ladder_share(*level, longest_per_m) > 0.0;
@@ -383,7 +385,7 @@ impl WaveTiles {
     }
 }
 
-/// Values of a B-spline field at a place: value, and derivatives along the tile's sides per metre.
+/// Values of the B-spline fields at a place, and derivatives along the tile's sides, per metre.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sampled {
     pub values: [f64; VALUES],
@@ -392,7 +394,8 @@ pub(super) struct Sampled {
     pub along_y: [f64; 3],
 }
 
-/// Weights of a cubic B-spline at four samples around a place `t` in \[0, 1) between the middle two, and derivatives.
+/// Weights of a cubic B-spline at four samples around a place `t` in \[0, 1) between the middle two, and derivatives of
+/// the weights.
 fn spline(t: f64) -> ([f64; 4], [f64; 4]) {
     let (t2, u) = (t * t, 1.0 - t);
     let t3 = t2 * t;

@@ -1,9 +1,9 @@
 //! Tracks of hulls: where each was, and where it will be if the host does not set it again.
 //!
-//! The leg is the last part of a track. It begins where the host last set the hull and goes on at a constant speed and
-//! rate of turn, along a line or an arc. The track before it is kept as nodes at whole multiples of a step of time, and
-//! only where course or speed have changed, so that hosts may set their hulls in every frame. A straight track has a
-//! node each [`MOST_STRAIGHT_S`].
+//! The leg is the last section of a track. It begins where the host last set the hull and goes on at a constant speed
+//! and rate of turn, along a line or an arc. The track before the leg is kept as nodes at whole multiples of a step of
+//! time, and only where course or speed have changed, so that hosts may set their hulls in every frame. A straight
+//! track has a node each [`MOST_STRAIGHT_S`].
 
 use std::f64::consts::PI;
 
@@ -27,9 +27,10 @@ const STEP_S: f64 = 1.5;
 const MOST_STRAIGHT_S: f64 = 24.0;
 /// Smallest change of course between two nodes, rad, unless the speed changes or [`MOST_STRAIGHT_S`] passes.
 const NODE_TURN: f64 = 7.0 * PI / 180.0;
-/// Smallest change of speed between two nodes: a share of the speed, and an amount in m/s that is added to it.
+/// Smallest change of speed between two nodes: a share of the speed, plus an amount in m/s.
 const NODE_SPEED: [f64; 2] = [0.08, 0.1];
-/// Largest distance from its track at which a hull may be set, in lengths of the hull. Farther away a new track begins.
+/// Largest distance at which a hull may be set from where its track has it at that time, in lengths of the hull.
+/// Farther away a new track begins.
 const JUMP_LENGTHS: f64 = 2.0;
 
 /// State of a hull at a time.
@@ -108,8 +109,8 @@ impl TrackNode {
     }
 }
 
-/// Adds states of a leg, up to a time, to the nodes before it, where course or speed change. The first node of a track
-/// is the beginning of its first leg.
+/// Adds to `nodes`, which hold the track before the leg, the states of the leg up to a time, where course or speed
+/// change. The first node of a track is the beginning of its first leg.
 fn add_nodes(leg: &TrackNode, turn: f64, until_s: f64, nodes: &mut Vec<TrackNode>) {
     let is_first = nodes.is_empty();
     let mut add = |state: TrackNode| {
@@ -169,7 +170,8 @@ impl HullTrack {
     }
 
     /// Begins the next leg, where the host sets the same hull again. A leg that begins before the present one replaces
-    /// the track from its own time on. A leg that begins far from the track begins a new track.
+    /// the track from its own time on. A leg that begins more than [`JUMP_LENGTHS`] from where the track has the hull,
+    /// before the track's beginning or after its end begins a new track.
     ///
     /// # Errors
     /// As [`HullTrack::new`]; nothing changes then.
@@ -178,7 +180,7 @@ impl HullTrack {
         Ok(())
     }
 
-    /// Takes the leg of a track that has no nodes yet as the next leg.
+    /// Continues the track by the leg of `next`, a track that has no nodes yet.
     fn go_on(&mut self, next: Self) {
         let time_s = next.leg.time_s;
         let began_s = self.nodes.first().map_or(self.leg.time_s, |node| node.time_s);
@@ -200,7 +202,7 @@ impl HullTrack {
         (self.hull, self.leg, self.ended_s) = (next.hull, next.leg, None);
     }
 
-    /// Ends the hull's waves at a time, unless they have ended before.
+    /// Sets the time from which on the hull raises no waves, unless one was set before.
     pub fn end(&mut self, time_s: f64) {
         self.ended_s.get_or_insert(time_s);
     }
@@ -210,8 +212,8 @@ impl HullTrack {
         self.ended_s.is_none_or(|ended_s| time_s - ended_s < MOST_AGE_S)
     }
 
-    /// Writes the states of the hull up to a time, from new to old, as far back as the waves that they raised are still
-    /// there.
+    /// Writes the states of the hull up to a time to `states`, from new to old, as far back as the waves that these
+    /// states raised are still there.
     pub fn states(&self, time_s: f64, states: &mut Vec<TrackNode>) {
         states.clear();
         let last_s = self.ended_s.map_or(time_s, |ended_s| ended_s.min(time_s));
@@ -265,8 +267,8 @@ fn leg_of(hull: &SeaHull, world: &World) -> Result<TrackNode> {
     Ok(TrackNode { time_s: hull.at_s, place_m, ahead, speed_m_s: hull.speed_m_s })
 }
 
-/// Returns the share of the waves of an age that is drawn, where the newest and the oldest waves of the track have the
-/// ages `newest_s` and `oldest_s`. At both ends of a track waves fade.
+/// Returns the share of the height with which waves of an age are drawn: waves fade at both ends of a track. The newest
+/// and the oldest waves of the track have the ages `newest_s` and `oldest_s`.
 pub(super) fn age_share(age_s: f64, newest_s: f64, oldest_s: f64) -> f64 {
     let oldest_s = oldest_s.min(MOST_AGE_S);
     let fading = 0.2 * (oldest_s - newest_s).max(1e-6);

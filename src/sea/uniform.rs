@@ -58,7 +58,7 @@ pub(super) struct SeaUniform {
 /// the map, by a Taylor series of second order. In a curved world its error is 0.03 mm at 1 km and 3 m at 50 km.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SeaChart {
-    /// Place below the camera.
+    /// Place of the sea's level below the camera.
     pub foot: DVec3,
     /// Derivatives to the east and to the north.
     pub east: DVec3,

@@ -27,16 +27,17 @@ const MOST_HEIGHT_M: f64 = 1e5;
 const LEAST_HEIGHT_M: f64 = 0.1;
 /// Greatest depth below the level from which the sea is drawn, m: that of a camera in a trough.
 const DEEPEST_TROUGH_M: f64 = 30.0;
-/// Largest displacement of the water over the height of the highest crest. Water moves sideways as much as up and down
-/// in deep water, and more in shallow water.
+/// Ratio of the largest displacement of the water to the height of the highest crest. Water moves sideways as much as
+/// up and down in deep water, and more in shallow water.
 const DISPLACED_TO_CREST: f64 = 3.0;
-/// Height of the highest crest above the level over that of the highest wave: crests of steep seas are somewhat higher
-/// than troughs are deep.
+/// Ratio of the height of the highest crest above the level to that of the highest wave: crests of steep seas are
+/// somewhat higher than troughs are deep.
 const CREST_SHARE: f64 = 0.6;
 /// Limit for light in units of the host's target: the largest half float, 65 504, less a margin for later passes.
 const MOST_UNITS: f64 = 6e4;
 
-/// Identifies the waves that the tiles of a view were made for.
+/// Key of the waves for which the tiles of a view were made: the bits of the time, and the revisions of the timeline
+/// and of the settings.
 type TilesKey = (u64, u64, u64);
 
 /// The sea of a view.

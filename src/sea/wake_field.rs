@@ -1,16 +1,17 @@
 //! Waves of a hull along its track: the surface at a place.
 //!
 //! A hull raises waves at its bow and at its stern (Michell 1898, for parabolic waterlines and upright sides). A wave
-//! that left the track u seconds ago has the phase -g u^2 / (4 D) at a place at the distance D (Cauchy and Poisson).
-//! The place has the waves of those times for which this phase is stationary:
+//! that left the track u seconds ago has the phase -g u^2 / (4 D) at the distance D from where it left (Cauchy and
+//! Poisson). A place has the waves of the times u at which this phase is stationary:
 //!
-//! S(u) = D^2 - u V . r / 2 = 0. V is the velocity of the hull's bow or stern at that time, and r, of length D, the way
-//! from there to the place.
+//! S(u) = D^2 - u V . r / 2 = 0. V is the velocity that the hull's bow or stern had u seconds ago, and r, of length D,
+//! the way from where the bow or stern then was to the place.
 //!
-//! On a straight track S is a parabola and its two zeros are Kelvin's diverging and transverse waves; where they meet
-//! is the cusp. On a turning track S is followed from node to node, so wakes bend as they do at sea: waves crowd on the
-//! inner side and part on the outer one. Near cusps the sum of both waves is Airy's function (Ursell 1960). It is
-//! computed from its modulus and phase within some percent. Waves are those of deep water.
+//! On a straight track S is a parabola. Its two zeros are Kelvin's diverging and transverse waves. At the cusp the two
+//! zeros coincide. On a turning track S is followed from node to node, so wakes bend as they do at sea: waves crowd
+//! together on the inner side of the turn and spread out on the outer side. Near cusps the sum of both waves is Airy's
+//! function (Ursell 1960). It is computed from its modulus and phase within some percent. Waves are those of deep
+//! water.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -32,30 +33,31 @@ const AIRY_0: f64 = 0.355_028_053_887_817;
 /// Difference at x = 0 between the phase of Airy's functions and that of their asymptotic expansion, rad, and the rate
 /// at which the difference falls with x^(3/2).
 const PHASE: [f64; 2] = [-PI / 12.0, 2.2];
-/// Argument of Ai beyond a cusp above which Ai is taken as 0.
+/// Argument above which Ai, beyond a cusp, is taken as 0.
 const LAST_AIRY: f64 = 6.0;
-/// Ratios of a place's distance to the distance of the cusp between which the waves beyond the cusp fade out.
+/// Range over which the waves beyond a cusp fade out: ratios of the place's distance from the source to that of the
+/// cusp.
 const BEYOND: [f64; 2] = [1.2, 1.6];
 /// Least second derivative of S, as a ratio to that on a straight track, and the range of the ratio over which the
 /// waves beyond cusps fade in.
 const LEAST_BEND: f64 = 0.1;
 const CUSP_BENDS: [f64; 2] = [0.05, 0.3];
-/// Steepness a k that waves of a hull approach and do not pass: steeper ones break.
+/// Limit that the steepness a k of a hull's waves approaches: steeper waves would break.
 const MOST_STEEPNESS: f64 = 0.3;
 /// Distance from a line, m, and difference of velocities, m/s, up to which a track is taken as straight.
 const STRAIGHT_M: f64 = 2e-3;
 const STRAIGHT_M_S: f64 = 1e-4;
-/// Way, in lengths of the hull, by which the height of waves is computed as if they were farther away: the formulas
-/// hold far from the hull.
+/// Way, in lengths of the hull, that is added to the way of the waves when their height is computed: the formulas hold
+/// only far from the hull.
 const BEGINNING: f64 = 0.1;
 /// Speeds, m/s, between which a hull begins to raise waves.
 const SPEEDS_M_S: [f64; 2] = [0.7, 1.5];
-/// Steepnesses between which waves of a hull begin to break, before [`MOST_STEEPNESS`] limits them, and the share of
-/// foam on the crests of the steepest.
+/// Steepnesses, not yet limited by [`MOST_STEEPNESS`], between which waves of a hull begin to break, and the share of
+/// foam on the crests of the steepest waves.
 const BREAKS: [f64; 2] = [0.35, 1.0];
 const BROKEN_SHARE: f64 = 0.6;
-/// Foam of the hull's wash: its share astern, the time in which it fades to 1/e, s, its half width over the beam, and
-/// the speeds, m/s, between which it begins.
+/// Foam of the hull's wash: its share astern, the time in which it fades to 1/e, s, its half width in beams of the
+/// hull, and the hull's speeds, m/s, between which it begins.
 const WASH_SHARE: f64 = 0.75;
 const WASH_DECAY_S: f64 = 10.0;
 const WASH_WIDTH: f64 = 0.45;
@@ -77,7 +79,7 @@ pub(crate) struct Wake {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WakeState {
     pub node: TrackNode,
-    /// Rate of turn, rad/s against the clock.
+    /// Rate of turn, rad/s anticlockwise.
     pub turn_rad_s: f64,
 }
 
@@ -97,7 +99,7 @@ pub(super) struct WakePoint {
     pub acceleration_m_s2: DVec3,
     /// Share under foam.
     pub foam: f64,
-    /// Amplitudes of the waves that were left out, m.
+    /// Sum of the amplitudes of the waves that were left out, m.
     pub left_out_m: f64,
 }
 
@@ -106,7 +108,7 @@ pub(super) struct WakePoint {
 struct EndState {
     place_m: DVec2,
     velocity: DVec2,
-    /// Acceleration by the rate of turn.
+    /// Acceleration that the rate of turn causes.
     turning: DVec2,
     age_s: f64,
 }
@@ -123,7 +125,8 @@ impl EndState {
         }
     }
 
-    /// Returns S of a place and its derivative by age. Both are equal for the two passages that meet in this state.
+    /// Returns S at a place and the derivative of S by age. The two passages that meet in this state have the same two
+    /// values here.
     fn s(&self, place_m: DVec2) -> [f64; 2] {
         let to_place = place_m - self.place_m;
         let along = self.velocity.dot(to_place);
@@ -132,7 +135,7 @@ impl EndState {
     }
 }
 
-/// Motion of the bow or stern between two states, by age: a cubic.
+/// Motion of the bow or stern between two states, as a cubic of the age.
 struct Passage {
     start_s: f64,
     length_s: f64,
@@ -201,7 +204,7 @@ impl Passage {
     }
 }
 
-/// Kind of a wave at a place.
+/// Type of a wave at a place.
 #[derive(Clone, Copy, PartialEq)]
 enum WakeWave {
     Diverging,
@@ -226,7 +229,7 @@ impl HalfPassage {
             return Self { zeros: [None; 2], least };
         }
         let root = square.sqrt();
-        // Each zero in the form that does not cancel.
+        // Each zero is computed in the form in which no digits cancel.
         let falling = if d < 0.0 { 2.0 * s / (root - d) } else { -(d + root) / (2.0 * q) };
         let rising = if d > 0.0 { -2.0 * s / (d + root) } else { (root - d) / (2.0 * q) };
         Self { zeros: [inside(falling), inside(rising)], least: None }
@@ -275,7 +278,7 @@ impl Wake {
         }
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for WakeState { node: state, .. } in &self.states {
-            // Energy spreads at half the hull's speed at most, to the sides by at most 0.36 of the hull's way.
+            // Energy spreads at most at half the hull's speed, and to the sides by at most 0.36 of the hull's way.
             let reach = 0.36 * state.speed_m_s * (self.time_s - state.time_s) + self.hull.length_m;
             low = low.min(state.place_m - reach);
             high = high.max(state.place_m + reach);
@@ -307,8 +310,8 @@ impl Wake {
             let mut first = newer.s(place_m);
             for older in ends {
                 let last = older.s(place_m);
-                // If S is positive at both ends of a passage, it has a zero or a least value in between only if it
-                // falls at the first end and rises at the last.
+                // If S is positive at both ends of a passage, S has a zero or a least value in between only if S falls
+                // at the first end and rises at the last.
                 if first[0] <= 0.0 || last[0] <= 0.0 || (first[1] < 0.0 && last[1] > 0.0) {
                     self.add_passage(&Passage::new(&newer, &older), [first, last], asked, sum);
                 }
@@ -318,8 +321,8 @@ impl Wake {
         sum.foam = (sum.foam + self.wash(place_m)).min(1.0);
     }
 
-    /// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the
-    /// middle.
+    /// Adds the waves of a passage, from S and its slope at both ends. Between the ends S is taken as two parabolas
+    /// with a common tangent in the middle.
     fn add_passage(&self, passage: &Passage, [first, last]: [[f64; 2]; 2], asked: AskedWaves, sum: &mut WakePoint) {
         let h = passage.length_s;
         let middle_slope = 2.0 * (last[0] - first[0]) / h - 0.5 * (first[1] + last[1]);
@@ -342,7 +345,7 @@ impl Wake {
         }
     }
 
-    /// Adds a wave.
+    /// Adds a wave to `sum`.
     fn add_wave(&self, source: &WakeSource, wave: WakeWave, asked: AskedWaves, sum: &mut WakePoint) {
         let AskedWaves { end, shortest_m, .. } = asked;
         let Some(shape) = self.shape(source, wave, end) else { return };
@@ -361,7 +364,7 @@ impl Wake {
         sum.left_out_m += (1.0 - share) * shape.amplitude_m;
     }
 
-    /// Returns a wave at a place; `None` for one that has no height.
+    /// Returns the shape of a wave at the place from which `source` is seen; `None` if the wave has no height.
     fn shape(&self, source: &WakeSource, wave: WakeWave, end: HullEnd) -> Option<WaveShape> {
         let g = GRAVITY_M_S2;
         let (u, speed2) = (source.age_s, source.velocity.length_squared());
@@ -413,8 +416,8 @@ impl Wake {
         Some(WaveShape { k, amplitude_m: amplitude_m * limit, phase, raw_steepness })
     }
 
-    /// Returns the wave number, rad/m, of waves whose direction has the given cosine with the course, and their
-    /// amplitude before they spread, m, as a complex number (Michell 1898).
+    /// Returns the wave number, rad/m, of waves whose direction is at an angle of the given cosine to the course, and
+    /// the amplitude of these waves before they spread, m, as a complex number (Michell 1898).
     fn raised(&self, speed: f64, cosine: f64, end: HullEnd) -> (f64, DVec2) {
         let hull = &self.hull;
         let along = GRAVITY_M_S2 / (speed * speed * cosine);
@@ -439,7 +442,7 @@ impl Wake {
             let state_s = pair[0].time_s + (pair[1].time_s - pair[0].time_s) * part;
             let speed = pair[0].speed_m_s + (pair[1].speed_m_s - pair[0].speed_m_s) * part;
             let age_s = (self.time_s - state_s).max(0.0);
-            // The wash of a hull widens with about the fourth root of the way behind it.
+            // The wash of a hull widens with about the fourth root of the distance astern.
             let lengths = 1.0 + speed * age_s / (2.0 * self.hull.length_m);
             let half = WASH_WIDTH * self.hull.beam_m * lengths.sqrt().sqrt();
             let off = (place_m - a - way * part).length() / half;
@@ -450,7 +453,7 @@ impl Wake {
     }
 }
 
-/// Takes out the states between which a track is straight and its speed the same: S is one parabola there.
+/// Removes the states inside straight stretches of constant speed: S is one parabola there.
 fn merge_straight(nodes: &mut Vec<TrackNode>) {
     let is_between = |new: &TrackNode, node: &TrackNode, old: &TrackNode| {
         let on_way = |other: &TrackNode| {

@@ -82,9 +82,10 @@ pub fn mean_reflectance(cos_view: f64, mean_square: f64, index: f64) -> f64 {
     reflectance_by_steps((cos_view, 0.5 * mean_square), index, 48)
 }
 
-/// Returns the mean reflectance for the variance of slopes along one axis, integrated over 6 deviations both ways.
-/// Along the view it takes `steps` pairs of steps by Simpson's rule, up to where facets turn away from the eye. Across
-/// the view it takes `steps` trapezoids on one side, which converge like exponentials for such integrands.
+/// Returns the mean reflectance for the variance of slopes along one axis, integrated over 6 standard deviations on
+/// both sides. Along the view the integral takes `steps` pairs of steps by Simpson's rule, up to where facets turn away
+/// from the eye. Across the view it takes `steps` trapezoids on one side. For such integrands their error falls
+/// exponentially with the number of steps.
 fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32) -> f64 {
     let cos = cos_view.clamp(0.0, 1.0);
     let sin = (1.0 - cos * cos).sqrt();
@@ -110,9 +111,9 @@ fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32
     reflected / shown
 }
 
-/// Sides of the table of [`reflectance_table`].
+/// Numbers of columns and rows of [`reflectance_table`].
 pub(super) const TABLE_SIDES: [usize; 2] = [64, 32];
-/// Largest root mean square slope of the table. Twin of `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl`.
+/// Largest root mean square slope of [`reflectance_table`]. Twin of `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl`.
 pub(super) const TABLE_MOST_SLOPE: f64 = 0.4;
 
 /// Returns the mean reflectance row by row: rows by root mean square slope along one axis, from 0 to
@@ -132,11 +133,12 @@ const PURE_ATTENUATION_PER_M: [f64; 3] = [0.0168, 0.0607, 0.342];
 /// Wavelengths of attenuations, nm.
 const ATTENUATED_NM: [f64; 3] = [450.0, 550.0, 650.0];
 
-/// Returns how bright a body of deep water is, seen from straight above, over the light that enters it, at 450, 550 and
-/// 650 nm, for its diffuse attenuation, 1/m. Below the surface the reflectance is 0.33 b / a (Morel and Prieur 1977).
-/// Here b is the light that water and particles scatter back, and a the absorption. The attenuation K of blue light and
-/// that of pure water, Kw, give the chlorophyll C by K - Kw = 0.11 C^0.67. Particles then scatter back 0.416 C^0.766
-/// (0.002 + 0.01 (0.5 - 0.25 log C)) (Morel and Maritorena 2001).
+/// Returns the reflectance of a body of deep water seen from straight above, relative to the light that enters the
+/// water, at 450, 550 and 650 nm. The water has the diffuse attenuation `attenuation_per_m`, 1/m. Below the surface the
+/// reflectance is 0.33 b / a (Morel and Prieur 1977). Here b is the coefficient with which water and particles scatter
+/// light back, and a that of absorption. The attenuation K of blue light and that of pure water, Kw, give the
+/// chlorophyll C by K - Kw = 0.11 C^0.67. Particles then scatter back 0.416 C^0.766 (0.002 + 0.01 (0.5 - 0.25 log C))
+/// (Morel and Maritorena 2001).
 pub(super) fn body_reflectance(attenuation_per_m: [f64; 3], index: f64) -> [f64; 3] {
     let green_blue = (attenuation_per_m[0] - PURE_ATTENUATION_PER_M[0]).max(1e-4) / 0.11;
     let chlorophyll = libm::pow(green_blue, 1.0 / 0.67).clamp(0.01, 10.0);
@@ -153,8 +155,8 @@ pub(super) fn body_reflectance(attenuation_per_m: [f64; 3], index: f64) -> [f64;
     })
 }
 
-/// Returns the share of diffuse light that the surface throws back into the water: what enters from outside must leave
-/// again, 1 - r = (1 - R) / n^2.
+/// Returns the share r of diffuse light that the surface throws back into the water. Light that enters from outside
+/// must leave again: 1 - r = (1 - R) / n^2, with the reflectance R from outside and the index n.
 fn diffuse_inside(index: f64) -> f64 {
     // Mean reflectance from outside, by steps of equal light.
     let at = |i: i32| fresnel_reflectance(((f64::from(i) + 0.5) / 1000.0).sqrt(), index);

@@ -1,5 +1,5 @@
 //! Tables for places ahead of an observer that moves steadily. They are drawn in slices. The tables at the observer's
-//! own place are a mix of them.
+//! own place are a mix of the tables of two such places.
 
 use bytemuck::{Zeroable as _, bytes_of};
 
@@ -46,12 +46,12 @@ impl WayTables {
         &self.tables[(self.first + 2) % 3]
     }
 
-    /// Bind groups of a layer of both tables of the pair.
+    /// Bind groups that read a layer of the tables of the pair's first and second place.
     pub fn pair(&self, layer: usize) -> [&wgpu::BindGroup; 2] {
         [&self.groups[self.first][layer], &self.groups[(self.first + 1) % 3][layer]]
     }
 
-    /// Makes the tables of the place that comes next the pair's second.
+    /// Shifts the pair by one place. The tables of the coming place become those of the pair's second place.
     pub fn turn(&mut self) {
         self.first = (self.first + 1) % 3;
     }
@@ -68,7 +68,7 @@ pub(super) struct Ahead {
 }
 
 impl Ahead {
-    /// Forgets the course. The textures stay for the next one.
+    /// Forgets the course. The textures stay for the next course.
     pub fn stop(&mut self) {
         (self.course, self.set) = (ObserverCourse::default(), None);
     }

@@ -53,7 +53,7 @@ pub(crate) fn path(directory: &Path, key: u64) -> PathBuf {
 
 /// Whether all texels, which are half floats, are finite.
 fn are_finite(table: &[u8]) -> bool {
-    // Exponent of infinity and NaN.
+    // Exponent bits, all of which are set in infinity and NaN.
     const ENDLESS: u16 = 0x7c00;
     table.as_chunks::<2>().0.iter().all(|half| u16::from_ne_bytes(*half) & ENDLESS != ENDLESS)
 }
@@ -265,8 +265,8 @@ mod tests {
             write(&directory, 1, &tables).unwrap();
         }
         // A file of a terabyte, which must not be read into memory, and a directory. The file is closed at once,
-        // because Windows does not remove a folder that contains an open file. File systems without sparse files would
-        // fill it; there a large file is used instead.
+        // because Windows does not remove a folder that contains an open file. A file system without sparse files would
+        // write a whole terabyte; there a smaller file is used instead.
         let huge = fs::File::create(path(&directory, 4)).unwrap();
         if cfg!(windows) || huge.set_len(1 << 40).is_err() {
             huge.set_len(1 << 28).unwrap();

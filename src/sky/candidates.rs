@@ -50,8 +50,8 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
     add("directional-half", half(Directional));
     add("directional", SkySettings::default());
     add("directional-double", double(Directional));
-    // Doubled sizes of the planet's tables only, then of the observer's tables only: they show which of the two
-    // improves the picture.
+    // The first of these candidates doubles the sizes of the planet's tables only, the second those of the observer's
+    // tables only. They show which of the tables improve the picture.
     add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
     add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
     add("isotropic-eighth", coarsest(IsotropicTables));
@@ -239,7 +239,7 @@ pub fn work(s: &SkySettings) -> Work {
         let nodes = f64::from(s.march_cells.next_multiple_of(4));
         Units { samples: nodes, texels: nodes * source_texels(s), bytes: TEXEL_BYTES }
     } else {
-        // The sky takes 2 look-ups, the air 4 and a column; half of the pixels show each.
+        // The sky takes 2 look-ups. The air takes 4, and the columns along the ray. Half of the pixels show each.
         Units { samples: 1.0, texels: 3.0, bytes: TEXEL_BYTES }
     };
     Work {

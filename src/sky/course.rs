@@ -134,7 +134,7 @@ impl ObserverCourse {
 
     /// Plans a frame of an observer with a pair. Between the pair's places the plan is a mix of their tables and a
     /// slice of the next tables. Past the second place the plan is the rest of the next tables and a shift of the pair.
-    /// Forgets the course if the observer is not between the places of a pair then.
+    /// Forgets the course if the observer is outside the shifted pair too.
     fn between(
         &mut self,
         pair: &[ObserverPlace; 2],

@@ -20,8 +20,8 @@ use super::{
 const LIFT: f64 = 0.0105;
 /// Sine of elevation above which the lift is less than the interval's margin.
 const NOT_LIFTED: f64 = 0.2;
-/// Margin of the interval beyond the disc on both sides, rad; and the largest change of the lamp's sine of elevation
-/// and of its radius, added together, for which the interval is kept.
+/// Tolerances of the interval. The first is its margin beyond the disc on both sides. The second is the largest sum of
+/// the changes of the lamp's sine of elevation and of its radius, rad, for which the interval is kept.
 const ROOM: (f64, f64) = (2e-3, 1e-3);
 /// Change of altitude after which the interval is computed again: a share of the altitude plus a number of m.
 const CLIMB: (f64, f64) = (1e-3, 1.0);

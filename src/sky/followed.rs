@@ -82,7 +82,7 @@ impl FollowedSky {
 
     /// Continues building the tables of the changing air, unless this frame has already done so. `share` is the work to
     /// do, as a share of a build with the default settings. The first frame gets a draft. A share of 1 builds the
-    /// tables whole, for pictures that may not depend on earlier ones. Returns whether anything was built.
+    /// tables whole, for pictures that must not depend on earlier pictures. Returns whether anything was built.
     pub fn build_toward(
         &mut self,
         device: &Device,

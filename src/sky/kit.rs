@@ -1,9 +1,10 @@
-//! Resources that all tables of one device with the same settings share: pipelines, builds in progress, and the
-//! finished tables of every planet that is still shown.
+//! The kit: resources that all tables of one device with the same settings share. These are pipelines, builds in
+//! progress, and the finished tables of every planet that is still shown.
 //!
-//! A planet is built once for all who request it: a later request joins the build or takes the finished tables. A build
-//! takes several submissions. Each is made under the kit's lock, so that they reach the queue in order, whichever
-//! frames they belong to. The kit does not keep tables alive; they are freed when nobody shows them any more.
+//! The tables of a planet are built once for all who request them: a later request joins the build or takes the
+//! finished tables. A build takes several submissions. Each is made under the kit's lock, so that the submissions reach
+//! the queue in order, whichever frames they belong to. The kit does not keep tables alive; they are freed when nobody
+//! shows them any more.
 
 mod empty_set;
 mod first;
@@ -23,7 +24,7 @@ use super::settings::{SkyModel, SkySettings};
 use crate::error::{Error, Result, Status};
 use crate::gpu::{Device, readback};
 
-/// Kits of a device, one for each [`SkySettings`] in use. Any thread.
+/// Pipelines, builds and finished tables of a device, kept apart for each [`SkySettings`] in use. Any thread.
 #[derive(Default)]
 pub struct SkyLibrary {
     kits: Mutex<Vec<Weak<Kit>>>,
@@ -44,7 +45,8 @@ impl SkyLibrary {
     }
 }
 
-/// Largest share of a whole build in one submission, so that none keeps the GPU from the host's own work for long.
+/// Largest share of a whole build in one submission, so that no submission keeps the GPU from the host's own work for
+/// long.
 const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
 
 /// Work, in nodes of a march, below which a build needs no draft: 0.2 s on the software driver.
@@ -85,8 +87,8 @@ struct Build {
     ticket: Weak<Ticket>,
     set: Arc<TableSet>,
     scratch: Scratch,
-    /// For each triple of wavelengths: the bind group that its passes share, and the one that adds its light to the
-    /// others'.
+    /// For each triple of wavelengths: the bind group that its passes share, and the bind group of the pass that adds
+    /// the triple's light to the light of the other triples. The second is `None` with a single triple.
     triples: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
     /// Bind group of the tables that each pass reads.
     reads: Vec<wgpu::BindGroup>,
@@ -106,12 +108,14 @@ struct BuildQueue {
     count: u64,
 }
 
-/// Table that passes draw and read under a name. If there are several triples of wavelengths, it holds one triple.
+/// Table that passes draw and read under a name. If there are several triples of wavelengths, the table holds one
+/// triple.
 fn table_named<'a>(set: &'a TableSet, scratch: &'a Scratch, name: Name) -> Option<&'a SkyTable> {
     scratch.0.iter().chain(set.tables()).find(|(n, _)| *n == name).map(|(_, t)| t)
 }
 
-/// Result of one step of a build: its work as a share of a whole build, and the share of this build that is done.
+/// Result of one step of a build: the step's work as a share of a whole build, and the share of this build that is
+/// done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BuildStep {
     pub work: f64,
@@ -129,7 +133,8 @@ pub(crate) struct Kit {
     /// Placeholder for tables that a model does not have.
     pub nothing: SkyTable,
     observers: OnceLock<ObserverPasses>,
-    /// Work of a whole build with the default settings relative to one with these settings.
+    /// Work of a whole build with the default settings relative to one with these settings, within the limits of
+    /// [`PACE`].
     pub pace: f64,
     /// Build plan of whole tables.
     whole: Level,
@@ -197,13 +202,13 @@ impl Kit {
         Ok(self.observers.get_or_init(|| made))
     }
 
-    /// Number of planets built so far, not counting those loaded from the cache.
+    /// Number of whole builds finished so far. Tables loaded from the cache are not counted.
     pub fn builds(&self) -> u64 {
         self.lock().count
     }
 
-    /// Returns the finished tables of a checked planet, or a claim on its build, which may be under way already.
-    /// A request for a draft also gets whole tables, if these are finished.
+    /// Returns the finished tables of `planet`, which must have been checked, or a claim on their build. The build may
+    /// be under way already. A request for a draft gets the whole tables if these are finished.
     ///
     /// # Errors
     /// GPU faults.
@@ -229,7 +234,7 @@ impl Kit {
         Ok(Claim::Building(ticket))
     }
 
-    /// Keeps the scratch tables of builds that nobody claims any more, for the next build.
+    /// Ends builds that nobody claims any more, and keeps their scratch tables for the next build.
     fn sweep(&self, work: &mut BuildQueue) {
         while let Some(i) = work.builds.iter().position(|b| b.ticket.strong_count() == 0) {
             let build = work.builds.swap_remove(i);
@@ -339,7 +344,7 @@ impl Kit {
         }
     }
 
-    /// Records strips; with `part` only a corner of that size.
+    /// Records strips. With `part`, draws only this width and height from the first texel of the strips on.
     fn record_strips(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -388,10 +393,10 @@ impl Kit {
         parts.add(encoder, build.set.result(Name::Lights), light, triple == 0);
     }
 
-    /// Returns the tables of a checked planet: those that someone shows, those from the cache's file, or new ones. New
-    /// ones are built in sixteen steps, with a wait for the GPU after each, and then written to the cache. The host's
-    /// OpenGL context is entered for each step and left during each call of `progress`, which gets the share done. The
-    /// build ends if `progress` returns false.
+    /// Returns the tables of `planet`, which must have been checked: those that someone shows, those from the cache's
+    /// file, or new ones. New ones are built in sixteen steps, with a wait for the GPU after each, and then written to
+    /// the cache. The host's OpenGL context is entered for each step and left during each call of `progress`, which
+    /// gets the share done. The build ends with [`Status::Aborted`] if `progress` returns false.
     pub fn build(
         &self,
         planet: &Planet,
@@ -452,7 +457,7 @@ impl Kit {
         })
     }
 
-    /// Whole tables that are finished or in the cache's file.
+    /// Returns the whole tables of `planet` if they are finished or in the cache's file.
     ///
     /// # Errors
     /// GPU faults.

@@ -5,7 +5,7 @@ use super::recipe::{Pass, passes};
 use super::settings::SkySettings;
 use crate::gpu::Device;
 
-/// Part of a pass: some rows of its target.
+/// Some rows of a pass's target, which are drawn together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip {
     /// Index of the pass.
@@ -13,7 +13,7 @@ pub(crate) struct Strip {
     pub first_row: u32,
     /// Number of rows.
     pub rows: u32,
-    /// Cost, in units of the time of a march's node.
+    /// Cost, in units of the time that one node of a march takes.
     pub cost: f64,
 }
 

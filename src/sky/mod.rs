@@ -9,7 +9,7 @@
 //! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
 //!
 //! All users of one [`SkyLibrary`] (all contexts of a device) that show the same planet with the same settings share
-//! its tables and the work of building them.
+//! the planet's tables and the work of building them.
 //!
 //! ```text
 //! tables.update(&mut encoder, &planet, 1.0 / 80.0)?;          // a draft at once, whole tables in parts
@@ -23,11 +23,11 @@
 //! z up, x and y any two level axes. Directions and lamps use the same frame.
 //!
 //! # Errors of the default
-//! The default settings are compared with [`mod@reference`] at a fine resolution: altitudes from 1 m to 200 km, the sun
-//! down to 95 degrees from the zenith, all directions, and distances from 700 m.
-//! `cargo test --test sky_gpu default_model` prints these figures and fails where they are exceeded:
+//! The radiance with the default settings is compared with [`mod@reference`] at a fine resolution. The comparison
+//! covers altitudes from 1 m to 200 km, the sun down to 95 degrees from the zenith, all directions, and distances from
+//! 700 m. `cargo test --test sky_gpu default_model` prints these figures and fails where they are exceeded:
 //!
-//! | air | median | 95th percentile | worst | worst transmittance above 1 % |
+//! | air | median | 95th percentile | worst | worst error of a transmittance above 1 % |
 //! |---|---|---|---|---|
 //! | clear, without ozone | 0.3 % | 1.6 % | 80 % | 0.01 % |
 //! | with ozone | 0.35 % | 1.8 % | 40 % | 0.05 % |
@@ -43,17 +43,17 @@
 //! Look-ups and pixels therefore do not change. The cost of the tables is proportional to the number of wavelengths.
 //! The error of the worst channel relative to the luminance is 6 % with 3 wavelengths and 2.4 % with 9, against 15
 //! wavelengths of the reference. The error is the root mean square over the sky in Earth's air with ozone, with the sun
-//! at 30, 60, 85 and 90 degrees from the zenith (`cargo test --test sky_gpu spectral_set`; the long suite holds 15
-//! wavelengths to 1 % against 40). Transmittance, and with it the disc and the direct light on the ground, always uses
-//! the three wavelengths.
+//! at 30, 60, 85 and 90 degrees from the zenith (`cargo test --test sky_gpu spectral_set`; the long suite checks that
+//! 15 wavelengths are within 1 % of 40). Transmittance, and with it the disc and the direct light on the ground, always
+//! uses the three wavelengths.
 //!
 //! # Models
 //! [`SkyModel`] lists the models with their errors. Transmittance is a closed form (`columns_along` in
 //! `shaders/sky/ray.wgsl`), not a table.
 //!
 //! # What is not here
-//! There is no `held.rs`: the tables follow from planet, place and lights, so that there is no state to advance or to
-//! save.
+//! Other rooms keep the state of their effect in `held.rs`. The sky has no such file: the tables follow from planet,
+//! place and lights, so that there is no state to advance or to save.
 
 mod ahead;
 mod cache;

@@ -12,7 +12,7 @@ pub enum Disc {
     /// A moon, lit from the given unit direction in the observer's frame, with the reflectance law of Lommel and
     /// Seeliger.
     Moon {
-        /// Unit direction towards the sun.
+        /// Unit direction from the moon towards the sun, in the observer's level frame.
         lit_from: [f64; 3],
     },
 }

@@ -102,7 +102,8 @@ pub(crate) struct Builder {
     pub sampler: wgpu::Sampler,
 }
 
-/// Buffers that all builds of one detail share: table sizes, directions to sum over, and the job of each pass.
+/// Buffers that all builds of one detail share: table sizes, directions to sum over, and the job of each pass (its
+/// order, and whether it is the last one).
 pub(crate) struct BuildBuffers {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
@@ -235,7 +236,8 @@ impl FadePasses {
         draw_over(encoder, &self.light, target, Some(self.light_size), [Some((first, 1.0)), other]);
     }
 
-    /// Draws into `target` the mix of two tables, all three of one size. `share` is the weight of the second.
+    /// Draws the mix of two tables into `target`, which has the same size as both. `share` is the weight of the second
+    /// table.
     pub fn between(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -247,8 +249,8 @@ impl FadePasses {
     }
 }
 
-/// Draws tables over a target, each with its share. `size` limits the draw to the corner at the first texel; all other
-/// texels are cleared.
+/// Draws tables into a target, one over the other, each with its share. `size` limits the draw to the corner at the
+/// first texel; all other texels are cleared.
 fn draw_over(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,

@@ -108,7 +108,7 @@ impl Probe {
     /// Computes the answers under one sun above the x axis at `sun_zenith_angle`, rad.
     ///
     /// # Errors
-    /// Numbers out of range; GPU faults.
+    /// [`crate::Status::InvalidArgument`] for numbers out of range; GPU faults.
     pub fn under_sun(
         &mut self,
         question: Question,
@@ -123,7 +123,7 @@ impl Probe {
     /// Computes the answers for an observer.
     ///
     /// # Errors
-    /// Numbers out of range; GPU faults.
+    /// [`crate::Status::InvalidArgument`] for numbers out of range; GPU faults.
     pub fn ask(&mut self, question: Question, observer: &Observer, rays: &[Ray]) -> Result<Vec<Answer>> {
         for ray in rays {
             check_range("distance_m", ray.distance_m, 0.0, 1e9, "m")?;

@@ -58,7 +58,8 @@ impl Name {
         (width, if self == Name::Sources { height * s.layers() } else { height })
     }
 
-    /// Size, texels, of the planet's light as it is shown. Where pixels march, the sources lie below it.
+    /// Size, texels, of the planet's light as it is shown. With [`SkyModel::BruteForce`] the sources lie below the
+    /// light.
     pub fn shown_size(s: &SkySettings) -> (u32, u32) {
         let (light, sources) = (Self::Lights.size(s), Self::Sources.size(s));
         match s.model {
@@ -88,7 +89,7 @@ impl Name {
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     pub kind: PassKind,
-    /// Order that is gathered.
+    /// Number of the scattering order to which the pass belongs.
     pub order: u32,
     /// Whether the orders after this one are added as a geometric series.
     pub last: bool,
@@ -137,7 +138,8 @@ pub(crate) fn passes(s: &SkySettings) -> Vec<Pass> {
     out
 }
 
-/// Pass that gathers light along the quadrature; it reads the order's source and the light of the order before.
+/// Pass that gathers light in the directions of the quadrature; it reads the order's source and the light of the order
+/// before.
 fn gather(order: u32, source: Name, light: Name) -> Pass {
     let reads = [source, Name::Nothing, light, Name::Nothing, Name::Nothing, Name::Norms];
     Pass::new(PassKind::Gather, order, false, reads, &[Name::Radiances])

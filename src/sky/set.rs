@@ -18,7 +18,7 @@ pub(crate) struct TableSet {
     pub detail: Detail,
     /// Number that is unique to each set.
     pub id: u64,
-    /// Ids of the two sets that this one mixes, and the share of the second, where it was made by
+    /// Ids of the two sets that this set mixes, and the share of the second. `None` unless this set was made by
     /// [`Kit::mixed`](super::kit::Kit::mixed).
     pub mixes: Option<(u64, (u64, f32))>,
     /// Air at each triple of wavelengths.
@@ -67,8 +67,8 @@ impl TableSet {
     }
 }
 
-/// Finds the table `name` among the results. For a name that is not among them, which never happens, it is the first
-/// table.
+/// Finds the table `name` among the results. Returns the first table for a name that is not among them, which never
+/// happens.
 pub(super) fn find(results: &[(Name, SkyTable)], name: Name) -> &SkyTable {
     &results.iter().find(|(n, _)| *n == name).unwrap_or(&results[0]).1
 }

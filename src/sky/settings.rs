@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 
 /// Model of the sky. All models share the same look-up functions, so that only the tables depend on the choice. With
-/// [`SkyModel::BruteForce`] the look-up functions march.
+/// [`SkyModel::BruteForce`] these functions march along the ray of every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkyModel {
     /// Light scattered once, from a table over (altitude, view angle, sun angle); the phase functions are applied
@@ -14,7 +14,7 @@ pub enum SkyModel {
     /// Light scattered more than once is taken as equal in all directions (Hillaire 2020). The error is -3 to -6 % near
     /// the horizon and +3 % at the zenith. The tables take a tenth of the default's time to build.
     IsotropicTables,
-    /// Light scattered more than once depends on direction, order by order. The default.
+    /// Light scattered more than once is computed order by order, and depends on direction. The default.
     #[default]
     Directional,
     /// The default model, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] nodes.
@@ -55,16 +55,16 @@ impl SkyModel {
 /// Sizes and counts of the sky's tables. The defaults have the errors stated in the documentation of [`crate::sky`].
 /// With all numbers at their minimum the median error of the default model is 5 % in clear air, and 6 % with ozone and
 /// in haze of 30 km visibility (95th percentile 26 to 48 %, in twilight and in the sun's glow). In haze of 9 km it is
-/// 15 %, because the tail of the orders is missed; 16 orders bring it to 9 %. `tests/sky_gpu.rs` checks these limits.
+/// 15 %, because the light of high orders is missed; with 16 orders it is 9 %. `tests/sky_gpu.rs` checks these limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SkySettings {
     /// Model of the sky, default [`SkyModel::Directional`].
     pub model: SkyModel,
-    /// Number of wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`. The default, 3, are the
-    /// planet's own. More wavelengths are spread over the visible range, and combined into three values at the planet's
-    /// wavelengths that give the same colour (models [`SkyModel::Directional`] and [`SkyModel::IsotropicTables`]).
-    /// Colours are then right where three wavelengths are too few, but the time of a build grows in proportion to their
-    /// number. See [`crate::sky`] for errors and costs.
+    /// Number of wavelengths that the tables are built for, a multiple of 3 in `[3, 15]`. With the default, 3, they are
+    /// the planet's own wavelengths. More wavelengths are spread over the visible range, and combined into three values
+    /// at the planet's wavelengths that give the same colour (models [`SkyModel::Directional`] and
+    /// [`SkyModel::IsotropicTables`]). Colours are then right where three wavelengths are too few, but the time of a
+    /// build grows in proportion to their number. See [`crate::sky`] for errors and costs.
     pub wavelengths: u32,
     /// Number of scattering orders that are computed one by one, `[3, 16]`, default 5. Higher orders are added as a
     /// geometric series.
@@ -73,9 +73,9 @@ pub struct SkySettings {
     pub suns: u32,
     /// Number of altitudes in the planet's tables, `[8, 64]`, default 22.
     pub altitudes: u32,
-    /// Number of zenith angles in a source table, `[4, 32]`, default 17.
+    /// Number of zenith angles in the table of light that the air scatters again, `[4, 32]`, default 17.
     pub zeniths: u32,
-    /// Number of azimuths on `[0, pi]` in a source table, `[3, 24]`, default 10.
+    /// Number of azimuths on `[0, pi]` in the table of light that the air scatters again, `[3, 24]`, default 10.
     pub azimuths: u32,
     /// Number of zenith angles on each side of the horizon in the sum over directions, `[3, 16]`, default 8.
     pub rule_zeniths: u32,
@@ -89,7 +89,7 @@ pub struct SkySettings {
     pub sky_above: u32,
     /// Number of rows below the horizon in an observer's sky, `[8, 256]`, default 40.
     pub sky_below: u32,
-    /// Number of panels in a march for an observer's sky, `[1, 32]`, default 5.
+    /// Number of panels (of 4 nodes) in a march for an observer's sky, `[1, 32]`, default 5.
     pub sky_panels: u32,
     /// Number of azimuths on `[0, pi]` in the table of the air in front of objects, `[4, 64]`, default 24.
     pub air_azimuths: u32,
@@ -99,7 +99,7 @@ pub struct SkySettings {
     pub air_below: u32,
     /// Number of distances in the table of the air, `[4, 64]`, default 16.
     pub air_slices: u32,
-    /// Number of panels in a march to one of these distances, `[1, 16]`, default 2.
+    /// Number of panels (of 4 nodes) in a march to one distance of the table of the air, `[1, 16]`, default 2.
     pub air_panels: u32,
     /// Number of nodes in a pixel's march ([`SkyModel::BruteForce`]), rounded up to a multiple of 4, `[1, 4096]`,
     /// default 64.
@@ -109,7 +109,7 @@ pub struct SkySettings {
 /// Largest number of wavelengths, for which `sky/observer.wgsl` has room.
 pub(crate) const MOST_WAVELENGTHS: u32 = 15;
 
-/// Number of tiles in the table of light: irradiance and six moments.
+/// Number of tiles in the table of light: one of irradiance, and six of coefficients of spherical harmonics.
 pub(crate) const LIGHT_TILES: u32 = 7;
 
 /// Largest width of a table, texels, which every device supports.
@@ -159,8 +159,8 @@ impl SkySettings {
             zeniths: self.zeniths.min(9),
             azimuths: self.azimuths.min(6),
             rule_zeniths: self.rule_zeniths.min(5),
-            // With 9, the width of the radiances is no power of two, like that of the full tables. llvmpipe compiles a
-            // pass again if a width becomes a power of two.
+            // With 9, the width of the table of radiances is no power of two. The same holds for the full tables.
+            // llvmpipe compiles a pass again if a width becomes a power of two.
             rule_azimuths: self.rule_azimuths.min(9),
             build_panels: self.build_panels.min(2),
             ..*self
@@ -182,7 +182,8 @@ impl SkySettings {
         (self.sky_above + self.sky_below, self.sky_azimuths)
     }
 
-    /// First texel of the sky in an observer's tables: beside the air, or below it if the texture would be too wide.
+    /// First texel of the sky in an observer's tables. The sky lies beside the table of the air, or below this table if
+    /// the texture would be too wide.
     pub(crate) fn sky_corner(&self) -> (u32, u32) {
         let (air, sky) = (self.air_size(), self.sky_size());
         if air.0 + sky.0 <= WIDEST { (air.0, 0) } else { (0, air.1) }
@@ -194,7 +195,7 @@ impl SkySettings {
         (air.0.max(corner.0 + sky.0), air.1.max(corner.1 + sky.1))
     }
 
-    /// All numbers with their names and ranges.
+    /// All numbers of these settings, each as (name, value, least value, largest value).
     pub(crate) fn numbers(&self) -> [(&'static str, u32, u32, u32); 19] {
         [
             ("wavelengths", self.wavelengths, 3, MOST_WAVELENGTHS),

@@ -79,7 +79,8 @@ pub fn sunlight(planet: &Planet, altitude_m: f64, sun_zenith: f64) -> Result<Sun
 }
 
 /// Computes the line of sight from one point to another. Positions are in metres from the planet's centre, in any axes.
-/// The ground is the sphere of the bottom radius, lowered to the lower point if that is below it.
+/// The ground is the sphere of the bottom radius. If the lower point is below this sphere, the sphere is lowered to
+/// that point.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a planet out of range, or for a position that is not finite, farther than

@@ -29,8 +29,8 @@ impl Default for SolvedSkies {
 }
 
 impl SolvedSkies {
-    /// Sky of an air. The first call solves it, which takes about a second; other threads that request a sky wait
-    /// meanwhile.
+    /// Returns the solved sky of an air. The first call for an air solves it, which takes about a second; other threads
+    /// that request a sky wait meanwhile.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a planet out of range; [`Status::Poisoned`] after a panic.
@@ -43,7 +43,8 @@ impl SolvedSkies {
 
 /// Distance longer than any ray through the air, m.
 const WHOLE_M: f64 = 1e12;
-/// Steps of the sun's zenith angle per degree at which the ground's light is computed; between them it is interpolated.
+/// Number of sun zenith angles per degree at which the ground's light is computed. The light is interpolated between
+/// them.
 const STEPS_PER_DEG: f64 = 2.0;
 /// Smallest light whose logarithm is taken.
 const LEAST: f64 = 1e-30;

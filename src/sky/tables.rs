@@ -1,4 +1,4 @@
-//! Tables over a planet as one simulator shows them. They are built at once or in steps, and follow a change of the
+//! Tables over a planet as one context shows them. They are built at once or in steps, and follow a change of the
 //! planet's air without a jump.
 
 use std::path::Path;
@@ -17,7 +17,7 @@ use super::way::{LightWay, is_far, place_on_way};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
 
-/// Change of the weather's air that tables follow.
+/// Present and coming air of a change that the tables follow.
 #[derive(Clone, Copy)]
 pub(crate) struct AirChange<'a> {
     /// Planet under the present weather.
@@ -32,7 +32,8 @@ impl AirChange<'_> {
         self.now != self.ahead
     }
 
-    /// Whether the change leads past `set`, or ends there, on its way from `shown`.
+    /// Whether the change, on its way from the air of `shown`, passes near the air of `set` or ends there. True if no
+    /// change is known.
     fn leads_past(&self, shown: &TableSet, set: &TableSet) -> bool {
         !self.goes_on() || place_on_way(&shown.planet, self.ahead, &set.planet).is_near
     }
@@ -52,7 +53,7 @@ struct TablesFade {
 enum FadeTo {
     /// Weight 1: only the tables to show next are then shown.
     End,
-    /// Weight by the place of the present air between the airs of both tables.
+    /// Weight that follows from the place of the present air between the airs of both tables.
     Air,
 }
 
@@ -72,7 +73,7 @@ enum State {
 /// One call in this many does not continue the build. In that call observers draw their own tables for the present sun
 /// and altitude.
 const REST: u32 = 8;
-/// Smallest step of a fade's share per call. A fade costs the same in each frame, however long it lasts.
+/// Smallest step of a fade's weight per call. A fade costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
 /// Largest step of the weight per call while the air changes. A change that took place during a build is thereby spread
 /// over several calls.
@@ -95,13 +96,13 @@ pub struct TablesProgress {
 /// Tables over a planet for one model: light scattered more than once, and the light at every altitude and sun angle.
 /// They hold radiances per unit irradiance of a lamp, so that sun and moon share them.
 ///
-/// All that show the same planet with the same settings through one [`SkyLibrary`] share its tables and the work of
-/// building them. One thread at a time.
+/// All `SkyTables` that show the same planet with the same settings through one [`SkyLibrary`] share the planet's
+/// tables and the work of building them. One thread at a time.
 pub struct SkyTables {
     pub(crate) device: Arc<Device>,
     kit: Arc<Kit>,
-    /// Light that is shown: that of one planet, or a mix of two during a fade. Where pixels march, the texture also
-    /// holds the sources of the shown planet, below the light.
+    /// Light that is shown: that of one planet, or a mix of two during a fade. With [`SkyModel::BruteForce`] the
+    /// texture also holds the sources of the shown planet, below the light.
     pub(crate) light: SkyTable,
     shown: Option<Arc<TableSet>>,
     state: State,
@@ -136,7 +137,7 @@ impl SkyTables {
         &self.kit.settings
     }
 
-    /// Planet whose tables are shown; during a fade, the older one.
+    /// Planet whose tables are shown; during a fade, the planet of the tables that fade out.
     pub fn planet(&self) -> Option<&Planet> {
         self.shown.as_ref().map(|s| &s.planet)
     }
@@ -146,7 +147,7 @@ impl SkyTables {
         self.revision
     }
 
-    /// Number of planets built with the settings of these tables, by all that share them.
+    /// Number of whole builds finished so far with these settings, by all [`SkyTables`] of the library.
     pub fn builds(&self) -> u64 {
         self.kit.builds()
     }
@@ -156,8 +157,8 @@ impl SkyTables {
         [("SKY_MARCH", crate::stage::flag(self.settings().model == SkyModel::BruteForce))]
     }
 
-    /// Follows `planet`, with at most about `fraction` of the work of a whole build in this call (strips of 1/1024 are
-    /// not divided).
+    /// Follows `planet`: builds its tables, fades to them and shows them. One call does at most about `fraction`, in
+    /// (0, 1], of the work of a whole build (strips of 1/1024 of the work are not divided).
     ///
     /// With a `fraction` of 1 the tables of `planet` are built and shown at once. Otherwise the first planet is shown
     /// at once as a draft. A later planet whose air differs much from the shown one's also gets a draft, which fades in
@@ -230,7 +231,8 @@ impl SkyTables {
         Ok(work)
     }
 
-    /// Chooses the tables to show next, unless a build or a fade towards them is in progress.
+    /// Chooses the tables to show next. A fade in progress keeps the earlier choice, and so does a build in progress
+    /// that may not be abandoned.
     fn choose(&mut self, change: AirChange<'_>) -> Result<()> {
         let Some(shown) = &self.shown else { return Ok(()) };
         let serves = |to: &Planet| place_on_way(&shown.planet, to, change.now).is_near;
@@ -286,7 +288,8 @@ impl SkyTables {
         }
     }
 
-    /// Begins the fade to finished tables, or drops them if the present air no longer changes towards their air.
+    /// Begins the fade to finished tables. Drops them if the air changes in another direction and is nearer to the air
+    /// of the shown tables.
     fn begin_fade(&mut self, set: Arc<TableSet>, change: AirChange<'_>) {
         let Some(shown) = &self.shown else { return };
         let place = place_on_way(&shown.planet, &set.planet, change.now);
@@ -371,10 +374,11 @@ impl SkyTables {
         })
     }
 
-    /// Builds and shows the tables of `planet` now, in sixteen steps with a wait for the GPU after each; or reads them
-    /// from the directory `cache`, in which new tables are kept afterwards. `progress` gets the share done after each
-    /// step. If it returns false the build ends, and what was shown before stays. If a file of the cache is damaged or
-    /// cannot be written, this is logged, and the tables are built and shown all the same.
+    /// Builds and shows the tables of `planet` now, in sixteen steps with a wait for the GPU after each. If the
+    /// directory `cache` holds the tables, reads them from there instead; new tables are written to it afterwards.
+    /// After each step `progress` gets the share of the build that is done. If it returns false the build ends, and
+    /// what was shown before stays. If a file of the cache is damaged or cannot be written, this is logged, and the
+    /// tables are built and shown all the same.
     ///
     /// # Errors
     /// [`crate::Status::Aborted`] if `progress` returned false; [`crate::Status::InvalidArgument`] for the planet; GPU
@@ -427,7 +431,7 @@ impl SkyTables {
     }
 
     /// Share of a build that is as much work as `share` of a build with the default settings. At most 1/16, so that
-    /// small tables take sixteen calls too.
+    /// even small tables take at least sixteen calls.
     pub(crate) fn paced(&self, share: f32) -> f32 {
         (share * self.kit.pace as f32).min(FADE)
     }

@@ -25,7 +25,7 @@ pub(crate) struct SkyView {
 }
 
 impl SkyView {
-    /// Creates the view's sky over the tables of a context.
+    /// Creates the view's sky from the tables of a context.
     ///
     /// # Errors
     /// A GPU fault.
@@ -34,13 +34,13 @@ impl SkyView {
         Ok(Self { tables: tables.clone(), rebuild_work: rebuild_work(volume.settings()), volume })
     }
 
-    /// Work of building default tables, in units of the work of one pixel of the sky with these settings.
+    /// Work of building default tables, in units of the work of one pixel of the sky with the view's settings.
     pub fn rebuild_work(&self) -> f64 {
         self.rebuild_work
     }
 
-    /// Returns the tables for shaders that include `sky/lookup.wgsl`: layout and bind group, and the constants that
-    /// they were made for.
+    /// Returns the tables for shaders that include `sky/lookup.wgsl`: layout and bind group, and the shader constants
+    /// that fit them.
     pub fn tables(&self) -> (wgpu::BindGroupLayout, wgpu::BindGroup, [Constant; 2]) {
         let is_marched = self.settings().model == SkyModel::BruteForce;
         let constants = [("SKY_MARCH", flag(is_marched)), ("SKY_LAMPS", f64::from(self.volume.lamp_count()))];
@@ -154,7 +154,7 @@ fn moon_shows(scene: &Scene) -> bool {
 }
 
 /// Direction of the sun as seen from the moon's face. It lies in the plane of the directions to the moon and to its
-/// bright limb, at the phase angle.
+/// bright limb, at the phase angle from the direction back to the observer.
 fn moon_lit_from(moon: &Light) -> DVec3 {
     let cos_phase = (2.0 * moon.lit - 1.0).clamp(-1.0, 1.0);
     let sin_phase = (1.0 - cos_phase * cos_phase).sqrt();

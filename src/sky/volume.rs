@@ -24,7 +24,7 @@ use crate::gpu::Device;
 struct DrawnFor {
     /// Id of the planet's tables.
     set: u64,
-    /// Id of the tables that fade in over them, and their share.
+    /// Id of the tables that fade in over those of `set`, and their share.
     over: Option<(u64, f32)>,
     altitude_m: f64,
     mu_s: f64,
@@ -49,8 +49,8 @@ impl Fade {
     }
 }
 
-/// Change of the sine of a lamp's elevation after which the tables are drawn again: usually, and in frames that already
-/// work on the planet's tables.
+/// Change of the sine of a lamp's elevation after which the tables are drawn again. The first number is the usual one.
+/// The second applies in frames that already work on the planet's tables.
 const SUN_STEP: (f64, f64) = (2e-5, 2e-4);
 
 /// Smaller of the scale heights of gas and haze, m. A medium that the air does not have is left out; 0 without both.
@@ -61,17 +61,19 @@ fn least_scale_height_m(air: &AirUniform) -> f64 {
     if least_m.is_finite() { least_m } else { 0.0 }
 }
 
-/// Change of altitude after which the tables are drawn again, m. It is the larger of two: 0.2 % of the altitude plus
-/// 1 cm; and a thousandth of the smallest scale height of the air, over which the light changes by about as much, but
-/// at most 30 % of the altitude plus 5 cm, because near the ground the horizon moves fastest. Meanwhile look-ups use
-/// the observer's own altitude for directions, so the horizon follows at once.
+/// Change of altitude after which the tables are drawn again, m. It is the larger of two lengths. The first is 0.2 % of
+/// the altitude plus 1 cm. The second is a thousandth of the smallest scale height of the air, over which the light
+/// changes by about a thousandth. The second is limited to 30 % of the altitude plus 5 cm, because the horizon moves
+/// fastest near the ground. Until the tables are drawn again, look-ups use the observer's own altitude for directions,
+/// so the horizon follows at once.
 fn altitude_step_m(air: &AirUniform, altitude_m: f64) -> f64 {
     (2e-3 * altitude_m.abs() + 1e-2).max((1e-3 * least_scale_height_m(air)).min(0.05 + 0.3 * altitude_m.abs()))
 }
 
-/// Bounds for following an observer. Tables are mixed over an altitude difference of at most a twentieth of a scale
-/// height plus 2 % of the altitude. For a lamp whose elevation has the sine s they are mixed over a difference of s of
-/// at most 6e-4 + 0.15 max(s, 0)^2, which is small where the light changes fast: near the horizon and below it.
+/// Bounds for following an observer. The tables of two places may be mixed if their altitudes differ by at most a
+/// twentieth of the smaller scale height plus 2 % of the altitude. For a lamp whose elevation has the sine s, the sines
+/// at the two places may differ by at most 6e-4 + 0.15 max(s, 0)^2. This bound is small where the light changes fast:
+/// near the horizon and below it.
 fn bounds(air: &AirUniform, place: &ObserverPlace) -> Bounds {
     let of_lamp = |mu_s: Option<f64>| 6e-4 + 0.15 * mu_s.unwrap_or(0.0).max(0.0).powi(2);
     let [sun, moon] = place.mu_s.map(of_lamp);
@@ -256,7 +258,7 @@ impl SkyVolume {
             drawn = self.follow(encoder, tables, shown, &ObserverPlace { altitude_m, mu_s })?;
         }
         for drawn in &mut self.drawn {
-            // If the shown set is the mix of two sets that these tables already contain, they are up to date.
+            // These tables are up to date if they already contain the mix of two sets that is now shown.
             *drawn = drawn.map(|d| match d.over.is_some() && shown.mixes == d.over.map(|over| (d.set, over)) {
                 true => DrawnFor { set: shown.id, over: None, ..d },
                 false => d,
@@ -306,7 +308,7 @@ impl SkyVolume {
         Ok(drawn)
     }
 
-    /// Whether lamp `i`'s tables that fade in are those of `set`, for the altitude and sun of `d`.
+    /// Whether the tables that fade in for lamp `i` are those of `set`, drawn for the altitude and sun of `d`.
     fn is_ready(&self, i: usize, d: &DrawnFor, set: &TableSet) -> bool {
         let wanted = DrawnFor { set: set.id, over: None, ..*d };
         self.fade.as_ref().is_some_and(|f| f.drawn[i] == Some(wanted))
@@ -322,7 +324,8 @@ impl SkyVolume {
     }
 
     /// Follows an observer that moves: draws a slice of the tables ahead of it. If the present tables are too far from
-    /// its place, mixes the tables of the pair for its place. Returns whether anything was drawn.
+    /// the observer's place, mixes new ones from the tables of two places (`course.rs`), one behind and one ahead of
+    /// the observer. Returns whether anything was drawn.
     fn follow(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

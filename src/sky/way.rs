@@ -2,8 +2,8 @@
 
 use crate::planet::{FIELDS, Planet};
 
-/// Relative change of optical depth above which two planets are far apart. A draft for one (small tables that are
-/// quickly built) then has a smaller error than the whole tables of the other.
+/// Relative change of optical depth above which two planets are far apart. A draft for one of them (small tables that
+/// are quickly built) then shows it with a smaller error than the whole tables of the other.
 const FAR: f64 = 0.03;
 /// Change of the ground's albedo above which two planets are far apart.
 const FAR_ALBEDO: f64 = 0.1;
@@ -14,8 +14,8 @@ const NUMBERS: usize = 15;
 /// length.
 const BESIDE: f64 = 0.5;
 
-/// Length of light's slanted path through the air, in vertical depths, for which a mix of two tables is right.
-/// `changing_air` prints the errors of the mix.
+/// Length of light's slanted path through the air, as a multiple of the vertical path, for which a mix of two tables is
+/// right. The tests in `src/tests/changing_air.rs` print the errors of the mix.
 const SLANT: f64 = 2.0;
 
 /// Place of a planet's air on the way between two others.
@@ -63,13 +63,13 @@ impl LightWay {
         Self { depth: (SLANT * (depth(end) - depth(start))).clamp(-40.0, 40.0) }
     }
 
-    /// Returns the weight of the tables at the end, for air at a share of the way. Scattered light follows what an
-    /// optical depth lets through, so it is not linear in depth.
+    /// Returns the weight of the tables at the end, for air at a share of the way. Scattered light follows the
+    /// transmittance, so it is not linear in optical depth.
     pub fn weight(&self, share: f64) -> f64 {
         if self.depth.abs() < 1e-6 { share } else { (-self.depth * share).exp_m1() / (-self.depth).exp_m1() }
     }
 
-    /// Returns the share of the way at which the tables at the end have a weight: the inverse of
+    /// Returns the share of the way at which the tables at the end have the weight `weight`: the inverse of
     /// [`LightWay::weight`].
     pub fn share(&self, weight: f64) -> f64 {
         if self.depth.abs() < 1e-6 {

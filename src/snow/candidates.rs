@@ -12,18 +12,18 @@ pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importan
 /// plan. Derived from the times that `cargo bench --bench speed -- falling` prints, whose unit is a copy of the
 /// picture.
 const LAYER_OF_PIXEL: f64 = 0.1;
-/// Work of one flake of the lattice, in units of [`LAYER_OF_PIXEL`].
+/// Work of one flake of the lattice, in the same unit as [`LAYER_OF_PIXEL`].
 const ONE_FLAKE: f64 = 0.5;
 
-/// Returns the work that the step from flakes to none saves, in units of [`LAYER_OF_PIXEL`], for a picture of `pixels`
-/// pixels with `flakes` flakes.
+/// Returns the work that the step from flakes to none saves, for a picture of `pixels` pixels with `flakes` flakes. The
+/// unit is that of [`LAYER_OF_PIXEL`].
 pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
     let fixed = ONE_FLAKE * f64::from(flakes) + LAYER_OF_PIXEL * pixels as f64;
     [StepWork { fixed, ..StepWork::default() }]
 }
 
-/// Work of one flake of the lattice: its place, the test whether it is in the picture, and the pixels of the few that
-/// are.
+/// Work of one flake of the lattice: its place, the test whether it is in the picture, and the pixels of the few flakes
+/// that are in the picture.
 const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
 /// Work of each pixel whenever snow falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
@@ -31,7 +31,7 @@ const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 /// Returns the work of drawing snow with these settings.
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
-        // Counts a little for the veil, which the fog draws anyway; there is no layer.
+        // Adds a little work for the snow in the fog, which is drawn anyway. There is no layer.
         SnowModel::Veil => Work { pixel: Units { samples: 0.1, ..Units::default() }, ..Work::default() },
         SnowModel::Automatic | SnowModel::Flakes => Work {
             // All flakes are tested in every frame, because they move.

@@ -2,9 +2,9 @@
 //!
 //! Flakes lie at random places, so the variance of the covered share from pixel to pixel is the sum of their squared
 //! covers (Campbell 1909). A flake that covers the area A at the distance r moves by L during the exposure. It is drawn
-//! w wide and L + w long; its mean cover is c = A / ((L + w) w). Across the streak the cover follows the chords of a
-//! disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. Of n flakes per cubic metre, n / k
-//! are drawn, and each stands for k. The variance is therefore
+//! with the width w and the length L + w. Its mean cover is c = A / ((L + w) w). Across the streak the cover follows
+//! the chords of a disc, whose mean square is 32 / (3 pi^2) = 1.08 times the square of their mean. Of n flakes per
+//! cubic metre, n / k are drawn, and each of these represents k. The variance is therefore
 //!
 //! ```text
 //! integral of 1.08 (n / k) (k A)^2 / ((L + w) w) dr.
@@ -71,8 +71,8 @@ impl FlakeContrast {
         Self { seen: StreakContrast::new(shot, wind_m_s - fall, variance, (tone, lamps)), light }
     }
 
-    /// Returns the change of pixel `i` if flakes are left out, in the first number of the result, relative to the
-    /// pixel's luminance plus a hundredth of white. The light that the veil adds in place of the flakes is not counted.
+    /// Returns the change of pixel `i` if flakes are left out, as the first number. It is relative to the pixel's
+    /// luminance plus a hundredth of white. The light that the fog adds in place of the flakes is not included.
     /// `picture` is the luminance without flakes, `hidden` the optical depth of the flakes.
     pub fn change(&self, i: usize, ndc: DVec2, [picture, hidden]: [f64; 2]) -> [f32; MOST_RUNGS - 1] {
         let [flakes, contrast] = self.seen.at(i, ndc, picture, |d| flake_radiance(&self.light, d));

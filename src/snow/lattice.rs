@@ -10,10 +10,11 @@
 //! therefore exact at any time. Within a class each flake has its own speed and turns, up to an eighth faster or
 //! slower: the measured speeds of flakes of one size scatter by as much about the laws of Locatelli and Hobbs.
 //!
-//! Each shell is twice as wide as the one before. If a shell has no room for all its flakes, it draws some that stand
-//! for others. The numbers per class are chosen so that every drawn flake, with the flakes for which it stands, covers
-//! the same area. Of all choices, this keeps the contrast closest to that of all flakes (importance sampling by area).
-//! Shells whose contrast would be too high by more than a factor of the square root of 3 are left to the veil.
+//! Each shell is twice as wide as the one before. If a shell has no room for all its flakes, it draws some flakes that
+//! represent others. The numbers per class are chosen so that every drawn flake, together with the flakes that it
+//! represents, covers the same area. Of all choices, this keeps the contrast closest to that of all flakes (importance
+//! sampling by area). Shells whose contrast would be too high by more than a factor of the square root of 3 are not
+//! drawn: their flakes are extinction, drawn with the fog.
 
 use glam::DVec3;
 
@@ -58,7 +59,7 @@ pub struct Flakes {
     pub table: [[f32; 4]; CLASSES],
     /// Per class and shell: number of flakes of the classes up to this one.
     pub upto: [[u32; SHELLS]; CLASSES],
-    /// Per class and shell: number of flakes that each drawn flake stands for.
+    /// Per class and shell: number of flakes that each drawn flake represents.
     pub weight: [[f32; SHELLS]; CLASSES],
     /// Number of flakes of each class in a cubic metre of air.
     pub number_per_m3: [f64; CLASSES],
@@ -66,12 +67,12 @@ pub struct Flakes {
     pub shells: usize,
     /// Number of drawn flakes in all shells.
     pub drawn: u32,
-    /// Extinction by the flakes' ice, 1/m, which hides the background: half of their extinction. The other half is
-    /// diffraction.
+    /// Extinction by the flakes' ice, which hides the background, 1/m. It is half of the flakes' extinction. The other
+    /// half is diffraction.
     pub hidden_per_m: f64,
 }
 
-/// Returns the number of flakes that a drawn flake of each class stands for, so that `room` drawn flakes stand for all
+/// Returns the number of flakes that a drawn flake of each class represents, so that `room` drawn flakes represent all
 /// flakes of a volume. Also returns the ratio of the variance of the drawn flakes' cover to that of all flakes.
 /// `numbers` is per cubic metre, `areas` the area of a flake, m^2.
 fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, room: f64) -> ([f64; CLASSES], f64) {

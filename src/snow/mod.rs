@@ -11,7 +11,8 @@
 //! shelters and occluder maps.
 //!
 //! *Near and far*: the fog's layer contains the extinction of all snow. Within the flakes' reach, the extinction of the
-//! drawn flakes is subtracted from it. So neither the mean nor the visibility depends on how many flakes are drawn.
+//! drawn flakes is subtracted from that of the layer. So neither the mean of the picture nor the visibility depends on
+//! how many flakes are drawn.
 //!
 //! *Settings*: [`SnowSettings`]. *Cost*: proportional to the number of drawn flakes; none where no snow falls. *Error*:
 //! [`contrast`] estimates how much all flakes together change a picture; `docs/lab` has the contrast lost with fewer

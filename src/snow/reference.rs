@@ -21,8 +21,8 @@ pub fn flake_phase(c: f64) -> f64 {
 
 /// Returns the weight of the sky, against the ground, in the light of a flake that is seen along a ray whose sine of
 /// elevation is `z`: the integral of [`flake_phase`] over the upper hemisphere, divided by 4 pi. Its Legendre series is
-/// `1/2 + (3/4) g z - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2; the terms up to P3 are within 0.02 of the
-/// quotient.
+/// `1/2 + (3/4) g z - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2. The sum of the terms up to P3 is within
+/// 0.02 of the quotient.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }

@@ -25,8 +25,8 @@ pub struct SnowSettings {
     /// Method by which snow is drawn.
     pub model: SnowModel,
     /// Largest number of drawn flakes, [1000, 8 000 000]. More flakes reach farther, up to 16 m. Flakes beyond this
-    /// number are represented by drawn flakes or left to the veil. `None`, the default: 1 000 000, or 60 000 on a
-    /// software driver.
+    /// number are represented by drawn flakes, or are extinction, drawn with the fog. `None`, the default: 1 000 000,
+    /// or 60 000 on a software driver.
     pub most_flakes: Option<u32>,
     /// Exposure time of the picture, s, [1e-4, 0.1]. Flakes that move by more than their size during the exposure are
     /// streaks. Default 1/250: short enough to show the shapes of flakes in a light wind. A person sees these shapes

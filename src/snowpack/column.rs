@@ -182,7 +182,7 @@ impl Column {
         self.albedo as f64 / ALBEDO_UNITS
     }
 
-    /// Advances the column by a step. The share `open` of the precipitation arrives on it, 0 to 1.
+    /// Advances the column by a step. `open` is the share of the precipitation that arrives on the column, 0 to 1.
     pub fn step(&mut self, f: &ColumnForcing, settling: &Settling, open: f64) -> MassExchange {
         let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };

@@ -12,16 +12,16 @@
 //!
 //! **Transport.** Along the wind the flux Q approaches the capacity Qc of the wind: dQ/dx = (Qc - Q) / L. L is
 //! [`ERODING_M`] if Q < Qc and there is loose snow, and [`LANDING_M`] if Q > Qc. One sweep down the wind solves this
-//! for a whole step, of any length and with cells of any size. Snow that leaves a cell enters the next ones, and snow
-//! that leaves the last ones is blown out. The country around the field supplies the full capacity of the mean wind if
-//! that wind can move the country's snow, else nothing. Saltating ([`saltation_kg_m_s`]) and suspended snow
-//! ([`suspension_kg_m_s`]) are carried separately: suspended snow grows over [`LIFTING_M`] and lands over
-//! [`SINKING_M`], so it reaches farther into a lee. The capacities of both are the fluxes that these two functions
-//! return.
+//! for a whole step, of any length and with cells of any size. Snow that leaves a cell enters its neighbours to
+//! leeward, and snow that leaves the field's cells at the leeward border is blown out. The country around the field
+//! supplies the full capacity of the mean wind if that wind can move the country's snow, else nothing. Saltating
+//! ([`saltation_kg_m_s`]) and suspended snow ([`suspension_kg_m_s`]) are carried separately: suspended snow grows over
+//! [`LIFTING_M`] and lands over [`SINKING_M`], so it reaches farther into a lee. The capacities of both are the fluxes
+//! that these two functions return.
 //!
 //! The sweep goes from patch to patch down the wind as it does from cell to cell: the snow that leaves the last cells
-//! of one patch, and the lee's line over them, enter the next. Patches are left out if they have no snow, receive none
-//! and have no snow to their lee.
+//! of one patch, and the lee's line over these cells, enter the next patch. Patches are left out if they have no snow,
+//! receive none and have no snow to leeward.
 
 use glam::DVec2;
 
@@ -161,8 +161,8 @@ fn along(
 }
 
 /// Returns the factor 1 + 0.58 s + 2 H / L on the wind at a cell (see the head of this file), with 0.58 s of at most
-/// 0.29 and 2 H / L of at most 0.4 in magnitude. Both are means over the distances `SHAPES_M`: with a single one, each
-/// drift would cause another at that distance upwind.
+/// 0.29 and 2 H / L of at most 0.4 in magnitude. Both are means over the distances `SHAPES_M`: with a single distance,
+/// each drift would cause another at that distance upwind.
 fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f64 {
     let here = field.patches[patch].surface_m(place[1] * field.size[0] + place[0]);
     let (mut steep, mut crest) = (0.0, 0.0);
@@ -443,7 +443,7 @@ impl Sweep<'_> {
     }
 
     /// Returns the speed of the wind over a cell, m/s, and its passage through the cell. `own` is the cell's entry of
-    /// [`Edges::wind`](super::drift_state::Edges), and `calm` the factor by a lee, which counts only for a uniform
+    /// [`Edges::wind`](super::drift_state::Edges), and `calm` the factor by a lee, which is used only with a uniform
     /// wind.
     fn wind(&self, own: [f64; 2], calm: f64) -> (f64, Through) {
         if !self.is_local {

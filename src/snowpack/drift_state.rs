@@ -16,17 +16,17 @@ pub(super) struct Edges {
     /// Fluxes that have left the patch down the wind: along each row to the east or west, along each column to the
     /// north or south.
     pub left: [Vec<DriftFlux>; 2],
-    /// Wind over each cell. A wind that varies in space is given by its components along the sweep, m/s; otherwise the
-    /// first number is its ratio to the mean wind, and the second is 0.
+    /// Wind over each cell. For a wind that varies in space these are its components along the sweep, m/s. Otherwise
+    /// they are the ratio of the wind over the cell to the mean wind, and 0.
     pub wind: Vec<[f64; 2]>,
-    /// Line of the calm in front of obstacles to leeward, where the wind enters each row and each column: height of the
-    /// line and of the obstacle that casts it, m. Empty if no obstacle stands there.
+    /// Lines below which obstacles to leeward calm the wind, where the wind enters each row and each column of the
+    /// patch: height of the line and of the obstacle that casts it, m. Empty without such lines.
     pub fronts: [Vec<Option<[f64; 2]>>; 2],
     /// Number of the last sweep in which the patch took part.
     pub swept: u64,
     /// Whether snow may lie on the patch or reach it in this sweep.
     pub has_snow: bool,
-    /// Whether snow may lie on a patch to its lee.
+    /// Whether snow may lie on a patch to leeward of this one.
     pub has_lee: bool,
 }
 
@@ -37,8 +37,8 @@ pub(super) struct DriftSweep {
     pub order: Vec<u32>,
     /// Fluxes that enter a patch: along each row, and along each column.
     pub coming: [Vec<DriftFlux>; 2],
-    /// Lines of the calm in front of obstacles, at the leeward border of the patch in work: for each row and each
-    /// column, as in [`Edges::fronts`].
+    /// Lines below which obstacles to leeward calm the wind, at the leeward border of the patch in work: for each row
+    /// and each column, as in [`Edges::fronts`].
     pub fronts: [Vec<Option<[f64; 2]>>; 2],
     /// Number of sweeps so far.
     pub sweeps: u64,

@@ -107,7 +107,7 @@ impl SnowField {
         self.patches.binary_search_by_key(&[key[1], key[0]], |p| [p.key[1], p.key[0]])
     }
 
-    /// Adds a patch unless one with its key exists. Its snow counts as lying there from the beginning.
+    /// Adds a patch unless one with its key exists. The snow on the patch is added to [`Books::began`].
     pub fn add(&mut self, patch: Patch) {
         if let Err(at) = self.find(patch.key) {
             self.books.began += patch.lying();

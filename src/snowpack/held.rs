@@ -25,7 +25,7 @@ use crate::{
 /// Source of the lying snow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LyingSnowModel {
-    /// Snow of the depth that the weather reports at the moment, everywhere.
+    /// Snow everywhere of the depth that the present weather reports.
     #[default]
     Reported,
     /// Simulated state: snowfall fills it, and it settles, drifts, slides and melts ([`crate::snowpack`]). It begins
@@ -55,8 +55,8 @@ pub(crate) struct HeldSnow {
     site: Option<Site>,
     /// Tiles that changed while steps remained, each with the terrain after the change.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
-    /// Grounds that the host has set since the snow was last adapted to one, in order: one ground that keeps the snow,
-    /// or an empty ground, which removes it, and then a new one.
+    /// Grounds that the host has set since the snow was last adapted to a ground, in order. This is either one ground
+    /// that keeps the snow, or an empty ground that removes the snow, followed by a new ground.
     grounds: Vec<SnowGround>,
     /// Table of settling for the step in progress.
     settling: Settling,
@@ -64,7 +64,7 @@ pub(crate) struct HeldSnow {
     coarse_until_s: f64,
     /// Incremented whenever the snow may have changed.
     revision: u64,
-    /// Revision that was last published to the world; 0 before.
+    /// Revision that was last published to the world; 0 before the first.
     published: u64,
     /// Meltwater from the snow since it was last published: beginning and length of each step, s, and its water.
     melts: Vec<(f64, f64, Meltwater)>,
@@ -250,7 +250,7 @@ impl HeldSnow {
         let Some(state) = &mut self.state else { return Ok(()) };
         let (from_s, seconds) = (state.time_s, end_s - state.time_s);
         if from_s.rem_euclid(SUN_EVERY_S) == 0.0 || seconds > STEP_S {
-            // In the middle of a long step.
+            // A long step takes the sunlight of its middle.
             let at_s = if seconds > STEP_S { from_s + 0.5 * seconds } else { from_s };
             state.sunlight_w_m2 = world.sunlight_w_m2(at_s)?;
         }
@@ -344,7 +344,7 @@ impl HeldEffect for HeldSnow {
         if self.is_fast || time_s - world.time_s > LONGEST_S {
             self.coarse_until_s = time_s;
         }
-        // Time before `earliest_s` passes without steps. The start is on the grid of long steps, so leaps that end at
+        // Time before `earliest_s` passes without steps. The start is a multiple of COARSE_STEP_S, so leaps that end at
         // slightly different times start alike.
         let earliest_s = ((time_s - MOST_S) / COARSE_STEP_S).floor() * COARSE_STEP_S;
         state.time_s = state.time_s.max(earliest_s);
@@ -352,7 +352,7 @@ impl HeldEffect for HeldSnow {
     }
 
     fn settle(&mut self, world: &World) {
-        // Applies all in turn: a ground that is removed and set again loses its snow.
+        // Applies all grounds in turn: a ground that is removed and set again loses its snow.
         for ground in std::mem::take(&mut self.grounds) {
             self.settle_on(&ground);
         }

@@ -4,12 +4,12 @@ use glam::DVec2;
 
 use super::column::{Column, ColumnForcing, Settling};
 
-/// Function that returns the forcing at a cell of the lattice, given by its index east and north, and the height of its
-/// ground, m.
+/// Function that returns the forcing at a cell of the lattice. Its arguments are the cell's index east and north, and
+/// the height of the cell's ground, m.
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 
-/// Function that returns the wind at 10 m, m/s east and north, over a cell of the lattice, given by its index east and
-/// north, and the height of the snow's surface there, m.
+/// Function that returns the wind at 10 m, m/s east and north, over a cell of the lattice. Its arguments are the cell's
+/// index east and north, and the height of the snow's surface there, m.
 pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
 /// Wind at 10 m over a field, m/s east and north.
@@ -17,7 +17,8 @@ pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 pub(super) struct FieldWind<'a> {
     /// Mean wind over the field.
     pub mean: DVec2,
-    /// Wind over each cell, if the wind varies in space. `None`: drift derives it from `mean` and the surface's shape.
+    /// Wind over each cell, if the wind varies in space. With `None`, the drift derives the wind over each cell from
+    /// `mean` and the surface's shape.
     pub local: Option<CellWind<'a>>,
 }
 

@@ -8,7 +8,7 @@ use crate::weather::{Conditions, lifting::drift_friction_velocity_m_s, saturatio
 
 /// Density of ice, kg/m^3.
 pub const ICE_KG_M3: f64 = 917.0;
-/// Density of lying ice pellets and hail, kg/m^3: spheres of ice, loosely packed (0.6).
+/// Density of lying ice pellets and hail, kg/m^3: loosely packed spheres of ice that fill 0.6 of the volume.
 pub const PELLETS_KG_M3: f64 = 550.0;
 /// Albedo of new snow, of visible light.
 pub const NEW_ALBEDO: f64 = 0.88;
@@ -77,14 +77,14 @@ pub fn melt_mm_h(c: &Conditions, rain_mm_h: f64) -> (f64, f64) {
 }
 
 /// Returns the rate at which liquid water refreezes, mm/h: 0.05 x 3.5 / 24 for each degree below 0 C (Bergstroem 1976).
-/// 3.5 mm per day and degree is a rate of melting, 0.05 the ratio of the rate of refreezing to it.
+/// 3.5 mm per day and degree is a rate of melting, 0.05 the ratio of the rate of refreezing to this rate.
 pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
     0.05 * 3.5 / 24.0 * (-temperature_c).max(0.0)
 }
 
 /// Returns the sublimation rate of snow, mm/h, by the bulk formula: `E = 3600 rho (k / ln(2 / z0))^2 U (qs - q)`. rho
 /// is the air's density, kg/m^3; k = 0.4 von Karman's constant; z0 = 0.001 m the roughness length; U the wind at 2 m,
-/// m/s; q the specific humidity of the air, and qs that of saturated air over ice. It is 0 where q exceeds qs.
+/// m/s; q the specific humidity of the air, and qs that of saturated air over ice. The rate is 0 where q exceeds qs.
 pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     let t = c.air.temperature_c.min(0.0);
     let pressure = c.air.station_pressure_hpa;

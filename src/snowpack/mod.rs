@@ -13,9 +13,10 @@
 //! still keep snowfall off, stop the wind, and cast lees. Only `site.rs` reads heights, boxes and wind from the host's
 //! data.
 //!
-//! Steps of [`STEP_S`] begin at whole multiples of it, so the state does not depend on how often it is updated.
-//! Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state records how much time was covered
-//! this way. A column is a single layer: there is no hard crust under new snow, and no frozen ground.
+//! Steps of [`STEP_S`] begin at whole multiples of [`STEP_S`], so the state does not depend on how often the host
+//! updates the context. Fast-forward takes steps of [`COARSE_STEP_S`] with the same laws, and the state records how
+//! much time was covered this way. A column is a single layer: there is no hard crust under new snow, and no frozen
+//! ground.
 //!
 //! This room draws nothing. Effects that draw snow, take its meltwater or are lit by it read the world's `LyingSnow`.
 //! So there are no `view.rs`, `passes.rs` and `candidates.rs`, and no `reference.rs`: `laws.rs` is the physics in f64.

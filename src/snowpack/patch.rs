@@ -22,7 +22,7 @@ pub(super) struct Patch {
     pub holes: Vec<bool>,
     /// Number of cells with ground.
     pub ground_cells: usize,
-    /// Height of the object on each cell that stops the wind, m; 0 without one. Empty if there are no objects.
+    /// Height of the object that stops the wind on each cell, m; 0 without one. Empty if there are no objects.
     pub obstacles_m: Vec<f64>,
     /// Whether each cell is sheltered from precipitation; empty if none is.
     pub sheltered: Vec<bool>,
@@ -90,7 +90,7 @@ impl Patch {
         self.holes.get(cell).copied().unwrap_or(false)
     }
 
-    /// Returns the height of the object on a cell that stops the wind, m; 0 without one.
+    /// Returns the height of the object that stops the wind on a cell, m; 0 without one.
     pub fn obstacle_m(&self, cell: usize) -> f64 {
         self.obstacles_m.get(cell).copied().unwrap_or(0.0)
     }

@@ -43,7 +43,7 @@ struct SavedCells {
     /// Columns of a grid: lists of ice, water, depth and albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     columns: Option<[String; 4]>,
-    /// Books, in the order of [`Books::to_array`].
+    /// Mass balance, in the order of [`Books::to_array`].
     books: [i64; 7],
     /// Share of the ground that snow covers, and run-off, mm/h, in the last step.
     melted: [f64; 2],

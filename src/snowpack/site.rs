@@ -23,7 +23,7 @@ use crate::{
 /// Height above the ground of the point for which shelter from falling snow is tested, m.
 const SURFACE_M: f64 = 0.02;
 /// Largest height of a box's underside above the ground at which the box still stands on it, m. Wind and snow pass
-/// under a higher one.
+/// under a higher box.
 const GAP_M: f64 = 0.3;
 /// Height above the ground above which a queried position counts as being on an object, m.
 const ABOVE_M: f64 = 3.0;

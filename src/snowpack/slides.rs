@@ -21,8 +21,8 @@ const AROUND: [([i32; 2], f64); 8] = [
     ([1, -1], std::f64::consts::SQRT_2),
 ];
 
-/// Returns the cell at an offset, in cells east and north, from another: index of its patch and index in the patch.
-/// `None` without a patch there.
+/// Returns the cell at an offset (cells east, cells north) from another cell, as the index of the patch and the cell's
+/// index in the patch. `None` without a patch there.
 fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> Option<(u32, u32)> {
     let size = field.size.map(|n| n as i32);
     let (x, y) = (cell as i32 % size[0] + dx, cell as i32 / size[0] + dy);
@@ -39,7 +39,7 @@ fn beside(field: &SnowField, (patch, cell): (u32, u32), [dx, dy]: [i32; 2]) -> O
     (at != NONE).then(|| (at, (y.rem_euclid(size[1]) * size[0] + x.rem_euclid(size[0])) as u32))
 }
 
-/// Returns the neighbours of a cell on which snow can lie, and their distances, m.
+/// Returns those neighbours of a cell on which snow can lie, and their distances, m.
 fn around(field: &SnowField, cell: (u32, u32)) -> impl Iterator<Item = ((u32, u32), f64)> + '_ {
     AROUND.iter().filter_map(move |(way, cells)| {
         let to = beside(field, cell, *way)?;

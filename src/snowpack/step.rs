@@ -23,7 +23,7 @@ struct Sums {
     ran_off: i64,
     /// Snow that sublimated.
     sublimated: i64,
-    /// Sum of the shares of each cell that snow covers, in units of [`SHARE_UNITS`].
+    /// Sum over all cells of the share of a cell that snow covers, in units of [`SHARE_UNITS`].
     covered: i64,
 }
 

@@ -18,7 +18,7 @@ use crate::{
 pub const MAX_STRIP_POINTS: usize = 1024;
 /// Density to which wheels press snow, kg/m^3: packed roads have 450 to 600.
 const PRESSED_KG_M3: f64 = 500.0;
-/// Samples per side of a cell from which the covered share is counted.
+/// Number of samples along each side of a cell from which the share under a strip is computed.
 const SAMPLES: usize = 4;
 
 /// Strip of ground: a path with a width. Two points and a width make a rectangle.

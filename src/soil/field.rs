@@ -1,4 +1,4 @@
-//! Field of soil: sparse patches of dug ground, their books of mass, and the slides between their cells.
+//! Field of soil: sparse patches of dug ground, the sums of their masses, and the slides between their cells.
 
 use std::collections::BTreeMap;
 
@@ -29,9 +29,9 @@ pub(super) struct SoilField {
     changed: Vec<u32>,
     /// Slots of the patches with barriers.
     barred: Vec<u32>,
-    /// Number of the sweep.
+    /// Number of the present sweep.
     sweeps: u64,
-    /// Water of ground that was not dug, which new patches begin with.
+    /// Water of ground that was not dug. New patches begin with this water.
     pub water: BankWater,
     /// Depth below the undug surface to which the bank is frozen hard, in units.
     pub frozen: i64,
@@ -103,7 +103,7 @@ impl SoilField {
         Some(self.insert(SoilPatch { water: self.water, ..SoilPatch::new(key, ground)? }))
     }
 
-    /// Adds a patch, whose key is new.
+    /// Adds a patch whose key no other patch has. Returns its slot.
     pub fn insert(&mut self, mut patch: SoilPatch) -> u32 {
         let slot = self.patches.len() as u32;
         let key = patch.key;
@@ -137,7 +137,7 @@ impl SoilField {
         (slot != NO_PATCH && self.patches[slot as usize].has_ground(cell)).then_some(SoilCell { slot, cell })
     }
 
-    /// Updates the patches to changes of the undug ground. Returns whether there are any changes.
+    /// Adapts the patches to changes of the undug ground. Returns whether there are any changes.
     pub fn set_ground(&mut self, ground: &dyn UndugGround) -> bool {
         let mut changes = false;
         for slot in 0..self.patches.len() as u32 {
@@ -319,7 +319,8 @@ impl SoilField {
         for slot in &changed {
             let key = self.patches[*slot as usize].key;
             let is_free = |cell: usize| self.patches[*slot as usize].grade[cell].is_finite();
-            // A patch owns the edges to the east and north of its cells: those to the west and south need neighbours.
+            // A patch has the flows across the eastern and northern edges of its cells. Flows across its western and
+            // southern border need a neighbour.
             let [west, south] = [(0..SIDE).any(|i| is_free(i * SIDE)), (0..SIDE).any(is_free)];
             for (leaves, near, offset) in [(west, 0, [-1, 0]), (south, 2, [0, -1])] {
                 if leaves && self.patches[*slot as usize].near[near] == NO_PATCH {

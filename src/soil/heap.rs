@@ -30,8 +30,8 @@ impl UndugGround for LevelGround {
 }
 
 /// Pours a loose volume, m^3, of soil with this angle of repose, degrees, onto level ground in cells of `cell_m`, and
-/// returns the radius of the heap, m, at each of [`HEAP_AZIMUTHS_DEG`]: the distance at which the side, extended from
-/// between 20 and 80 % of the apex, meets the ground.
+/// returns the radius of the heap, m, at each of [`HEAP_AZIMUTHS_DEG`]: the distance at which a line through the side,
+/// between 20 and 80 % of the apex's height, meets the ground.
 ///
 /// # Errors
 /// [`crate::error::Status::InvalidArgument`] naming the field: `volume_m3` in \[1e-6, 1e6\], `repose_deg` in \[5, 60\],

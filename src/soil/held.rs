@@ -49,8 +49,8 @@ pub struct SoilChange {
 #[derive(Default)]
 pub(crate) struct HeldSoil {
     pub(super) site: Option<Box<SoilSite>>,
-    /// Identity of the terrain on which the soil lies, and the host's revision of the terrain that the soil has read
-    /// last.
+    /// Identity of the terrain on which the soil lies, and the last of the host's revisions of this terrain that the
+    /// soil has read.
     ground: (u64, u64),
     /// As `ground`, for the heights that were published last.
     shown: (u64, u64),
@@ -178,7 +178,7 @@ impl HeldSoil {
         Ok(())
     }
 
-    /// Updates the soil to the host's changes of the tiles. If the terrain is another one, the soil is removed.
+    /// Adapts the soil to the host's changes of the tiles. If the terrain is another one, the soil is removed.
     fn follow(&mut self, world: &World) {
         let now = world.set.tiles.as_ref().map(|tiles| (tiles.id, tiles.host_revision));
         if self.site.is_none() || now == Some(self.ground) {
@@ -215,7 +215,7 @@ impl HeldSoil {
     }
 
     /// Returns the rectangles in which heights changed after a revision of the terrain, by rows from the south, on
-    /// tiles of this side.
+    /// tiles with sides of `tile_cells` cells.
     pub fn changes_since(&self, revision: u64, tile_cells: u32) -> impl Iterator<Item = SoilChange> + '_ {
         let side = tile_cells as i32;
         let later = self.listed.iter().filter(move |(_, listed)| **listed > revision);

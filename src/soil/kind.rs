@@ -8,7 +8,7 @@ pub const MAX_SOIL_KINDS: usize = 16;
 /// Largest number of layers of undisturbed ground.
 pub const MAX_HORIZONS: usize = 8;
 
-/// Saturation of moist bank, in which its cohesion is whole.
+/// Saturation of moist bank, which has its full cohesion.
 pub(super) const MOIST: f64 = 0.3;
 
 /// Number of a kind of soil: an index into the kinds of a site. The built-in kinds come first.

@@ -1,16 +1,16 @@
-//! Kinds and layers of a site in units of cells: how much mass a depth of soil holds, and at which slope the soil
-//! rests.
+//! Kinds and layers of a site, converted to the units of its cells: how much mass a depth of soil holds, and at which
+//! slope the soil rests.
 
 use super::{
     kind::{MAX_SOIL_KINDS, MOIST, SoilHorizon, SoilKind},
     laws::WallTable,
 };
 
-/// Units of depth per metre. Depths are whole numbers of them.
+/// Units of depth per metre. Depths are whole numbers of these units.
 pub(super) const DEPTH_UNITS: f64 = 1_048_576.0;
 /// Units of mass per kilogram: whole micrograms.
 pub(super) const MASS_UNITS: f64 = 1e9;
-/// Most cells between the crest of a wall and its toe.
+/// Largest number of cells between the crest of a wall and its toe.
 const MOST_WALL_CELLS: usize = 256;
 /// Factor by which banks may be steeper than the slopes at which they rest for ever, so that rounding breaks none.
 const STEEPER: f64 = 1.02;
@@ -57,7 +57,7 @@ impl SoilParcel {
     }
 }
 
-/// Kind of soil in units of cells.
+/// Kind of soil, converted to the units of a site's cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SoilMaterial {
     pub kind: SoilKind,

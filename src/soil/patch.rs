@@ -1,4 +1,5 @@
-//! Patch of ground that has been dug: a square of cells, what was taken from each, and the loose soil on it.
+//! Patch of ground that has been dug: a square of cells and, for each cell, what was taken from it and the loose soil
+//! on it.
 
 use super::{
     laws::cohesion_share,
@@ -14,7 +15,7 @@ pub(super) const WIDE: usize = SIDE + 2;
 /// Value of a slot that means no patch.
 pub(super) const NO_PATCH: u32 = u32::MAX;
 
-/// Bank of a cell that wheels have pressed.
+/// Compaction of a cell's bank (its undisturbed soil) by wheels and tracks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Pressed {
     /// Thickness of the compacted soil before it was compacted, in units of depth.
@@ -36,12 +37,13 @@ pub(super) struct BankWater {
 
 /// Heights of the undug ground.
 pub trait UndugGround {
-    /// Returns the height of a cell of the lattice, m, \[-1e5, 1e5\]; `None` where there is no ground. `cell` is
-    /// counted east and north.
+    /// Returns the height of a cell of the lattice, m, \[-1e5, 1e5\]; `None` where there is no ground. `cell` is the
+    /// index of the cell east and north.
     fn height_m(&self, cell: [i32; 2]) -> Option<f64>;
 }
 
-/// Square of cells, by rows from the south-west.
+/// Square of cells, by rows from the south-west. Units without a name are those of depth
+/// ([`DEPTH_UNITS`](super::material::DEPTH_UNITS)).
 #[derive(Clone, Debug)]
 pub(super) struct SoilPatch {
     /// Position on the lattice of patches, east and north.
@@ -64,8 +66,8 @@ pub(super) struct SoilPatch {
     pub grade: Vec<f64>,
     /// Flows across the eastern and the northern edges.
     pub flows: [Vec<f64>; 2],
-    /// Edges that a blade closes, as twice the cell plus 1 for the northern edge, with the blade's lower and upper
-    /// height there, in units.
+    /// Edges that a blade closes, with the blade's lower and upper height there, in units. The number of an edge is
+    /// twice the index of its cell, plus 1 for the cell's northern edge.
     pub barriers: Vec<(u16, [f64; 2])>,
     /// Slots of the neighbours W, E, S, N, SW, SE, NW, NE.
     pub near: [u32; 8],
@@ -75,7 +77,7 @@ pub(super) struct SoilPatch {
     pub water: BankWater,
     /// Whether walls of this patch or beside it may have lost their hold since they were last checked.
     pub is_unchecked: bool,
-    /// Number of the sweep in which the patch last changed, and of that for which it was last listed.
+    /// Number of the sweep in which the patch last changed, and number of the sweep for which it was last listed.
     pub stamps: [u64; 2],
 }
 
@@ -140,7 +142,7 @@ impl SoilPatch {
         true
     }
 
-    /// Share of its cohesion that the bank has left, in steps of 1/64.
+    /// Share of its full cohesion that the bank still has, in steps of 1/64.
     pub fn hold(&self) -> f64 {
         (64.0 * cohesion_share(self.water.saturation)).floor() / 64.0
     }

@@ -15,7 +15,7 @@ pub(super) struct CellShare {
     pub height: f64,
 }
 
-/// Most corners of a triangle that is cut by a square.
+/// Largest number of corners of a triangle that is clipped to a square.
 const MOST_CORNERS: usize = 8;
 /// Smallest share of a cell that is taken into account.
 const LEAST_SHARE: f64 = 1e-9;
@@ -58,7 +58,7 @@ impl Polygon {
         [low.floor() as i32, high.ceil() as i32]
     }
 
-    /// Area, and the centre weighted by it.
+    /// Area and centroid.
     fn area(&self) -> (f64, DVec2) {
         let (mut area, mut centre) = (0.0, DVec2::ZERO);
         let first = self.corners[0];
@@ -108,9 +108,9 @@ fn each_share_of_triangle(corners: [DVec3; 3], act: &mut impl FnMut(CellShare)) 
     }
 }
 
-/// Calls `act` for each cell that an edge passes on its way from `start` to `end`, its corners in cells. A cell can be
-/// passed to `act` several times, with parts that do not overlap. Four triangles around the middle favour no corner, so
-/// that the error in a curve falls with the square of the number of parts.
+/// Calls `act` for each cell that an edge passes on its way from `start` to `end`, each given by the ends of the edge,
+/// in cells. A cell can be passed to `act` several times, with parts that do not overlap. Four triangles around the
+/// middle favour no corner, so that the error in a curve falls with the square of the number of parts.
 pub(super) fn each_share(start: [DVec3; 2], end: [DVec3; 2], mut act: impl FnMut(CellShare)) {
     let ring = [start[0], start[1], end[1], end[0]];
     let middle = 0.25 * ring.iter().sum::<DVec3>();

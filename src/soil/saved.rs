@@ -35,7 +35,7 @@ const MOST_FREEZING_K_S: f64 = 1e12;
 #[serde(deny_unknown_fields)]
 pub(super) struct SavedSite {
     pub cell_m: f64,
-    /// Saturation without rain and sun; that of ground that was not dug, and its wet share.
+    /// Saturation without rain and sun; saturation of ground that was not dug, and the wet share of its surface.
     saturation: [f64; 3],
     /// Freezing index, K s.
     freezing_k_s: f64,
@@ -46,7 +46,8 @@ pub(super) struct SavedSite {
     idle: u32,
     revision: u64,
     next_id: u32,
-    /// Mass that left and that came, in whole micrograms; text, because it may be more than a number of TOML.
+    /// Mass that left and that came, in whole micrograms; text, because it may be more than an integer of TOML can
+    /// hold.
     taken: String,
     brought: String,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -84,8 +85,8 @@ struct SavedTool {
     poses: Vec<[f64; 17]>,
     passed: Vec<([i32; 2], [f64; 2])>,
     saturation: f64,
-    /// Cut volume, area and sinkage of the last step; its kind, whether its sinkage was limited, and whether frost
-    /// stopped it.
+    /// Cut volume, area and sinkage of the last step; the kind that was cut, whether the sinkage was limited, and
+    /// whether frost stopped the edge.
     work: ([f64; 3], u8, [bool; 2]),
 }
 
@@ -98,7 +99,7 @@ struct SavedPatch {
     flags: [bool; 3],
     /// Saturation, and wet share of the surface.
     water: [f64; 2],
-    /// In a state that is only hashed, the hash of this list and of all that follow.
+    /// Depths cut. In a state that is only hashed, the text is the hash of this list and of all lists that follow.
     cut: String,
     loose: String,
     masses: Vec<(u8, String)>,
@@ -234,7 +235,7 @@ fn is_share(number: f64) -> bool {
     (0.0..=1.0).contains(&number)
 }
 
-/// Hash of all that lies on the cells of a patch.
+/// Hash of the cut, the loose soil, the compaction and the broken bank of a patch's cells.
 fn hash_of(patch: &SoilPatch) -> u64 {
     let kinds =
         patch.masses.iter().flat_map(|(kind, masses)| std::iter::once(i64::from(*kind)).chain(masses.iter().copied()));

@@ -26,7 +26,7 @@ const WALL_STEPS: i64 = 8;
 const QUIET_STEPS: u32 = 2 * WALL_STEPS as u32;
 /// Deepest loose soil that a host can bring, m.
 const DEEPEST_LOOSE_M: f64 = 1000.0;
-/// Most poses of a tool that wait for their steps.
+/// Largest number of poses of a tool that wait for their steps.
 const MOST_POSES: usize = 65_536;
 
 /// Settings of a site.
@@ -55,7 +55,7 @@ pub struct SoilBooks {
     pub lying: i128,
     /// Soil in buckets and beds.
     pub held: i128,
-    /// Soil that left the site in tools that ended with it.
+    /// Soil that left the site in tools that still held it when they ended.
     pub taken: i128,
 }
 
@@ -96,11 +96,11 @@ pub struct SoilToolReport {
     pub mass_kg: f64,
     /// Bulk volume held, m^3.
     pub bulk_m3: f64,
-    /// Share of the rated volume with its heap that is filled.
+    /// Filled share of the rated volume, which includes the heap.
     pub fill: f64,
     /// Centre of what is held, m from the lattice's origin.
     pub centre: DVec3,
-    /// Mass of each kind held, kg, by its number.
+    /// Mass of each kind held, kg, by the kind's number.
     pub kinds_kg: [f64; MAX_SOIL_KINDS],
     /// Mean depth of the cut in the last step, m.
     pub cut_depth_m: f64,
@@ -111,10 +111,11 @@ pub struct SoilToolReport {
     /// Whether the sinkage was limited to half the radius (or half the shorter side of a track's contact), or comes
     /// from a set that fits a small range only.
     pub is_sinkage_beyond_range: bool,
-    /// Whether the edge met frozen bank in the last step. It cannot cut frozen bank and takes only the loose soil on
-    /// it.
+    /// Whether the edge met frozen bank in the last step. The edge cannot cut frozen bank, and takes only the loose
+    /// soil above the bank.
     pub is_stopped_by_frost: bool,
-    /// Share of the pores of the soil held that water fills: the mean of the bank from which it came; 0 when empty.
+    /// Saturation of the soil in the tool: the share of its pores that water fills, as the mean of the bank from which
+    /// the soil came; 0 when empty.
     pub saturation: f64,
 }
 
@@ -160,7 +161,7 @@ impl SoilSite {
         self.steps = steps_until(time_s);
     }
 
-    /// Updates the site to changes of the undug ground.
+    /// Adapts the site to changes of the undug ground.
     pub(super) fn follow_ground(&mut self, ground: &dyn UndugGround) {
         if self.field.set_ground(ground) {
             self.field.revision += 1;
@@ -223,7 +224,8 @@ impl SoilSite {
         self.move_standing_tool(tool, pose, f64::NEG_INFINITY)
     }
 
-    /// As [`SoilSite::move_tool`], for a tool that stands at its last pose until a time, s.
+    /// Adds the next pose as [`SoilSite::move_tool`] does, for a tool that stands at its last pose until
+    /// `stands_until_s`, s.
     pub(crate) fn move_standing_tool(
         &mut self,
         tool: SoilToolId,
@@ -363,7 +365,7 @@ impl SoilSite {
         if self.tools[index].pose.time_s >= end_s {
             return false;
         }
-        // The others stay where they are: what is poured may land in them.
+        // The other tools stay where they are: what is poured may land in them.
         let mut tool = self.tools.remove(index);
         let mut place = WorkedGround { field: &mut self.field, ground };
         tool.work = ToolWork::default();

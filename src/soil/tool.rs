@@ -48,8 +48,8 @@ pub enum SoilToolShape {
     },
 }
 
-/// Pose of a tool at a time. Places are in metres east, north and up from the lattice's origin, or in calls of a
-/// context in the host's world. They lie within 1e7 m of the origin.
+/// Pose of a tool at a time. Places are in metres east, north and up from the lattice's origin; in calls of a context
+/// they are places in the host's world. They lie within 1e7 m of the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilToolPose {
     /// Simulation time, s, \[-1e10, 1e10\].

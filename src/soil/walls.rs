@@ -1,8 +1,9 @@
 //! Walls of bank: which ones are higher than their soil can stand, and what falls with them.
 //!
-//! A wall between a crest and a toe fails under two conditions. The bank's top lies higher above the toe than the
-//! highest face that the law allows over their distance ([`super::laws::WallLaw::height_over_m`]), with the cohesion
-//! that the bank's water leaves. The face is also steeper than the bank's friction angle and the angle of repose. What
+//! A wall between a crest and a toe fails if three conditions hold. First, the bank's top lies higher above the toe
+//! than the highest face that the law allows over the distance between crest and toe
+//! ([`super::laws::WallLaw::height_over_m`]), with the cohesion that the bank's water leaves. Second, the face is
+//! steeper than the bank's friction angle and the angle of repose. Third, the crest or the toe was dug or pressed. What
 //! lies above the slope of repose through the toe then counts as broken: it slides like loose soil (`src/slides.rs`),
 //! swells as it moves, and comes to rest at its angle of repose.
 
@@ -13,10 +14,11 @@ use super::{
 
 /// Factor by which the fall of the ground must grow at a crest.
 const CREST: f64 = 1.05;
-/// Most cells behind a toe that a fall can reach.
+/// Largest number of cells behind a toe that a fall can reach.
 const MOST_BROKEN: i32 = 512;
 
-/// Cohesion from which the bank counts as cemented, kPa: far above that of soils, and that of weak rock and coal.
+/// Cohesion at and above which the bank counts as cemented, kPa. It is far above the cohesion of soils, and equals that
+/// of weak rock and coal.
 const CEMENTED_KPA: f64 = 100.0;
 
 /// Crest of a wall that fails, and the way to its toe.
@@ -68,7 +70,7 @@ fn failing(field: &SoilField, crest: SoilCell, way: [i32; 2], lowest: f64) -> Op
     let diagonal = if way[0] != 0 && way[1] != 0 { std::f64::consts::SQRT_2 } else { 1.0 };
     let next = field.beside(crest, way)?;
     let first = top - surface(next);
-    // Only where the ground begins to fall more steeply than bank can lie, a face can be highest.
+    // A face can be highest only where the ground begins to fall more steeply than bank can lie.
     if first <= material.bank_grade * diagonal {
         return None;
     }
@@ -95,14 +97,14 @@ fn failing(field: &SoilField, crest: SoilCell, way: [i32; 2], lowest: f64) -> Op
     None
 }
 
-/// Highest wall over a run in cells, linear between the entries of its table.
+/// Height of the highest wall over a run in cells, linear between the entries of `walls`.
 fn wall_height(walls: &[f64], run: f64) -> Option<f64> {
     let cell = run as usize;
     let (low, high) = (walls.get(cell)?, walls.get(cell + 1)?);
     Some(low + (high - low) * (run - cell as f64))
 }
 
-/// Marks the bank above the slope of repose through a toe, in the line of the fall.
+/// Marks as broken the bank above the slope of repose through a toe, in the line of the fall.
 fn break_behind(field: &mut SoilField, fall: &Fall, ground: &dyn UndugGround) {
     let toe = field.place(fall.toe);
     let diagonal = if fall.way[0] != 0 && fall.way[1] != 0 { std::f64::consts::SQRT_2 } else { 1.0 };

@@ -6,7 +6,7 @@ use super::{
     site::{SOIL_STEP_S, SoilSite},
 };
 
-/// Steps between two times at which the weather acts, a minute.
+/// Number of steps between two times at which the weather acts: a minute.
 pub(super) const WEATHER_STEPS: i64 = 60 * 64;
 /// Thickest crust of frozen ground that a tool breaks, m.
 const THIN_FROST_M: f64 = 0.05;

@@ -15,14 +15,14 @@ use super::{
     tool::{SoilToolPose, SoilToolShape},
 };
 
-/// Share of a cell above which all of it counts as passed.
+/// Passed share of a cell above which the whole cell counts as passed.
 const PASSED: f64 = 0.999_999;
-/// Cells from the edge beyond which a tool forgets what it has passed.
+/// Distance from the edge, in cells, beyond which a tool forgets what it has passed.
 const MEMORY_CELLS: f64 = 3.0;
 /// Distance in front of the edge at which pushed soil lands, cells: the four cells around that point lie in front of
 /// the edge.
 const AHEAD_CELLS: f64 = 1.5;
-/// Share of a cell by which the ground ahead must be higher than an edge that is in it.
+/// Height, as a share of a cell's side, by which the ground ahead must rise above an edge that counts as in the ground.
 const IN_GROUND_CELLS: f64 = 0.1;
 /// Deepest pit below the undug surface, m.
 const DEEPEST_M: f64 = 100.0;
@@ -63,12 +63,12 @@ pub(super) struct SoilTool {
     pub shape: SoilToolShape,
     /// Pose up to which the ground was worked.
     pub pose: SoilToolPose,
-    /// Later poses.
+    /// Later poses, up to which the ground is still to be worked.
     pub poses: VecDeque<SoilToolPose>,
     /// Whether the host has sent the last pose.
     pub is_ended: bool,
     pub content: SoilParcel,
-    /// Saturation of the soil held: the mean of what came in, by mass.
+    /// Saturation of the soil in the tool: the mean by mass of the soil that came in.
     pub saturation: f64,
     /// Cells of the present pass, in the order of their places.
     pub passed: Vec<PassedCell>,
@@ -86,7 +86,8 @@ impl WorkedGround<'_> {
         self.field.materials.cell_m
     }
 
-    /// Point in cells east and north, and units up. Cells reach half a cell to each side of their places.
+    /// Point in cells east and north, and in units of depth upwards. Cells reach half a cell to each side of their
+    /// places.
     fn in_cells(&self, point: DVec3) -> DVec3 {
         let cell_m = self.cell_m();
         DVec3::new(point.x / cell_m + 0.5, point.y / cell_m + 0.5, point.z * DEPTH_UNITS)
@@ -100,8 +101,8 @@ impl WorkedGround<'_> {
         }
     }
 
-    /// Puts soil onto the four cells around a point in cells, by their nearness. Returns what no cell could take: all
-    /// of the parcel, or nothing.
+    /// Puts soil onto the four cells around `point`, which is in cells; nearer cells get a larger share. Returns what
+    /// no cell could take: all of the parcel, or nothing.
     fn scatter(&mut self, parcel: SoilParcel, point: DVec2) -> SoilParcel {
         let corner = point - 0.5;
         let low = corner.floor();
@@ -147,7 +148,7 @@ impl SoilTool {
         self.content.add(parcel);
     }
 
-    /// Index of the passed cell with this place, which is added where it is missing.
+    /// Index of the passed cell with this place. A missing cell is added.
     fn passed_at(&mut self, place: [i32; 2]) -> usize {
         let key = |place: [i32; 2]| [place[1], place[0]];
         let found = self.passed.binary_search_by_key(&key(place), |passed| key(passed.place));
@@ -220,7 +221,8 @@ impl SoilTool {
         }
     }
 
-    /// Returns the depth, in units over the whole cell, that an edge takes from its part of a cell.
+    /// Returns the cell, and the depth, in units over the whole cell, that an edge takes from the part of the cell that
+    /// it passes.
     fn cut_depth(&mut self, part: &CellShare, place: &mut WorkedGround<'_>) -> Option<(SoilCell, i64)> {
         let index = self.passed_at(part.place);
         let top = place.surface(part.place)?;
@@ -242,7 +244,7 @@ impl SoilTool {
         Some((SoilCell { slot, cell }, depth.min(most)))
     }
 
-    /// Sinkage in a kind, m, and whether it was limited or its set has a small range.
+    /// Sinkage in soil with this set, m, and whether the sinkage was limited or the set fits only a small range.
     fn sinkage_m(&self, set: &SinkageSet, pose: &SoilToolPose) -> (f64, bool) {
         let width_m = (pose.edge[1] - pose.edge[0]).length();
         let (sinkage_m, most_m) = match self.shape {
@@ -298,7 +300,7 @@ impl SoilTool {
             return;
         }
         let cell_m = field.materials.cell_m;
-        // Moves the line to half a cell behind the edge, so that a cell counts as in front until the edge has passed
+        // Moves the barrier to half a cell behind the edge, so that a cell counts as in front until the edge has passed
         // all of it.
         let ahead = self.pose.ahead();
         let behind = ahead * (0.5 * (ahead.x.abs() + ahead.y.abs()));
@@ -306,7 +308,7 @@ impl SoilTool {
         let heights = |along: f64| {
             [self.pose.edge, self.pose.upper].map(|edge| (edge[0].z + (edge[1].z - edge[0].z) * along) * DEPTH_UNITS)
         };
-        // Each line of centres from south to north crosses the edge once, and each from west to east.
+        // Each line of cell centres, from south to north or from west to east, crosses the edge once.
         for (axis, side) in [(0, 1), (1, 0)] {
             let other = 1 - axis;
             let (low, high) = (ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis]));
@@ -339,7 +341,7 @@ impl SoilTool {
         sum > 3.0 * IN_GROUND_CELLS * place.cell_m() * DEPTH_UNITS
     }
 
-    /// Soil that the tool cannot hold at its tilt.
+    /// Takes out and returns the soil that the tool cannot hold at its tilt.
     pub fn spilled(&mut self, place: &WorkedGround<'_>) -> SoilParcel {
         let materials = &place.field.materials;
         let Some(hold) = self.shape.hold().filter(|_| self.content != SoilParcel::default()) else {

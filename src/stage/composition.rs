@@ -18,7 +18,7 @@ pub(crate) fn flag(b: bool) -> f64 {
     f64::from(u8::from(b))
 }
 
-/// Most constants that the effects and the frame together may add.
+/// Largest number of constants that the effects and the frame together may add.
 const MOST: usize = 56;
 
 /// A list of constants, without allocation.
@@ -74,9 +74,9 @@ pub(crate) enum Texture {
     /// Slopes, heights, classes and snow of the host's terrain, one texel for each cell
     /// (`shaders/ground/binding.wgsl`).
     Terrain = 2,
-    /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last array layer stands behind the sky's own light;
-    /// its texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two array layers of clouds may have lower
-    /// indices: exposed light with transmittance, and distances.
+    /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last array layer lies behind the sky's own light; its
+    /// texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two array layers for clouds may precede it:
+    /// one with exposed light and transmittance, one with distances.
     Behind = 3,
 }
 
@@ -89,8 +89,8 @@ pub(crate) enum Block {
     OnSurfaces = 1,
 }
 
-/// Returns the name of a shader that applies the veil. If no constant needs a veil that differs from place to place,
-/// the name is that of the variant without its code.
+/// Returns the name of the variant of `shader` to use. This is the shader itself if its veil differs from place to
+/// place (constant `BY_PLACE`), otherwise the variant `:plain`, which lacks the code for that.
 pub(crate) fn veiled(shader: &str, constants: &[Constant]) -> String {
     let by_place = constants.iter().any(|(name, value)| *name == "BY_PLACE" && *value > 0.0);
     format!("{shader}{}", if by_place { "" } else { ":plain" })
@@ -103,12 +103,13 @@ pub(crate) struct Traits {
     pub veils_all: bool,
     /// The weather veils what the host drew.
     pub veils_drawn: bool,
-    /// Every pixel marches a ray, so that separate draws for each kind of pixels would gain nothing.
+    /// Every pixel marches a ray. Separate draws for each kind of pixels would then gain nothing.
     pub is_marched: bool,
-    /// The picture contains detail that changes from pixel to pixel, as stars do, and that the coarse grid cannot hold.
+    /// The picture contains detail that changes from pixel to pixel, such as stars. The coarse grid cannot hold such
+    /// detail.
     pub is_fine: bool,
-    /// Each pixel composites clouds over what it looks up in the coarse grid. Fog lies in front of clouds; where there
-    /// are both, nothing is looked up.
+    /// Each pixel composites clouds over what it looks up in the coarse grid. Fog lies in front of clouds; in weather
+    /// with both, the coarse grid is not used.
     pub is_overlaid: bool,
 }
 
@@ -130,7 +131,8 @@ impl Traits {
 pub(crate) struct Pipeline {
     /// Constants of every shader that applies air, cloud and fog.
     pub between: Constants,
-    /// Subset that the veil for hosts' shaders needs; the full set would compile a pipeline for many weathers.
+    /// Subset of `between` that the veil for hosts' shaders needs. With all of `between`, many weathers would each need
+    /// another pipeline.
     pub of_veil: Constants,
     /// Constants of the composition alone.
     pub composed: Constants,
@@ -170,10 +172,10 @@ struct ScopedConstant {
     least: f64,
 }
 
-/// Most constants of one effect.
+/// Largest number of constants of one effect.
 const MOST_OF_ONE: usize = 12;
 
-/// Contribution of one effect to a draw. The effect returns it; the frame merges those of all effects
+/// Contribution of one effect to a draw. The effect returns it, and the frame merges the contributions of all effects
 /// ([`Composition::merge`]).
 pub(crate) struct Contribution<'a> {
     constants: [ScopedConstant; MOST_OF_ONE],
@@ -306,7 +308,7 @@ impl Composition {
         }
     }
 
-    /// Merges the contribution of one effect; its textures and blocks are moved out.
+    /// Merges the contribution of one effect, and moves the textures and blocks out of it.
     pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
         for c in &contribution.constants[..contribution.count] {
             let (whole, least) = ((c.name, c.whole), (c.name, c.least));
@@ -427,7 +429,8 @@ impl Composition {
         self.needs_panorama
     }
 
-    /// Reach and speed of the drops and flakes drawn near the camera; [`ShelterReach::NONE`] without any.
+    /// Reach and slowest fall speed of the drops and flakes drawn near the camera; [`ShelterReach::NONE`] if none are
+    /// drawn.
     pub fn near(&self) -> ShelterReach {
         self.near.unwrap_or(ShelterReach::NONE)
     }

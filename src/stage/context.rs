@@ -1,4 +1,5 @@
-//! Read-only contexts of a frame for its effects: one from gathering to the first pass, and one for each draw.
+//! Read-only data of a frame for its effects: [`FrameContext`] before anything is drawn, and a [`DrawContext`] for each
+//! draw.
 
 use std::sync::Arc;
 
@@ -29,8 +30,8 @@ pub(crate) struct FrameContext<'a> {
     pub held: HeldEffects<'a>,
     /// Stages that the call asks for.
     pub asked: Stages,
-    /// Planet under the weather to which the present weather is changing, some seconds ahead; `None` while the weather
-    /// does not change.
+    /// Planet under the weather that the camera will have some seconds from now ([`World::planet_ahead`]). `None` if no
+    /// change of the timeline is under way and there are no weather regions.
     pub planet_ahead: Option<Planet>,
     /// Work on tables in this frame, as a share of the work that builds all of them.
     pub table_share: f32,
@@ -66,7 +67,7 @@ impl PlannedShares {
         Self { parts, shares: [[1.0; MOST_RUNGS - 1]; MOST_PARTS], is_gauged: false }
     }
 
-    /// Creates the shares from `share`, which takes a part's index in the list and its step.
+    /// Creates the shares from `share`, which takes the index of a part in `parts` and the index of one of its steps.
     pub fn new(parts: &'static [Part], is_gauged: bool, share: impl Fn(usize, usize) -> f32) -> Self {
         let mut planned = Self { is_gauged, ..Self::whole(parts) };
         for (part, shares) in planned.shares.iter_mut().enumerate().take(parts.len()) {

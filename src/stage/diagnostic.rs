@@ -2,13 +2,14 @@
 
 use super::stages::Stages;
 
-/// False-colour picture in place of a frame's: one number of each pixel on a scale from black over blue, green, yellow
-/// and red to white.
+/// False-colour picture in place of a frame's: one number of each pixel on a scale of six colours (black, blue, green,
+/// yellow, red, white). A step leads from one colour to the next.
 ///
-/// The call that has the number's stage draws it; other calls of the frame draw nothing. The colours are display
-/// colours: linear in float and sRGB formats and where the host's colour is display-linear, otherwise encoded by the
-/// sRGB curve. In multisampled images the first sample of a pixel gives the colour of the whole pixel. Masked pixels
-/// keep the host's colour. If nothing in the frame has this number, the picture is black.
+/// Each picture names a stage. The call with this stage draws the picture; other calls of the frame draw nothing. The
+/// colours are display colours: linear in float and sRGB formats and where the host's colour is display-linear,
+/// otherwise encoded by the sRGB curve. In multisampled images the first sample of a pixel gives the colour of the
+/// whole pixel. Masked pixels keep the host's colour. If nothing in the frame has the picture's number, the picture is
+/// black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
     /// The normal picture.
@@ -24,8 +25,9 @@ pub enum Diagnostic {
     /// Share of a surface under a water film, standing water or clear ice: black is 0, a step is 0.2, white is 1. Stage
     /// SURFACE.
     Wetness = 3,
-    /// Error due to what the plan leaves out of air, fog and clear sky, |Y' - Y| / (Y + 0.01 white), on a logarithmic
-    /// scale: black is 1e-4 or less, white is 10 or more. Drops and stars are not counted. Stage MEDIUM.
+    /// Error due to what the plan leaves out of air, fog and clear sky, on a logarithmic scale: black is 1e-4 or less,
+    /// white is 10 or more. The error is |Y' - Y| / (Y + 0.01), where Y is the exposed luminance with all air, fog and
+    /// sky (1 is white) and Y' that with the plan's shares. Drops and stars are not counted. Stage MEDIUM.
     PlanError = 4,
     /// Number of times that precipitation was drawn over a pixel: black is never, a step is 4 times, white is 20 times
     /// or more. Stage PARTICLES.

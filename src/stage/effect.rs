@@ -48,7 +48,7 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Stages in which the effect has something to draw in the gathered moment. It is not run in other stages.
+    /// Stages in which the effect has something to draw in the gathered moment. The effect is not run in other stages.
     fn stages(&self) -> Stages;
 
     /// Refuses a frame with images that the effect cannot draw into.
@@ -70,13 +70,13 @@ pub(crate) trait DrawnEffect {
         false
     }
 
-    /// Draws the textures that the effect's opaque parts read, in passes of its own.
+    /// Draws the textures that the effect's opaque geometry reads, in passes of its own.
     fn prepare_opaque(&mut self, _context: &FrameContext<'_>, _recording: &mut Recording<'_>) -> Result<()> {
         Ok(())
     }
 
-    /// Draws the opaque parts into the host's colour and depth, before the composition of stage SURFACE. Water on
-    /// surfaces, air and precipitation read their depth like the host's own.
+    /// Draws the opaque geometry into the host's colour and depth, before the composition of stage SURFACE. Air,
+    /// precipitation and the water on surfaces read its depth like that of the host's own objects.
     fn draw_opaque(
         &mut self,
         _context: &DrawContext<'_>,
@@ -86,7 +86,7 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Reports the effect's parts: whether a picture of these stages has them, and their work.
+    /// Reports each part of the effect: whether a picture of `stages` has the part, and the work of its steps.
     fn parts(&mut self, _context: &DrawContext<'_>, _stages: Stages, _put: &mut PutPart<'_>) {}
 
     /// Returns what the effect adds to the composition: constants, blocks, textures.
@@ -104,8 +104,8 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Returns the shader, the layout and the bind group with which the veil for the host's own shaders is drawn in
-    /// place of the composition's group 0, if the effect has any.
+    /// Returns the shader with which the effect draws the veil for the host's own shaders, and the layout and the bind
+    /// group that this shader needs in place of the composition's group 0. `None` if the effect has no such shader.
     fn veil(
         &mut self,
         _context: &DrawContext<'_>,

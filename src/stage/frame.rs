@@ -26,7 +26,7 @@ pub enum ColorSpace {
 /// Access that Welkin has to a host's depth.
 ///
 /// The sea ([`crate::sea`]) and the terrain ([`crate::land`]) are drawn only into depth that may be written. Without
-/// them both kinds of access give the same picture.
+/// sea and terrain, the picture is the same with either access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DepthAccess {
     /// Read only. Welkin changes no bit of the depth and draws nothing opaque
@@ -34,8 +34,9 @@ pub enum DepthAccess {
     #[default]
     Read,
     /// Test and write the depth where Welkin draws opaque things: in [`Stages::SURFACE`](super::Stages::SURFACE),
-    /// before the water on surfaces. They hide what the host drew farther away and are hidden by what it drew nearer.
-    /// The stencil is kept. Needs a depth format with RENDER_ATTACHMENT and as many samples as the colour.
+    /// before the water on surfaces. The opaque things hide what the host drew farther away and are hidden by what the
+    /// host drew nearer. The stencil is kept. Needs a depth format with RENDER_ATTACHMENT and as many samples as the
+    /// colour.
     ReadWrite,
 }
 
@@ -44,11 +45,11 @@ pub enum DepthAccess {
 pub struct FrameFlags(pub u32);
 
 impl FrameFlags {
-    /// The camera jumped: nothing of earlier frames may show. The sky's tables are built whole in this frame, as with
+    /// The camera jumped: nothing of earlier frames may show. The sky's tables are completed in this frame, as with
     /// `NO_HISTORY`.
     pub const CUT: Self = Self(1);
-    /// Draw the frame as a pure function of (seed, time, view), without any history. The sky's tables are built whole
-    /// in this frame if they are not yet.
+    /// Draw the frame as a pure function of (seed, time, view), without any history. If the sky's tables are not
+    /// complete, they are completed in this frame.
     pub const NO_HISTORY: Self = Self(2);
     /// Measure the cost of each effect ([`Report::costs`](super::Report::costs)). The stages are drawn one by one, and
     /// Welkin waits for each; such a frame is slower, and its picture may differ by rounding. Only for
@@ -56,7 +57,7 @@ impl FrameFlags {
     pub const MEASURE: Self = Self(16);
 
     /// Interprets [`Frame::normals`] in the axes of the camera: x right, y up, z towards the viewer. Without this flag
-    /// they are in the axes of the host's world.
+    /// the normals are in the axes of the host's world.
     pub const NORMALS_IN_EYE_SPACE: Self = Self(32);
 
     /// Whether any flag of `other` is set.
@@ -102,8 +103,8 @@ pub struct Frame<'a> {
     /// TEXTURE_BINDING.
     pub mask: Option<&'a wgpu::Texture>,
     /// Material of the surface that each pixel shows. Red is the number of a
-    /// [`SurfaceClass`](crate::ground::SurfaceClass) over 255; where it is 0, the host's terrain or the context's
-    /// default gives the material. One sample; needs TEXTURE_BINDING.
+    /// [`SurfaceClass`](crate::ground::SurfaceClass), divided by 255; where red is 0, the host's terrain or the
+    /// context's default gives the material. One sample; needs TEXTURE_BINDING.
     pub surface_classes: Option<&'a wgpu::Texture>,
     /// Unit normals of the surfaces, in the host's world or in eye space ([`FrameFlags::NORMALS_IN_EYE_SPACE`]):
     /// (n + 1) / 2 in normalised formats, n in float formats. Where the value is no unit vector (such as all zeros or

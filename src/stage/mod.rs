@@ -1,10 +1,10 @@
-//! Parts of a frame: the host's images and what their numbers mean, the stages in which a frame is drawn, and the trait
-//! that every effect of a frame implements ([`DrawnEffect`]).
+//! Building blocks of a frame: the host's images and what their numbers mean, the stages in which a frame is drawn, and
+//! the trait that every effect of a frame implements ([`DrawnEffect`]).
 //!
 //! A frame goes through its stages in the order in which a host interleaves them with its own drawing. Consecutive
-//! stages of one call are drawn as one full-screen draw, the composition. Each effect adds its functions, constants,
-//! blocks and textures to it ([`Composition`]). Effects that cannot be computed pixel by pixel (falling drops, the
-//! windscreen) draw in passes of their own.
+//! stages of one call are drawn as one full-screen draw, the composition. Each effect adds its shader functions,
+//! constants, blocks and textures to the composition ([`Composition`]). Effects that cannot be computed pixel by pixel
+//! (falling drops, the windscreen) draw in passes of their own.
 
 mod composition;
 mod context;

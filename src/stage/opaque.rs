@@ -14,7 +14,7 @@ pub(crate) struct OpaqueTarget {
     pub color: wgpu::TextureFormat,
     pub depth: wgpu::TextureFormat,
     pub samples: u32,
-    /// Whether depth 1 is near.
+    /// Whether a depth of 1 is nearest to the eye.
     pub reversed: bool,
     /// Whether the fragment shader writes depth, with `written_depth` of `shaders/common/depth.wgsl`.
     pub logarithmic: bool,

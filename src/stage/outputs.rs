@@ -1,4 +1,5 @@
-//! Named outputs that effects give each other within a frame. The order in which effects run follows from them.
+//! Named outputs that effects give each other within a frame. The order in which the effects run follows from these
+//! outputs.
 
 use super::composition::{Contribution, Texture};
 use crate::error::{Error, Result, Status};
@@ -27,7 +28,7 @@ pub(crate) enum Output {
 pub(crate) struct Outputs {
     /// [`Output::FogDepth`]; 0 if no effect has given it.
     pub fog_depth: f64,
-    /// [`Output::Sea`]: height of its highest crests above the camera, m, if a sea is drawn.
+    /// [`Output::Sea`]: height of the sea's highest crests above the camera, m, if a sea is drawn.
     pub sea_top_m: Option<f64>,
     /// [`Output::Stars`], if any star shows.
     pub stars: Option<wgpu::TextureView>,
@@ -88,7 +89,7 @@ impl Exchange {
 /// the list is kept.
 ///
 /// # Errors
-/// [`crate::Status::Internal`] if the needs form a cycle, or if no effect gives one of them.
+/// [`crate::Status::Internal`] if the needs form a cycle, or if an effect needs an output that no effect gives.
 pub(crate) fn ordered<const N: usize>(list: [Exchange; N]) -> Result<[usize; N]> {
     let (mut order, mut done) = ([0; N], [false; N]);
     for place in &mut order {

@@ -1,10 +1,10 @@
 //! Report of a frame, and the cost of each effect where the host asks for it
 //! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
-//! A cost is the wall time around a submission of one effect that the CPU waits for. It is right on every driver
-//! (timestamps of software drivers are not), at the price of a wait. It includes the CPU's part and the driver's own
-//! hand-over, some tens of microseconds per effect on a GPU. Frames that are not measured submit once and wait for
-//! nothing.
+//! A cost is a wall time: the CPU submits the work of one effect and waits until this work is done. Such a time is
+//! right on every driver (timestamps of software drivers are not), at the price of the wait. It includes the CPU's part
+//! and the driver's own hand-over, some tens of microseconds per effect on a GPU. Frames that are not measured submit
+//! once and wait for nothing.
 
 use std::{
     sync::Arc,
@@ -32,7 +32,7 @@ pub enum CostItem {
     Medium = 3,
     /// Exposure, tone curve, encoding.
     Tone = 4,
-    /// Several stages in one draw, where the format of this target does not let them be drawn one by one; a diagnostic
+    /// Several stages in one draw, if the format of the target does not let them be drawn one by one; or a diagnostic
     /// picture.
     Composition = 5,
     /// Textures for the host's own transparent shaders, and the cube map.
@@ -132,7 +132,7 @@ pub struct Report {
     pub snow: SnowReport,
     /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
-    /// Number of effects whose opaque parts were not drawn because the host's depth may only be read
+    /// Number of effects whose opaque geometry was not drawn because the host's depth may only be read
     /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)): the sea if it is in view, and the terrain if the
     /// context draws it.
     pub opaque_left_out: u32,
@@ -153,9 +153,10 @@ pub struct RainReport {
     pub drop_weight: f64,
     /// Contrast gain ([`crate::rain::RainSettings::contrast_gain`]) of the rain that was drawn; 0 where nothing fell.
     pub contrast_gain: f64,
-    /// Splashes of the smallest drops left out for lack of room, per second and m^2 of level ground.
+    /// Number of the smallest drops whose splash was left out for lack of room, per second and m^2 of level ground.
     pub splashes_left_out_per_m2_s: f64,
-    /// Smallest hailstones that did not bounce for lack of room, per second and m^2 of level ground.
+    /// Number of the smallest hailstones whose bounce was left out for lack of room, per second and m^2 of level
+    /// ground.
     pub stones_left_out_per_m2_s: f64,
 }
 
@@ -172,8 +173,8 @@ fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// Times of a measured call: its arrival, the start of its own work, and the end of its last effect; and the costs of
-/// the frame's earlier calls.
+/// Times of a measured call: its arrival, the start of its own work, and the end of its last item; and the costs of the
+/// frame so far.
 struct Watch {
     /// Arrival of the call.
     came: Instant,

@@ -9,7 +9,7 @@ pub struct Stages(pub u32);
 impl Stages {
     /// Tables and simulation textures; needs no target.
     pub const PREPARE: Self = Self(1);
-    /// Sky behind everything: fills the pixels at the far depth, or all pixels without a depth texture.
+    /// Sky behind everything. Fills the pixels at the far depth, or all pixels if the frame has no depth texture.
     pub const BACKGROUND: Self = Self(2);
     /// Water and snow on surfaces, after the host's opaque objects.
     pub const SURFACE: Self = Self(4);
@@ -25,12 +25,12 @@ impl Stages {
     /// All stages.
     pub const ALL: Self = Self(127);
 
-    /// Whether any stage of `other` is in the set.
+    /// Whether any stage of `other` is in this set.
     pub fn has(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Whether any stage of the set may draw into the target.
+    /// Whether any stage of this set may draw into the target.
     pub(crate) fn draw(self) -> bool {
         self.without(Self::PREPARE) != Self(0)
     }
@@ -40,21 +40,21 @@ impl Stages {
         Self(self.0 & !other.0)
     }
 
-    /// Stages of both sets.
+    /// Set of all stages that are in this set or in `other`.
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Splits this set into its five stages that draw over the whole picture, in order. For a stage that is not in this
-    /// set the result is the empty set.
+    /// Splits this set into one set for each of the five stages that draw over the whole picture, in order. The set of
+    /// a stage that this set lacks is empty.
     pub(crate) fn each(self) -> [Self; 5] {
         [Self::BACKGROUND, Self::SURFACE, Self::MEDIUM, Self::PARTICLES, Self::TONE].map(|stage| Self(self.0 & stage.0))
     }
 
-    /// Checks a bit mask that comes from outside.
+    /// Checks a bit mask from the host.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if it is empty or has unknown bits.
+    /// [`crate::Status::InvalidArgument`] if the mask is empty or has unknown bits.
     pub fn from_bits(bits: u32) -> Result<Self> {
         if bits == 0 || bits & !Self::ALL.0 != 0 {
             return Err(Error::range("stages", "a non-empty mask of WK_STAGE_ bits (0x7f)", format!("{bits:#x}")));

@@ -37,7 +37,8 @@ pub(crate) fn check_color(texture: &wgpu::Texture) -> Result<()> {
     check_usage("color", texture, wgpu::TextureUsages::RENDER_ATTACHMENT)
 }
 
-/// Whether wgpu can copy `color`. If not, its host copies it between submissions.
+/// Whether wgpu can copy `color`. If not, the OpenGL host's binding ([`crate::gpu::HostBinding`]) copies it between
+/// submissions.
 pub(crate) fn can_copy(color: &wgpu::Texture) -> bool {
     color.usage().contains(wgpu::TextureUsages::COPY_SRC)
 }
@@ -240,8 +241,8 @@ impl Sampling {
     }
 }
 
-/// Whether stages drawn one by one give the same picture as all in one draw. They do not where the picture between two
-/// stages is rounded to a display's steps.
+/// Whether stages drawn one by one give the same picture as all of them in one draw. They do not if the picture is
+/// rounded to a display's steps between two stages.
 pub(crate) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
     !tone || frame.color.is_some_and(|c| is_float(c.format()))

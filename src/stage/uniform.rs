@@ -78,7 +78,7 @@ pub(crate) struct FrameUniform {
     pub even_scale: f32,
     pub pad: f32,
     /// Light that bows add to the phase function of drops, 1/sr per channel, tabulated over the scattering angle: for
-    /// drops in the low air, and for those in the columns under rain areas.
+    /// drops in the low air, and for those in the columns of rain areas.
     pub bows: [BowTable; 2],
 }
 
@@ -108,8 +108,8 @@ pub(crate) enum FrameBlock<'a> {
     Fog { share: f32 },
     /// [`FrameUniform::behind`].
     Stars { behind: [f32; 2] },
-    /// Share drawn as a volume; if the plan gauges, mean light with cover, and height above the camera; cloud shadows
-    /// if the clouds cast them.
+    /// `drawn`: share drawn as a volume. `mean`: mean light with cover, and height above the camera, if the plan
+    /// gauges. `shadow`: [`FrameUniform::cloud_shadow`], if the clouds cast shadows.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
     /// `hidden`: [`FrameUniform::drops`]. `share`: drawn share of the drops.
     Rain { hidden: [f32; 2], share: f32 },
@@ -138,7 +138,7 @@ impl FrameUniform {
             }
             FrameBlock::Rain { hidden, share } => (self.drops, self.drawn[3]) = (hidden, share),
             FrameBlock::Snow { hidden, share } => {
-                // Drops and flakes share one value: the mean of their shares, weighted by optical depth.
+                // Drops and flakes have one value in common: the mean of their drawn shares, weighted by optical depth.
                 let (others, own) = (self.drops[0] * self.drops[1], hidden[0] * hidden[1]);
                 if own > 0.0 {
                     self.drawn[3] = (self.drawn[3] * others + share * own) / (others + own);
@@ -174,7 +174,7 @@ pub(crate) fn is_float(format: wgpu::TextureFormat) -> bool {
 }
 
 /// Returns the scale of light in the coarse grid, 1/(cd/m^2): the exposure for the luminance to which eyes adapt, or
-/// the display's exposure if that is larger, as in a picture exposed for dark parts. A scene-linear host's own exposure
+/// the display's exposure if that is larger, as in a picture exposed for dark areas. A scene-linear host's own exposure
 /// has no influence. The scale is rounded down to a power of two, so that a change of scale causes no rounding.
 fn even_scale(adaptation_cd_m2: f64, display_exposure: f64) -> f32 {
     let eyes = Exposure::Auto { compensation_ev: 0.0 }.factor(adaptation_cd_m2);

@@ -1,5 +1,5 @@
-//! Light behind the sky's own light in one direction, in f64, for queries. It is the light of `night_light` in
-//! `shaders/between/sky.wgsl` and of the layer that this function reads, without the points.
+//! Night light behind the sky's own light in one direction, in f64, for queries. It is the light that `night_light` in
+//! `shaders/between/sky.wgsl` computes from the layer of the night sky, without the points in that layer.
 
 use glam::DVec3;
 
@@ -24,7 +24,8 @@ pub(crate) struct NightBehind {
 }
 
 impl NightBehind {
-    /// Creates the night light of a scene at a universal time, seen through fog of an optical depth straight up.
+    /// Creates the night light of a scene at a universal time. `fog_depth` is the fog's optical depth straight up.
+    /// Behind dense fog or a closed deck no glow is computed.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time outside the almanac's range or a place out of range.

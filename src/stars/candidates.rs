@@ -5,7 +5,7 @@ use crate::plan::parts::{Part, Worth};
 use crate::plan::{Listed, StepWork, Units, Work};
 
 /// Stars, planets and the glow between them. The rungs are all of these, or an even sky of the glow's mean luminance.
-/// The gauge measures the change without them together with the change without the clear sky's own light
+/// The gauge measures how the picture changes without them and without the clear sky's own light, both together
 /// (`Worth::Composed`).
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 

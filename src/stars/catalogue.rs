@@ -47,7 +47,7 @@ impl Star {
         (self.direction + self.motion * years).normalize()
     }
 
-    /// Checks that every field is within its range. `name` is the host's name of the star.
+    /// Checks that every field is within its range. `name` is the star's name in the error.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field and its range.

@@ -173,8 +173,8 @@ impl NightSky {
 
     /// Airglow, zodiacal light and the Milky Way's unresolved stars above the air, S10, in a direction (east, north,
     /// up; unit). The airglow is what an eye below its layer would see without air between. For an eye that rises
-    /// through the layer the airglow fades, because no layer is left in front of the stars. The layer seen from above
-    /// is left out.
+    /// through the last 10 km below the layer the airglow fades to 0, because above the layer nothing of it is left in
+    /// front of the stars. The layer seen from above is left out.
     pub fn s10(&self, direction: DVec3) -> [f64; 3] {
         let zodiacal = zodiacal_toward(self.to_sun_ecliptic * direction);
         let layer = van_rhijn(direction.z.max(0.0), self.altitude_m.min(AIRGLOW_HEIGHT_M));

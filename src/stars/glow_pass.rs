@@ -19,9 +19,9 @@ use crate::{
     },
 };
 
-/// Galactic latitudes of the sphere's rows, degrees, and the number of columns that one side of a patch in the row
-/// spans. There are few rows, because a software driver spends time on every edge. 95 % of the patches are within 3 %
-/// of the tables.
+/// Galactic latitudes of the sphere's rows from the equator northwards, degrees, and the number of columns that the
+/// side of a patch (an area between two rows) spans in the row. There are few rows, because a software driver spends
+/// time on every edge. 95 % of the patches are within 3 % of the tables.
 const RINGS: [(f64, usize); 15] = [
     (0.0, 1),
     (1.0, 1),
@@ -45,9 +45,9 @@ const ROWS: usize = 2 * RINGS.len() - 1;
 const COLUMNS: usize = 49;
 /// Angle that the sun moves before the zodiacal light is computed again, rad: six hours.
 const STALE_RAD: f64 = 0.0044;
-/// Upper limit of the layer ratio, which keeps the shader from dividing by 0 for an eye in the airglow layer. An eye
-/// reaches the limit 3.2 km below the layer, where 32 % of the airglow is left. Above that height the brightening
-/// towards the horizon stays as it is at the limit.
+/// Upper limit of [`NightSky::layer_ratio2`], which keeps the shader from dividing by 0 for an eye in the airglow
+/// layer. An eye reaches the limit 3.2 km below the layer, where 32 % of the airglow is left. Above that height the
+/// brightening towards the horizon stays as it is at the limit.
 const MOST_LAYER_RATIO2: f64 = 0.999;
 
 /// A corner of the sphere.

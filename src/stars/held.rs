@@ -37,7 +37,7 @@ const TABLE: &str = "settings";
 const KEY: &str = "stars";
 
 impl HeldStars {
-    /// Holds these settings.
+    /// Creates the state with these settings.
     pub fn new(settings: StarSettings) -> Self {
         // A host's list has any order, and up to a million stars: too many to search in every frame.
         let brightest = |stars: &Arc<[Star]>| stars.iter().map(|s| s.magnitude).fold(f64::INFINITY, f64::min);

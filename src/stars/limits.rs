@@ -1,13 +1,13 @@
-//! Limits below which stars are not drawn: those that no eye could see against the sky, and those too faint for a step
-//! of the display.
+//! Limits of illuminance below which stars are not drawn, because no eye could see them against the sky, or because
+//! they are too faint for a step of the display.
 
 use std::f64::consts::PI;
 
 use super::{light::MAGNITUDE_0_LUX, reference::PEAK_WEIGHT};
 
-/// Lux a foot-candle.
+/// One foot-candle in lux.
 const LUX_PER_FOOT_CANDLE: f64 = 10.763_91;
-/// cd/m^2 a nanolambert.
+/// One nanolambert in cd/m^2.
 const CD_M2_PER_NANOLAMBERT: f64 = 1e-5 / PI;
 
 /// Smallest illuminance at the eye, lux, of a star that can be seen against a background of `background_cd_m2`. Hecht's

@@ -18,9 +18,9 @@
 //! [`catalogue()`] has 9096 stars (Yale Bright Star Catalogue), and the proper motions of the 49 bright ones that move
 //! most. One matrix ([`crate::almanac::celestial::celestial_to_world`]) turns J2000.0 to (east, north, up): precession
 //! (Lieske 1977), nutation (two terms) and sidereal time (Aoki et al. 1982), with UTC for UT1. Annual aberration,
-//! 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the derivative of its
-//! orbit. Refraction lifts stars near the horizon (Saemundsson 1986). The planets follow the series of Simon et al.
-//! 1994, with the magnitudes of Mallama and Hilton 2018.
+//! 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the derivative of the
+//! Earth's position. Refraction lifts stars near the horizon (Saemundsson 1986). The planets follow the series of Simon
+//! et al. 1994, with the magnitudes of Mallama and Hilton 2018.
 //!
 //! # Light
 //! Magnitude 0 is 2.54e-6 lux (Allen 1973). The colour is that of a black body, for an eye that sees sunlight as white
@@ -34,15 +34,16 @@
 //! Zodiacal light follows table 16 of Leinert et al. 1998. Starlight is what Pioneer 10 measured beyond the
 //! interplanetary dust (Leinert et al. 1998, tables 37 and 38; [`starlight`]), interpolated by a disc of stars and dust
 //! with the luminosity of Flynn et al. 2006 ([`galaxy`]). 1 S10, one star of magnitude 10 a square degree, is 8.34e-7
-//! cd/m^2. The air dims all three and adds scattered light from the dome's mean.
+//! cd/m^2. The air dims all three and adds light that it scatters, computed from their mean over the sky's dome.
 //!
 //! # Settings
-//! [`StarSettings`]: the host's own stars, its own matrix, whether planets are drawn, and the strength of the airglow.
+//! [`StarSettings`]: the host's own stars, the host's own rotation of the heavens, whether planets are drawn, and the
+//! strength of the airglow.
 //!
 //! # Cost
 //! A point takes 24 bytes on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads the points in
-//! the picture that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as 4 corners that light
-//! at most 16 pixels. The glow is a sphere of 1421 corners, computed again after six hours of simulated time. A frame
+//! the picture that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as a quad that lights at
+//! most 16 pixels. The glow is a sphere of 1421 corners, computed again after six hours of simulated time. A frame
 //! draws the triangles that lie in the picture; a pixel costs as much as one of an even sky. On the CPU a frame runs
 //! [`Heavens::at`], some 900 sines and cosines, and [`NightSky::new`], which samples 32 directions. By day all of this
 //! is left out.

@@ -36,8 +36,8 @@ pub struct Heavens {
 
 impl Heavens {
     /// Computes the heavens over `place` at `utc`. From 1950 to 2100 directions are within 0.005 degrees for stars of
-    /// the catalogue that have no proper motion, and for those whose motion it has (tested against another almanac).
-    /// Most of the error is the catalogue's own.
+    /// the catalogue that have no proper motion, and for those whose motion the catalogue has (tested against another
+    /// almanac). Most of the error is the catalogue's own.
     ///
     /// UT1 is taken as UTC. With a host's own matrix the stars have their catalogued directions, without motion and
     /// aberration. The planets and the sun then have the directions that they have among the stars at `utc`.

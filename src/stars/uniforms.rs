@@ -23,7 +23,7 @@ pub struct StarView<'a> {
     pub heavens: &'a Heavens,
     /// Matrix from camera-relative (east, north, up) to clip space. With parallel rays no stars are drawn.
     pub clip: DMat4,
-    /// Rays of the camera in the same axes, to interpret its depth.
+    /// Rays of the camera in the same axes, to interpret the host's depth.
     pub rays: &'a ViewRays,
     /// Size of the target, pixels.
     pub size: [u32; 2],

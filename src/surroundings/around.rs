@@ -22,7 +22,7 @@ const BOX_BYTES: usize = 80;
 const CUTS_AT: usize = 16 + MAX_SHELTERS * BOX_BYTES;
 /// Bytes of the block of shelters: two counts, the boxes, and the planes.
 const SHELTER_BYTES: usize = CUTS_AT + MAX_SHELTERS * MAX_PLANES * 16;
-/// Bytes of the block of maps: a count, the offsets of the cells, and the maps.
+/// Bytes of the block of maps: a count, the place of the cells in the table ([`OccluderMaps::cells_at`]), and the maps.
 const MAP_BYTES: usize = 16 + MAX_OCCLUDER_MAPS * size_of::<OccluderUniform>();
 /// Bytes of the block of lamps: a count, and the lamps.
 const LIGHT_BYTES: usize = 16 + MAX_LIGHTS * size_of::<LightUniform>();
@@ -43,9 +43,9 @@ pub(crate) struct SurroundingsBlock {
     holds_any: bool,
     /// Whether any box or map keeps rain off near the camera.
     sheltered: bool,
-    /// Placeholder for a missing table of maps.
+    /// Placeholder for the table of maps (the texture of all occluder maps) while there is none.
     none: wgpu::TextureView,
-    /// Table of maps of the bind group, and the group.
+    /// Table of maps in the bind group, and the bind group itself.
     bound: (Option<wgpu::Texture>, wgpu::BindGroup),
 }
 
@@ -60,7 +60,8 @@ pub(crate) struct HasSurroundings {
     pub lamps: bool,
 }
 
-/// Fall speed and largest distance of the drops and flakes around a camera, from which the shelters near it are chosen.
+/// Fall speed and largest distance of the drops and flakes around a camera, from which the shelters near the camera are
+/// chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShelterReach {
     /// Fall speed of the slowest particles, m/s.
@@ -84,7 +85,7 @@ pub(crate) struct HostSurroundings<'a> {
     pub shelters: &'a [Shelter],
     pub maps: Option<&'a OccluderMaps>,
     pub lights: &'a [HostLight],
-    /// Lightning flashes, which take the places in the block of lamps that the host leaves free.
+    /// Lightning flashes. They take the places that the host's lamps leave free in the block of lamps.
     pub flash: &'a [FlashLamp],
     /// Position of the camera in the host's world, m.
     pub eye: DVec3,

@@ -50,8 +50,8 @@ pub struct Taken {
 /// Checked camera, time and velocity of a map, from which the shaders' uniform is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occluder {
-    /// Rows from the world relative to `origin_m` to clip x, y and w, and to the distance along the camera's axis, m:
-    /// from `origin_m` for parallel rays, from the camera's position in perspective.
+    /// Rows that map a place relative to `origin_m` to clip x, y and w, and to a distance along the camera's axis, m.
+    /// The distance begins at `origin_m` for parallel rays, and at the camera's position in perspective.
     rows: [DVec4; 4],
     /// Middle of the map's near plane, in the host's world, m.
     origin_m: DVec3,

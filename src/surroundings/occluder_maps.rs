@@ -180,7 +180,7 @@ impl OccluderMaps {
         Ok(Self { layouts, pipelines, blocks, table: None, list: Vec::new() })
     }
 
-    /// Records the copy of the content of `maps`, which replaces the earlier maps.
+    /// Records the copy of the content of `maps`. These maps replace the earlier ones.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] or [`crate::Status::Unsupported`] naming the map and its field; the maps then
@@ -258,8 +258,8 @@ impl OccluderMaps {
         }
     }
 
-    /// Computes the ranges of the cells of `target`, each from the 8 x 8 texels or finer cells of `source` that it
-    /// covers.
+    /// Computes the ranges of the cells of `target`, each from the 8 x 8 texels or finer cells of `source` that the
+    /// cell covers.
     fn draw_cells(
         &self,
         device: &Device,

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Length of the time slots in which meltwater is recorded, s.
 pub(crate) const MELT_SLOT_S: f64 = 60.0;
-/// Number of slots that are kept: a little more than a day.
+/// Number of slots that are kept, for a little more than a day.
 const SLOTS: usize = 1500;
 
 /// Snow at a place.
@@ -50,7 +50,7 @@ pub(crate) struct LyingSnow {
     /// Snow of each node of the host's terrain, in the terrain's order: depth in m, density in kg/m^3, wetness, albedo.
     /// Empty without a terrain.
     pub cells: Vec<[f32; 4]>,
-    /// Snow of the host's tiles that have any, by the tile's index east and north.
+    /// Snow of each of the host's tiles on which snow lies, by the tile's index east and north.
     pub tiles: BTreeMap<[i32; 2], TileSnow>,
     /// Incremented whenever `cells` or `tiles` change.
     pub revision: u64,

@@ -7,13 +7,13 @@ use glam::{DMat3, DVec2, DVec3};
 pub(crate) struct TerrainHeights {
     /// Position of the south-western node in the host's world. `heights_m` are relative to its height.
     pub origin: DVec3,
-    /// Rotation from the host's axes at the origin to east, north, up.
+    /// Rotation from the host's axes to east, north, up at the origin.
     pub to_enu: DMat3,
     /// Distance between nodes, m.
     pub cell_m: f64,
     /// Numbers of nodes east and north, at least two each.
     pub nodes: [u32; 2],
-    /// Heights above the origin, m, by rows: each from west to east, rows from south to north.
+    /// Heights above the origin, m, row by row from south to north, each row from west to east.
     pub heights_m: Vec<f32>,
     /// Hash, equal for equal terrain.
     pub hash: u64,
@@ -35,8 +35,8 @@ impl TerrainHeights {
         (self.origin, self.cell_m, self.nodes) == (other.origin, other.cell_m, other.nodes)
     }
 
-    /// Returns the height at a place east and north of the origin, m. Beyond the nodes it is the height of the nearest
-    /// place within.
+    /// Returns the height above the origin, m, at a place east and north of the origin, m. Outside the grid it is the
+    /// height of the nearest place on the grid.
     pub fn height_m(&self, place_m: DVec2) -> f64 {
         let at = place_m / self.cell_m;
         let along = |v: f64, nodes: u32| {

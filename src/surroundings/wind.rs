@@ -72,8 +72,8 @@ struct WindState {
 }
 
 impl WindTexture {
-    /// Returns the texture with the values of `volume`. Without a volume it returns the last texture, or one of a
-    /// single texel if there is none yet; no shader reads either.
+    /// Returns the texture with the values of `volume`. Without a volume, returns the last texture or, if there is none
+    /// yet, a texture of a single texel. No shader reads the texture then.
     pub fn view(&self, device: &Device, volume: Option<&WindVolume>) -> WindView {
         let state = &mut *self.held.lock().unwrap_or_else(PoisonError::into_inner);
         let nodes = volume.map_or([1; 3], |v| v.nodes);

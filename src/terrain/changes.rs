@@ -1,10 +1,10 @@
-//! Recent changes of a terrain. A reader that keeps a copy of its cells updates only the cells that changed.
+//! Recent changes of a terrain. A reader that keeps a copy of the terrain's cells updates only the cells that changed.
 
 use std::collections::VecDeque;
 
 use super::CellRect;
 
-/// Number of changes that are remembered. A reader that has missed older ones reads everything anew.
+/// Number of changes that are remembered. A reader that has missed an older change reads all cells anew.
 const REMEMBERED: usize = 256;
 
 /// Changed rectangles of cells, each with the terrain's revision after the change.

@@ -12,11 +12,11 @@ pub enum SurfaceClass {
     Unspecified = 0,
     /// Earth, sand, gravel: darkens when wet, and hardly reflects.
     Soil = 1,
-    /// Bare rock: darkens when wet, and shines in parts.
+    /// Bare rock: darkens when wet, and shines in places.
     Rock = 2,
     /// Asphalt, concrete, paving: darkens when wet, gets a reflecting water film, and puddles.
     Paved = 3,
-    /// Grass, crops, shrubs, trees: hardly changes.
+    /// Grass, crops, shrubs, trees: hardly changes when wet.
     Vegetation = 4,
     /// Water that the host draws: rain does not change it.
     Water = 5,
@@ -26,7 +26,7 @@ pub enum SurfaceClass {
 
 /// Number of classes.
 pub(crate) const CLASSES: usize = 7;
-/// Value in the place of a class number: a cell without ground.
+/// Value that stands instead of a class number for a cell without ground.
 pub(crate) const HOLE: u8 = 255;
 
 impl SurfaceClass {

@@ -19,8 +19,8 @@ const MOST_M: f32 = 1e5;
 /// Lattice of a terrain, level and aligned to true north at its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDesc {
-    /// Position of the south-western cell of tile (0, 0) in the host's world, m; all heights are relative to its
-    /// height.
+    /// Position of the south-western cell of tile (0, 0) in the host's world, m. All heights are relative to the height
+    /// of this position.
     pub origin: DVec3,
     /// Distance between neighbouring cells, m, \[0.01, 10 000\]. Default 1.
     pub cell_m: f64,
@@ -58,8 +58,8 @@ impl TerrainDesc {
     }
 }
 
-/// Key of a tile in the lattice: how many tiles east and north of the origin it lies, each within 1 000 000. Keys are
-/// ordered by rows from the south.
+/// Key of a tile in the lattice: the numbers of tiles by which it lies east and north of the origin, each within 1e6.
+/// Keys are ordered by rows from the south.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct TileKey {
     /// Number of tiles to the east; negative to the west.
@@ -157,8 +157,8 @@ pub struct TerrainCells<'a> {
     /// Heights above the terrain's origin, m, within 1e5. If empty in an update, the heights stay. A hole may have any
     /// value.
     pub heights_m: Rows<'a, f32>,
-    /// Materials of the cells, `None` for a hole. If empty, they stay in an update, and all are unspecified in a new
-    /// tile.
+    /// Materials of the cells, `None` for a hole. If empty in an update, the materials stay. If empty in a new tile,
+    /// all are unspecified.
     pub classes: Rows<'a, Option<SurfaceClass>>,
     /// Value among the heights that marks cells without data, such as -9999, -32768, or the value in the host's source.
     /// These cells become holes, and so do cells whose height is NaN. The value must be finite, and it must not be a
@@ -173,7 +173,7 @@ impl TerrainCells<'_> {
         if self.size == [0, 0] { [tile_cells; 2] } else { self.size }
     }
 
-    /// Whether a height stands for no data.
+    /// Whether a height means no data.
     pub(crate) fn is_no_data(&self, height_m: f32) -> bool {
         self.no_data_m.is_some_and(|none| height_m == none || height_m.is_nan())
     }
@@ -252,7 +252,7 @@ impl CellRect {
         Self { low: self.low.map(|v| v - cells), high: self.high.map(|v| v + cells) }
     }
 
-    /// Returns the smallest rectangle that holds both.
+    /// Returns the smallest rectangle that holds both rectangles.
     pub fn with(self, other: Self) -> Self {
         Self {
             low: [0, 1].map(|i| self.low[i].min(other.low[i])),

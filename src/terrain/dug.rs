@@ -10,7 +10,7 @@ pub(crate) struct DugColor {
     pub share: u8,
 }
 
-/// A cell with the change of the soil.
+/// A cell whose height or colour the soil has changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct DugCell {
     /// Index in the tile.

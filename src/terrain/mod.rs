@@ -2,17 +2,18 @@
 //!
 //! A **lattice** of equal square cells is level and aligned to true north at its origin. It is cut into equal square
 //! **tiles**. The key of a tile says how many tiles east and north of the origin it lies. All tiles share one lattice,
-//! so neighbouring tiles share no row of cells and need no stitching. The cell east of a tile's last column is the
-//! first column of its eastern neighbour. Water and interpolated heights continue across the border. Cells are counted
+//! so neighbouring tiles share no row of cells and need no stitching. East of a tile's easternmost cells lie the
+//! westernmost cells of the next tile. Water and interpolated heights continue across the border. Cells are counted
 //! from the origin in whole numbers, so rounding is the same near the origin and far from it.
 //!
 //! A cell has a height and a class, or it is a **hole**, where there is no ground. The host adds and removes tiles and
 //! changes rectangles of cells. The cost of a change depends only on the number of cells that it changes, not on the
-//! size of tile and terrain: a hash is a sum over cells, from which a change subtracts the old cells and to which it
-//! adds the new ones. The terrain and each tile have a **revision**, which grows with each change.
+//! size of tile and terrain: a hash is a sum over cells. A change subtracts the hashes of the old cells from the sum
+//! and adds those of the new cells. The terrain and each tile have a **revision**, which grows with each change.
 //!
-//! Copies of a terrain share its tiles. A tile that changes while another copy still uses it is copied once. This room
-//! names no effect: water, wind and queries read it alike. It has no settings, and no error but rounding.
+//! Copies of a terrain share its tiles. A tile that changes while another copy of the terrain still uses it is copied
+//! once. This room depends on no effect: water, wind and queries all read the terrain. It has no settings, and no error
+//! but rounding.
 
 mod changes;
 mod class;

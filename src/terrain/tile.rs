@@ -19,9 +19,9 @@ pub(crate) struct Tile {
     classes: Vec<u8>,
     /// Revision of the terrain at this tile's last change.
     pub revision: u64,
-    /// Revision of the soil up to which the heights include its change; 0 for a tile that is new.
+    /// Revision of the soil up to which the heights include the soil's changes; 0 for a new tile.
     pub soil_revision: u64,
-    /// Sum of the hashes of its cells; equal for tiles with the same cells.
+    /// Sum of the hashes of the tile's cells; equal for tiles with the same cells.
     pub hash: u64,
 }
 
@@ -76,8 +76,8 @@ impl Tile {
         SurfaceClass::ALL.get(number).copied().unwrap_or_default()
     }
 
-    /// Copies the values of a rectangle that was checked. A value that is no height leaves the height of a hole as it
-    /// was. Returns whether any cell has changed.
+    /// Copies the values of a rectangle of cells that [`TerrainCells::check`] has accepted. A cell whose value is no
+    /// height is a hole and keeps its earlier height. Returns whether any cell has changed.
     pub fn take(&mut self, cells: &TerrainCells<'_>, tile_cells: u32) -> bool {
         let before = self.hash;
         let size = cells.size_in(tile_cells);
@@ -116,8 +116,8 @@ impl Tile {
         self.undug_m.get(cell).copied().unwrap_or(self.heights_m[cell])
     }
 
-    /// Sets the height of a cell before anything was dug. The change by the soil stays, up to rounding: the soil then
-    /// sets it exactly.
+    /// Sets the undug height of a cell. The height keeps the change by the soil, up to rounding: the soil then sets it
+    /// exactly.
     fn set_undug(&mut self, cell: usize, height_m: f32) {
         let change_m = self.heights_m[cell] - self.undug_m(cell);
         self.heights_m[cell] = if change_m == 0.0 { height_m } else { height_m + change_m };

@@ -29,20 +29,20 @@ pub(crate) const AROUND: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [
 /// The terrain at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainPoint {
-    /// Height of the ground above the terrain's origin, m: that of the triangle of three neighbouring cells.
+    /// Height of the ground above the terrain's origin, m, on the triangle of three neighbouring cells.
     pub height_m: f64,
-    /// Unit normal of this triangle in the host's axes, upwards.
+    /// Unit normal of the ground's triangle in the host's axes, upwards.
     pub normal: DVec3,
     /// Material of the nearest cell.
     pub surface_class: SurfaceClass,
     /// Tile of the nearest cell.
     pub tile: TileKey,
-    /// Revision of the terrain at that tile's last change
+    /// Revision of the terrain at the last change of the nearest cell's tile
     /// ([`Context::terrain_revision`](crate::context::Context::terrain_revision)).
     pub revision: u64,
 }
 
-/// A triangle of the ground at a place in it.
+/// Height and slope of the ground's triangle at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Facet {
     /// Height above the terrain's origin, m.
@@ -72,9 +72,9 @@ pub(crate) struct Terrain {
     pub revision: u64,
     /// Revision after the host's last change.
     pub host_revision: u64,
-    /// Revision of the soil whose change the heights include.
+    /// Revision of the soil up to which the heights include the soil's changes.
     pub soil_revision: u64,
-    /// Soil below the undug surface, which shows in walls.
+    /// Soil below the undug surface. Walls of dug ground show this soil.
     pub surface_soil: DugColor,
     /// Hash, equal for terrains with equal tiles.
     pub hash: u64,
@@ -134,7 +134,7 @@ impl Terrain {
         self.slots.get(&key).copied()
     }
 
-    /// Key of the tile position that holds a lattice position, with or without a tile there.
+    /// Key of the tile that holds a lattice position, whether or not the terrain has this tile.
     pub fn key_of(&self, [x, y]: [i32; 2]) -> TileKey {
         TileKey::new(x >> self.bits, y >> self.bits)
     }
@@ -150,7 +150,7 @@ impl Terrain {
         CellRect { low, high: low.map(|v| v + (1 << self.bits)) }
     }
 
-    /// Keys of the tile positions that a rectangle touches, with or without a tile there.
+    /// Keys of the tiles that a rectangle touches, whether or not the terrain has these tiles.
     pub fn keys_within(&self, rect: CellRect) -> impl Iterator<Item = TileKey> + use<> {
         let bits = self.bits;
         let along = move |i: usize| (rect.low[i] >> bits)..=((rect.high[i] - 1) >> bits);
@@ -298,8 +298,9 @@ impl Terrain {
         Ok(rect)
     }
 
-    /// Sets cells of a tile with the change of the soil, as a change with this revision. Returns the smallest rectangle
-    /// around the cells that have changed; `None` if there are none.
+    /// Sets the heights and the colours that the soil gives to cells of a tile. If any cell changes, the terrain and
+    /// the tile get the revision `revision`. Returns the smallest rectangle around the cells that have changed; `None`
+    /// if there are none.
     pub fn set_dug(&mut self, slot: u32, cells: &[DugCell], revision: u64) -> Option<CellRect> {
         let tile = Arc::make_mut(&mut self.tiles[slot as usize]);
         let (key, before) = (tile.key, hash_of(tile));
@@ -324,7 +325,7 @@ impl Terrain {
         Arc::make_mut(&mut self.tiles[slot as usize]).soil_revision = soil_revision;
     }
 
-    /// Undoes all changes by the soil. Returns the rectangles of the tiles that had any.
+    /// Undoes all changes by the soil. Returns the rectangles of the tiles that the soil had changed.
     pub fn undo_dug(&mut self) -> Vec<CellRect> {
         let mut changed = Vec::new();
         for tile in self.tiles.iter_mut().filter(|tile| tile.is_dug()) {
@@ -464,7 +465,7 @@ impl Terrain {
         self.height_at((place_m / self.desc.cell_m).clamp(end(all.low, 0), end(all.high, 1)))
     }
 
-    /// The terrain at a position in the host's world.
+    /// The terrain at a position in the host's world; `None` where there is no ground.
     pub fn point_at(&self, position: DVec3) -> Option<TerrainPoint> {
         let (cells, _) = self.cells_at(position);
         let facet = self.facet_at(cells)?;

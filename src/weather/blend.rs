@@ -11,9 +11,9 @@ use super::conditions::{
 use super::mix::mix;
 use super::precipitation::Falling;
 
-/// Share of the larger amount that [`share`] adds to both amounts, so that the geometry of an absent layer keeps a
-/// small weight. While a layer fades in, its geometry changes mostly at about this share of its full amount, too little
-/// to be seen. With 0 the geometry would jump when the layer begins.
+/// Factor on the larger of two amounts. [`share`] adds the product to both, so that the geometry of an absent layer
+/// keeps a small weight. While a layer fades in, its geometry changes mostly at about this share of its full amount,
+/// too little to be seen. With 0 the geometry would jump when the layer begins.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Returns the weight of the second layer's geometry in a blend of two layers with the amounts `qa` and `qb`: (t qb) /

@@ -2,11 +2,11 @@
 //!
 //! # Model
 //! The part of a layer above a place dims the light there; the part below reflects light up again. For each part above,
-//! the model needs the share of the sky that its clouds cover, and their optical depth ([`super::cloud_part`]). Layers,
-//! and the two parts of a layer around a place inside it, are combined by the adding method (van de Hulst 1980), each
-//! as a mixture of cover and holes. Fluxes are two-stream fluxes; light that droplets scatter nearly straight on stays
-//! in the beam (Joseph, Wiscombe and Weinman 1976). A layer divided at any height therefore transmits as much as the
-//! whole.
+//! the model needs the share of the sky that its clouds cover, and their optical depth ([`super::cloud_part`]). The
+//! adding method (van de Hulst 1980) combines the layers. A layer with the place inside enters as two parts, one above
+//! the place and one below. Each layer or part is a mixture of cover and gaps. Fluxes are two-stream fluxes; light that
+//! droplets scatter nearly straight on stays in the beam (Joseph, Wiscombe and Weinman 1976). A layer divided at any
+//! height therefore transmits as much as the whole.
 //!
 //! # Error
 //! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error of the direct light against the mean
@@ -53,7 +53,7 @@ fn over_layers<'a>(
 /// Light that arrives through the clouds, each field as a share of the light above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloudLight {
-    /// Share of the sun's beam that arrives as a beam: a mean over places, in which holes count by their probability.
+    /// Share of the sun's beam that arrives as a beam: a mean over places, with gaps weighted by their probability.
     pub direct: f64,
     /// Share of the sun's beam on a horizontal surface that arrives diffuse from the clouds, with the light reflected
     /// between ground and cloud.
@@ -74,8 +74,8 @@ impl Conditions {
         self
     }
 
-    /// Returns the shares of sunlight and sky light that arrive through the clouds. The horizontal irradiance is sun
-    /// (direct + diffuse) + sky light x sky.
+    /// Returns the shares of sunlight and sky light that arrive through the clouds. The horizontal irradiance is S
+    /// (direct + diffuse) + D sky, with S that of the sun and D that of the sky above the clouds.
     ///
     /// `cos_sun_zenith`: cosine of the sun's zenith angle; values below 0.03 count as 0.03. `ground_albedo`: clamped to
     /// 0 to 1; 0.2 for most land. Layers are combined from the top by the adding method (van de Hulst 1980), each as a
@@ -91,7 +91,7 @@ impl Conditions {
     }
 
     /// Returns the altitude at which light from above first meets the clouds over a place: the mean top of the layers
-    /// that it meets first.
+    /// that the light meets first.
     pub(crate) fn lit_top_m(&self, altitude_m: f64) -> f64 {
         let station_m = self.air.station_altitude_m;
         let layers = self.layers_above(altitude_m).map(|part| (part.cover, part.slab));
@@ -99,9 +99,9 @@ impl Conditions {
     }
 
     /// Returns the altitude at which precipitation begins: a mean over the layers that are met first from below, and 2
-    /// km above the station if there is no cloud. Precipitation grows on its way down through the lower half of its
-    /// cloud, at most through the lowest 500 m, so that it also falls on a hill inside a low deck. A base below 100 m
-    /// above the station counts as 100 m.
+    /// km above the station if there is no cloud. Precipitation grows while it falls through the lower half of its
+    /// cloud, at most through the lowest 500 m, so that it also falls on a hill inside a low deck. A base lower than
+    /// 100 m above the station counts as 100 m.
     pub(crate) fn falling_top_m(&self) -> f64 {
         let begins_m = |s: &CloudSlab| s.base_m.max(100.0) + (0.5 * (s.top_m() - s.base_m)).min(MOST_GROWTH_M);
         self.over_first_clouds(begins_m)
@@ -184,7 +184,7 @@ impl Conditions {
         let bounce = 1.0 / (1.0 - above.back * below.even).max(1e-6);
         let diffuse = (above.diffuse + above.back * below.beam * (above.slanted + above.beam_through)) * bounce;
         let sky = above.sky * bounce;
-        // Layers may hide more of the sky than independent ones: then more of it is under cloud, and less is clear.
+        // The layers may hide more of the sky than independent ones would. Then cloud covers more, and less is clear.
         let gathered = self.gathered();
         let left_clear = self.clear_sky() + above.open * gathered;
         let slanted = if above.clear > 1e-9 { left_clear * (above.slanted / above.clear) } else { left_clear };
@@ -231,7 +231,7 @@ struct FromAbove {
 }
 
 impl FromAbove {
-    /// Passes a beam through `parts` from the top; `mu` is the sine of its elevation.
+    /// Passes a beam through `parts` from the top; `mu` is the sine of the beam's elevation.
     fn new<'a>(parts: impl Iterator<Item = SlabPart<'a>>, mu: f64) -> Self {
         let mut to = Self {
             through: 0.0,
@@ -266,9 +266,9 @@ impl FromAbove {
 
 /// Share of light that everything below a place reflects up.
 struct FromBelow {
-    /// Share of the beam.
+    /// Share of the beam that is reflected.
     beam: f64,
-    /// Share of diffuse light.
+    /// Share of diffuse light that is reflected.
     even: f64,
 }
 

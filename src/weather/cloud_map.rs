@@ -12,7 +12,7 @@ pub const MAX_CLOUD_MAP_CELLS: u32 = 128;
 /// layer with the cover 1, the map gives the cover itself.
 ///
 /// The map does not move over the ground, because a scenario needs a storm or a clearing in a known place. Clouds move
-/// through it with their wind, and form and dissolve by its values. It is level and aligned to north. Values are
+/// through it with their wind, and form and dissolve by its values. The map is level and aligned to north. Values are
 /// interpolated between the centres of cells, and constant beyond the outermost centres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudMap {
@@ -83,7 +83,7 @@ impl Conditions {
             slab.cover *= left;
         }
         let still_hidden = 1.0 - super::conditions::clear_between(&self.clouds);
-        // While one layer replaces another, the sky is less clear than independent layers would leave it. That excess
+        // While one layer replaces another, the layers hide more of the sky than independent ones would. The excess
         // stays in proportion to the cover that is left.
         if hidden > 0.0 {
             self.clear_sky = 1.0 - (1.0 - self.clear_sky) * (still_hidden / hidden);

@@ -1,10 +1,10 @@
-//! Parts of a cloud layer above or below a place, and their effect on light.
+//! Parts of a cloud layer above or below a place, and how they transmit and reflect light.
 //!
 //! # Model
 //! The share of its cover and of its optical depth that a layer has above a height depends on its shape. The laws are
 //! fitted to means over the drawn clouds (`clouds::field`), for all kinds between sheets, cells, cumulus, towers and
 //! fibres. A slant beam meets more of broken clouds than a vertical one, because it also meets their sides
-//! ([`SlabPart::meet`]); part of the cloud that it meets is thin.
+//! ([`SlabPart::meet`]). Some of the cloud that a slant beam meets is thin.
 //!
 //! # Error
 //! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error against the drawn clouds, for each
@@ -18,7 +18,8 @@ use crate::numerics::smoothstep;
 /// Sine of the lowest elevation of the sun at which its beam is traced through clouds. The light of a lower sun is
 /// treated as coming from this elevation.
 pub(super) const LOWEST: f64 = 0.03;
-/// Upper limit of the spread of depths in broken clouds: that of the deepest clouds to which the law was fitted.
+/// Upper limit of the spread of optical depths in broken clouds: the spread of the deepest clouds to which the law of
+/// `SlabPart::through` was fitted.
 const MOST_SPREAD: f64 = 2.6;
 /// Covers between which clouds change from broken to closed (`CLOSES` of `clouds::field`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
@@ -50,12 +51,12 @@ impl CloudSlab {
         if self.scale_m.is_finite() { smoothstep(CLOSES[0], CLOSES[1], self.cover) } else { 1.0 }
     }
 
-    /// Returns the shares of the layer's cover and of its optical depth above a height. The height counts from 0 at the
-    /// base to 1 at the top.
+    /// Returns the shares of the layer's cover and of its optical depth above a height. The height is 0 at the base and
+    /// 1 at the top.
     ///
     /// The laws are fitted to means over the drawn clouds (`clouds::field`). The higher above the base, the fewer
-    /// broken clouds reach there. A cumulonimbus has its anvil on top. A closed layer ends below its top, more unevenly
-    /// in sheets than in cumulus.
+    /// broken clouds reach there. A cumulonimbus has its anvil on top. The cloud of a closed layer ends below the
+    /// layer's top, and its upper surface is more uneven in sheets than in cumulus.
     fn shares_above(&self, height: f64) -> [f64; 2] {
         if height <= 0.0 || height >= 1.0 {
             return [1.0 - height; 2];
@@ -71,12 +72,12 @@ impl CloudSlab {
         mix2(broken, even, self.closed())
     }
 
-    /// Returns the shares of [`Self::shares_above`] for broken clouds. A dome rises by the excess of the drawn clouds'
-    /// field (`clouds::field`) over its threshold, and the field has a normal distribution.
+    /// Returns the shares of [`Self::shares_above`] for broken clouds. The dome of a cloud rises with the amount by
+    /// which the drawn clouds' field (`clouds::field`) exceeds its threshold. The field has a normal distribution.
     fn broken_above(&self, height: f64, heaped: f64) -> [f64; 2] {
         let tall = (2.0 * self.convection - 1.0).max(0.0);
         let left = (1.0 - height / (1.0 - 0.15 * heaped * (1.0 - tall))).max(0.0);
-        // The normal distribution is approximated by a logistic one (1.7: Johnson and Kotz 1970).
+        // A logistic distribution with the factor 1.7 approximates the normal one (Johnson and Kotz 1970).
         let cover = self.cover.clamp(1e-6, 1.0 - 1e-6);
         let odds = libm::log(cover / (1.0 - cover));
         let rises = (1.3 * (1.7 * (2.2 - tall) + odds)).max(1.0);
@@ -84,7 +85,7 @@ impl CloudSlab {
         [reach * smoothstep(0.0, 0.15, left), left * left]
     }
 
-    /// Converts a height above the station to one from 0 at the base to 1 at the top.
+    /// Converts a height above the station to a relative height: 0 at the base, 1 at the top.
     fn height(&self, height_m: f64) -> f64 {
         ((height_m - self.base_m) / self.thickness_m.max(1e-3)).clamp(0.0, 1.0)
     }
@@ -135,10 +136,10 @@ impl SlabPart<'_> {
         -libm::expm1(power * libm::log1p(-self.cover))
     }
 
-    /// Returns the share that passes the clouds unscattered, of the beam that meets them. `hit` is the share of the
-    /// whole beam that meets them.
+    /// Returns the unscattered share of the light that meets the part's clouds. `hit` is the share of the whole beam
+    /// that meets these clouds.
     ///
-    /// Depths of broken clouds have a gamma distribution (Barker 1996).
+    /// The optical depths of broken clouds have a gamma distribution (Barker 1996).
     fn through(&self, hit: f64, mu: f64) -> f64 {
         let depth = self.depth_met(hit) / mu;
         // A low beam meets the same clouds as a vertical one, and edges in addition.
@@ -155,7 +156,7 @@ impl SlabPart<'_> {
         if hit > 0.0 { self.depth * (self.cover / hit) } else { 0.0 }
     }
 
-    /// Returns the effect of the part on a beam; `mu` is the sine of its elevation.
+    /// Returns the shares into which the part splits a beam; `mu` is the sine of the beam's elevation.
     pub(super) fn meet(&self, mu: f64) -> Met {
         let g = self.slab.asymmetry;
         let hit = self.hit(mu);
@@ -194,9 +195,10 @@ impl Met {
 
 /// Returns the reflectance of a slab without absorption under a parallel beam: the two-stream solution of Meador and
 /// Weaver (1980, eq. 24) with Eddington's coefficients after the delta scaling of Joseph, Wiscombe and Weinman (1976).
-/// Transmittance, direct and diffuse together, is 1 minus this. Its error against discrete ordinates
-/// (Henyey-Greenstein, g = 0.85, depths 1 to 64) is at most 0.0044 with the sun overhead and 0.029 at 60 degrees
-/// (tested). It was the best of five two-stream closures tried.
+/// Transmittance, direct and diffuse together, is 1 minus the reflectance. The error of the reflectance against
+/// discrete ordinates (Henyey-Greenstein, g = 0.85, optical depths 1 to 64) is at most 0.0044 with the sun overhead
+/// and 0.029 with the sun 60 degrees from the zenith (tested). The solution was the best of five two-stream closures
+/// tried.
 pub fn slab_reflectance(optical_depth: f64, asymmetry: f64, cos_zenith: f64) -> f64 {
     let mu = cos_zenith.clamp(0.01, 1.0);
     let tau = optical_depth * (1.0 - asymmetry * asymmetry);

@@ -51,8 +51,8 @@ fn substance(kind: CloudKind) -> Substance {
     }
 }
 
-/// Largest ratio between a layer's thickness and the usual one of its kind, in either direction, up to which the
-/// distance between its clouds is proportional to its thickness.
+/// Factor by which a layer may be thicker or thinner than is usual for its kind while the distance between its clouds
+/// is still proportional to its thickness.
 const WIDER: f64 = 3.0;
 
 /// Lowest base of middle clouds, m (WMO levels of temperate latitudes).
@@ -79,16 +79,16 @@ fn likely_kind(layer: &CloudLayer, raining: bool, showers: bool) -> CloudKind {
 }
 
 /// Returns the optical depth of water of `water_path_kg_m2` in droplets of `radius_um`: tau = 3 W / (2 rho r) (Stephens
-/// 1978), where rho is the density of water or ice.
+/// 1978), with the water path W, the radius r and the density rho of water or ice.
 pub fn cloud_optical_depth(water_path_kg_m2: f64, radius_um: f64, ice_fraction: f64) -> f64 {
     let density = 1000.0 + (917.0 - 1000.0) * ice_fraction;
     1.5 * water_path_kg_m2 / (density * radius_um * 1e-6)
 }
 
 /// Returns the water that a cloud must hold to give a rate of rain, kg/m^2: the rate divided by the rate at which cloud
-/// water turns into rain (Kessler 1969). This is 1e-3 1/s by coalescence of droplets, plus 2.2 q^0.875 1/s by falling
-/// rain that collects droplets. q is the rain water in the air, kg/kg, for a density of the air of 1.2 kg/m^3. It
-/// follows from the rate R by Marshall and Palmer's 0.072 R^0.88 g/m^3.
+/// water turns into rain (Kessler 1969). The latter is 1e-3 1/s by coalescence of droplets, plus 2.2 q^0.875 1/s by
+/// falling rain that collects droplets. The rain water in the air, q, kg/kg, follows from the rain rate R by Marshall
+/// and Palmer's 0.072 R^0.88 g/m^3 with an air density of 1.2 kg/m^3.
 pub fn water_path_for_rate_kg_m2(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;

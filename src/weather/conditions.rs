@@ -10,7 +10,7 @@ use super::precipitation::Falling;
 /// threshold).
 pub const LN_20: f64 = 2.995_732_273_553_991;
 
-/// The physical state of the weather at one place and moment.
+/// The physical state of the weather at one place and time.
 ///
 /// Created by [`super::derive`] or [`super::Timeline::at`]. Every field is a quantity. Kinds that a report names in
 /// words become numbers, so that any two conditions can be blended ([`Conditions::lerp`]). Heights are above the
@@ -33,7 +33,7 @@ pub struct Conditions {
     /// [`Conditions::cloud_slabs`].
     pub clouds: [CloudSlab; MAX_CLOUD_LAYERS],
     /// Upper limit of the share of the sky that no layer hides. While one overcast replaces another, it is below the
-    /// share that independently placed layers would leave clear. 1 where the layers alone decide.
+    /// share that independently placed layers would leave clear. A value of 1 sets no limit.
     #[serde(default = "whole")]
     pub clear_sky: f64,
     /// The host's own cloud light, in place of that of the slabs.
@@ -85,7 +85,7 @@ pub struct AerosolLayer {
     pub asymmetry: f64,
     /// Scale height, m.
     pub scale_height_m: f64,
-    /// Height of the station above sea level, m, at which `extinction_per_m` holds.
+    /// Altitude at which `extinction_per_m` holds, m: the station's height above sea level.
     pub reference_altitude_m: f64,
 }
 
@@ -110,7 +110,7 @@ pub struct GroundLayer {
     pub softness_m: f64,
     /// Share of the ground that the layer covers, 0 to 1.
     pub coverage: f64,
-    /// Size of a patch if `coverage` is below 1, or of a gust's patch if `lifted` is not 0, m.
+    /// Patch size, m: of the layer's patches if `coverage` is below 1, of a gust's patch if `lifted` is not 0.
     pub patch_size_m: f64,
     /// Share of the layer that the wind lifts from the ground in gusts, 0 to 1 ([`super::lifting`]).
     #[serde(default)]
@@ -276,7 +276,7 @@ impl AerosolLayer {
 }
 
 impl GroundLayer {
-    /// No fog. The shape is that of a shallow layer, so that a blend has something to start from.
+    /// No fog. The shape is that of a shallow layer, so that a blend into a fog starts from a layer near the ground.
     pub const NONE: Self = Self {
         extinction_per_m: 0.0,
         angstrom_exponent: 0.0,
@@ -345,14 +345,15 @@ impl WindProfile {
         if deg < 0.0 { deg + 360.0 } else { deg }
     }
 
-    /// Returns the friction velocity over land, m/s: kappa U10 / ln(10 / z0), kappa = 0.4 (neutral surface layer,
-    /// Panofsky and Dutton 1984).
+    /// Returns the friction velocity u* over land, m/s: kappa U10 / ln(10 / z0), with kappa = 0.4, the mean speed U10
+    /// at 10 m and the roughness length z0 (neutral surface layer, Panofsky and Dutton 1984).
     pub fn friction_velocity_m_s(&self) -> f64 {
         0.4 * self.speed_m_s() / libm::log(10.0 / self.roughness_length_m)
     }
 
-    /// Returns the mean speed over land at a height above ground, m/s: the log law (u*/kappa) ln(z/z0). It is 0 at and
-    /// below z0, and constant above 100 m, where the surface layer ends.
+    /// Returns the mean speed over land at a height z above ground, m/s: the log law (u*/kappa) ln(z/z0), with the
+    /// symbols of [`Self::friction_velocity_m_s`]. The speed is 0 at and below z0, and constant above 100 m, where the
+    /// surface layer ends.
     pub fn speed_at_height_m_s(&self, height_m: f64) -> f64 {
         let z = height_m.min(100.0);
         if z <= self.roughness_length_m {

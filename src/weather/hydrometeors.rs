@@ -1,11 +1,12 @@
 //! Extinction of precipitation from its rate, by a law for each species; and the rates of rain and snow from their
 //! extinction.
 
-/// Returns the extinction of rain at `rate_mm_h`, 1/m, any visible wavelength.
+/// Returns the extinction of rain at `rate_mm_h`, 1/m, for any visible wavelength.
 ///
-/// Geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops from 0.1 to 6 mm. The number of drops
-/// is renormalised so that, at the fall speeds of Gunn and Kinzer (1949), they give the rate. A cubic in ln R is fitted
-/// to that integral from 0.01 to 400 mm/h, within 0.7 % (tested). Below 0.01 mm/h it continues with its slope there.
+/// The extinction is the integral of geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops
+/// from 0.1 to 6 mm. The distribution is scaled so that, at the fall speeds of Gunn and Kinzer (1949), the drops give
+/// the rate R. A cubic in ln R is fitted to the integral from 0.01 to 400 mm/h, within 0.7 % (tested). Below 0.01 mm/h
+/// the fit continues with its slope at 0.01 mm/h.
 pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4],
@@ -14,9 +15,9 @@ pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     )
 }
 
-/// Returns the extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), 3.0
-/// R^-0.21 per mm. Its fewer and larger drops have about 0.6 of the extinction of steady rain. A quartic in ln R,
-/// within 0.7 % of the integral.
+/// Returns the extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), whose
+/// slope is 3.0 R^-0.21 per mm. Its fewer and larger drops have about 0.6 of the extinction of steady rain. The fit is
+/// a quartic in ln R, within 0.7 % of the integral.
 pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [
@@ -56,8 +57,8 @@ pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
 }
 
 /// Returns the extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30
-/// 000 per m^3 mm and 5.7 R^-0.21 per mm. A power law fitted from 0.1 to 1 mm/h, continued above by a quartic in ln R,
-/// within 0.5 % of the integral up to 500 mm/h (tested).
+/// 000 per m^3 mm and the slope 5.7 R^-0.21 per mm. The fit is a power law from 0.1 to 1 mm/h, continued above 1 mm/h
+/// by a quartic in ln R, within 0.5 % of the integral up to 500 mm/h (tested).
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -68,10 +69,11 @@ pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
 
 /// Returns the extinction of snow, 1/m, at a melted rate.
 ///
-/// Sizes by Gunn and Marshall (1958), N0 = 3800 R^-0.87 and 2.55 R^-0.48 per mm of melted diameter. Flakes of the
-/// diameter D, mm, have the density 0.17 / D g/cm^3 (Holroyd 1971), so D^2 = Dm^3 / 0.17 with the melted diameter Dm,
-/// and Q = 2 on 0.6 of the disc (area ratio of aggregates). The integral is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. At 1
-/// mm/h it gives a visibility of 1.0 km, the bound of the classes by visibility (light above 1 km).
+/// Sizes follow Gunn and Marshall (1958): N0 = 3800 R^-0.87 and the slope Lambda = 2.55 R^-0.48 per mm of melted
+/// diameter. Flakes of the diameter D, mm, have the density 0.17 / D g/cm^3 (Holroyd 1971), so D^2 = Dm^3 / 0.17 with
+/// the melted diameter Dm. The extinction efficiency is 2 on 0.6 of the disc (area ratio of aggregates). The integral
+/// is (pi / 2) 0.6 (N0 / 0.17) 6 / Lambda^4. At 1 mm/h it gives a visibility of 1.0 km, the lower bound of light snow
+/// in the classes by visibility.
 pub fn snow_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 { 0.0 } else { SNOW_AT_1_MM_H * libm::pow(rate_mm_h, SNOW_EXPONENT) }
 }

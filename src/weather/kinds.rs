@@ -25,7 +25,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// Returns the variant with a number.
+            /// Returns the variant whose number is `value`.
             ///
             /// # Errors
             /// [`crate::Status::InvalidArgument`] naming the parameter and the accepted numbers.
@@ -86,7 +86,7 @@ kinds! {
 }
 
 kinds! {
-    /// Cloud genera, and towering cumulus, which METAR names.
+    /// Cloud genera, and towering cumulus, for which METAR has a code of its own.
     CloudKind, "clouds[].kind" {
         /// Unknown kind: `derive` chooses one by height, cover and precipitation.
         Unknown = 0, "unknown";
@@ -204,8 +204,7 @@ kinds! {
 }
 
 impl PrecipitationKind {
-    /// Mass fraction of the precipitation that is liquid, if the report does not give it: 1 for rain, 0 for ice, 0.5
-    /// for sleet.
+    /// Liquid share of the precipitation's mass if the report gives none: 1 for rain, 0 for ice, 0.5 for sleet.
     pub fn default_liquid_fraction(self) -> f64 {
         match self {
             Self::Drizzle | Self::Rain | Self::FreezingDrizzle | Self::FreezingRain => 1.0,

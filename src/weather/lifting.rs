@@ -21,7 +21,7 @@ pub fn carried(speed_m_s: f64) -> f64 {
 
 /// Mean amounts carried by gusts ([`carried`]), m^3/s^3, between which the unevenness sets in. Up to the first amount
 /// the wind lifts nothing. Matter in the air was then lifted earlier and is evenly mixed. From the second amount on,
-/// the unevenness of the gusts counts fully.
+/// the matter is as uneven as the gusts.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
 /// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\]: 0 where

@@ -5,15 +5,15 @@ use super::kinds::{AerosolKind, CloudKind, FogKind, LoftedKind, PrecipitationKin
 /// Maximum number of cloud layers of a [`Weather`].
 pub const MAX_CLOUD_LAYERS: usize = 16;
 
-/// The weather at a place and moment, as a host or a METAR report states it.
+/// The weather at one place and time, as a host or a METAR report states it.
 ///
-/// Zero is a valid value everywhere (0 C, north, calm). Values that may be unknown are an `Option`; for `None`,
+/// Zero never means unknown: it is 0 C, north or calm. Values that may be unknown are an `Option`; for `None`,
 /// [`super::derive`] chooses by a published law. [`Weather::default`] is a clear standard day. Plain data: any thread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weather {
     /// Meteorological optical range, m: the distance at which 550 nm light falls to 5 % (WMO-No. 8, aviation use), at
-    /// station height. It is **total**: air, haze, fog, rain and snow together. Range [1, 1e6], default 40 000. Above
-    /// about 260 km the extinction would be below that of pure air, and the aerosol is 0.
+    /// station height. The value is **total**: air, haze, fog, rain and snow together. Range [1, 1e6], default 40 000.
+    /// Above about 260 km the extinction would be below that of pure air, and that of the aerosol is 0.
     pub visibility_m: f64,
     /// Vertical visibility into an obscured sky, m. Range [0, 10 000], default none (the sky is not obscured).
     /// With fog it sets the fog's depth.
@@ -62,8 +62,8 @@ pub struct Aerosol {
     /// Asymmetry of the phase function (mean cosine). Range [-0.99, 0.99]; default by kind and humidity.
     pub asymmetry: Option<f64>,
     /// Height over which the density of the particles falls by a factor e, m. Range [10, 20 000]; default by kind.
-    /// Raised to at least the station's altitude divided by 4.6 (435 m at 2000 m): the sky's tables count densities
-    /// from sea level, and the density there can be at most a hundred times that at the station.
+    /// Raised to at least the station's altitude divided by 4.6 (435 m at 2000 m): the sky's tables start from the
+    /// density at sea level, which can be at most a hundred times that at the station.
     pub scale_height_m: Option<f64>,
 }
 
@@ -327,7 +327,7 @@ pub fn saturation_pressure_hpa(temperature_c: f64) -> f64 {
 
 impl Weather {
     /// Sets the humidity from a dew point (degrees Celsius). A dew point above the temperature counts as saturation.
-    /// Formula: ratio of [`saturation_pressure_hpa`] at both.
+    /// The humidity is [`saturation_pressure_hpa`] at the dew point divided by its value at the air temperature.
     pub fn set_dew_point_c(&mut self, dew_point_c: f64) {
         let ratio = saturation_pressure_hpa(dew_point_c) / saturation_pressure_hpa(self.temperature_c);
         self.relative_humidity = ratio.clamp(0.0, 1.0);

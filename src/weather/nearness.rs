@@ -5,15 +5,16 @@ use super::{
     precipitation::Falling,
 };
 
-/// Value that a picture shows, and the least value to which a difference is compared, in the same unit.
+/// Value that a picture shows, and the lower limit of the reference value in [`Conditions::is_near`], in the same unit.
 type SeenValue = [f64; 2];
 
-/// Least value for quantities between 0 and 1: where others may change by 5 %, these may change by 0.02.
+/// Lower limit of the reference value of quantities between 0 and 1: if other quantities may change by 5 %, these may
+/// change by 0.02.
 const SHARE: f64 = 0.4;
 
 impl Conditions {
-    /// Whether every quantity that a picture shows differs from that of `other` by at most `share` of the larger of
-    /// both, or of a least value where both are smaller.
+    /// Whether every quantity that a picture shows differs from that of `other` by at most `share` of a reference
+    /// value. This is the larger of both quantities, but at least the lower limit in [`SeenValue`].
     pub(crate) fn is_near(&self, other: &Self, share: f64) -> bool {
         let near =
             |([a, least], [b, _]): (SeenValue, SeenValue)| (a - b).abs() <= share * a.abs().max(b.abs()).max(least);

@@ -36,8 +36,8 @@ impl Overrides {
     /// Checks every value that is set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] with the name and range of the first value that is not finite or out of
-    /// range.
+    /// [`crate::Status::InvalidArgument`] with the name and range of the first value that is out of range or not
+    /// finite.
     pub fn validate(&self) -> Result<()> {
         let fields = [
             ("overrides.aerosol_extinction_per_m", self.aerosol_extinction_per_m, 0.0, 10.0, "1/m"),

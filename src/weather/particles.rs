@@ -56,9 +56,9 @@ pub fn humidity_growth(kind: AerosolKind, relative_humidity: f64) -> f64 {
     libm::pow(dryness, -properties(kind).growth_exponent)
 }
 
-/// Returns the visibility, m, for a report that gives only a lower bound. The air holds a continental aerosol with a
-/// visibility of 40 km at humidity 0.5, which grows with humidity ([`humidity_growth`]); `falling_extinction_per_m`
-/// adds to its extinction.
+/// Returns the visibility, m, for a report that gives only a lower bound. The air holds a continental aerosol that
+/// swells with humidity ([`humidity_growth`]) and gives a visibility of 40 km at humidity 0.5.
+/// `falling_extinction_per_m` is added to the extinction of air and aerosol.
 pub fn unlimited_visibility_m(relative_humidity: f64, falling_extinction_per_m: f64) -> f64 {
     let kind = AerosolKind::Continental;
     let growth = humidity_growth(kind, relative_humidity) / humidity_growth(kind, 0.5);
@@ -76,9 +76,9 @@ fn effective_kind(w: &Weather) -> AerosolKind {
     }
 }
 
-/// Maximum altitude of a station, in scale heights of its particles. The sky's tables count the density of the
-/// particles from sea level. The density there can be at most e^4.6, a hundred times that at the station. The haze of a
-/// high plateau is a layer on the plateau, and does not continue down to sea level.
+/// Maximum altitude of a station, in scale heights of its particles. The sky's tables start from the density of the
+/// particles at sea level, which can be at most e^4.6, a hundred times that at the station. The haze of a high plateau
+/// is a layer on the plateau, and does not continue down to sea level.
 const DEEPEST_SCALES: f64 = 4.6;
 
 /// Returns the scale height of the particles, m: as given or by kind, but at least the station's altitude divided by
@@ -151,8 +151,8 @@ fn visibility_inside_m(w: &Weather) -> Option<f64> {
 }
 
 /// Largest vertical optical depth of particles for the sky's tables. The tables sum orders of scattering as a series,
-/// whose error is 11 % at this depth (95th percentile). Thicker particles go to the ground layer, whose two-stream
-/// solution holds at any depth.
+/// whose error is 11 % at this depth (95th percentile). The remainder of a greater depth goes to the ground layer,
+/// whose two-stream solution holds at any depth.
 const SKY_DEPTH: f64 = 1.0;
 
 /// Returns the optical depth of particles in the sky's tables if their total is `depth`: all of it up to [`SKY_DEPTH`],
@@ -162,12 +162,12 @@ fn sky_depth(depth: f64) -> f64 {
     if depth <= SKY_DEPTH { depth } else { SKY_DEPTH * SKY_DEPTH / depth }
 }
 
-/// Shares the extinction of aerosol and fog, max(0, ln 20 / V - air - precipitation), between the mixed layer and the
-/// ground.
+/// Shares the extinction of aerosol and fog between the mixed layer and the ground layer. This extinction is
+/// max(0, ln 20 / V - air - precipitation), with the reported visibility V.
 ///
-/// Haze, dust, sand, smoke and ash take all of it, as far as [`sky_depth`] allows. Other aerosols take at most the
-/// extinction that belongs to [`visibility_above_m`], because dry background air never gets hazier than that; the
-/// remainder is mist or fog, whether the report names it or not.
+/// Haze, dust, sand, smoke and ash take all of this extinction, as far as [`sky_depth`] allows. Other aerosols take at
+/// most the extinction that belongs to [`visibility_above_m`], because dry background air never gets hazier than that;
+/// the remainder is mist or fog, whether the report names it or not.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> ExtinctionShares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
@@ -176,7 +176,7 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
         rest
     } else if is_dry(w) {
         let height = scale_height_m(w);
-        // Sand stays low: at most half of it fills the mixed layer.
+        // Blowing sand and dust stay low: at most half of their extinction goes to the mixed layer.
         let low = if matches!(w.lofted.kind, LoftedKind::BlowingSand | LoftedKind::BlowingDust) { 0.5 } else { 1.0 };
         (sky_depth(rest * height) / height).min(low * rest)
     } else {
@@ -194,7 +194,7 @@ pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &O
     }
 }
 
-/// Returns the lowest cloud base above the station that can limit a mist, m.
+/// Returns the height of the lowest cloud base above the station, m, to which a mist can reach up.
 fn lowest_base_m(w: &Weather) -> Option<f64> {
     w.clouds.iter().filter(|c| c.cover > 0.0).map(|c| c.base_m).fold(None, |a, b| Some(a.map_or(b, |a: f64| a.min(b))))
 }
@@ -204,8 +204,8 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 /// Shallow fog ends at 2 m by definition (WMO-No. 306, MI); patches and partial fog end at 20 m. In an obscured sky,
 /// fog is deeper than the vertical visibility: its depth is taken as twice that, 150 to 600 m. Otherwise the sky shows
 /// through, and the fog is about one visibility deep, 20 to 150 m. Mist reaches up to the lowest cloud if its base is
-/// at most 600 m high, but at least 60 m; without such a cloud it reaches 300 m. Snow blows up to some tens of metres
-/// (Budd, Dingle and Radok 1966) and drifts below eye height; spray reaches 10 m.
+/// at most 600 m high, but at least 60 m; without such a cloud it reaches 300 m. Blowing snow reaches some tens of
+/// metres (Budd, Dingle and Radok 1966), drifting snow and dust stay below eye height, and spray reaches 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -223,9 +223,10 @@ fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
 }
 
 /// Returns the layer at the ground. Droplets of 10 um scatter without colour or absorption (albedo 1, asymmetry 0.85:
-/// Hess et al. 1998, fog). Lifted snow has an asymmetry of 0.89, and dust its own properties. If dry particles are too
-/// thick for the sky's tables, the layer holds the remainder. Such a layer thins out up to twice the scale height of
-/// `aerosol`, so that its vertical optical depth is that of an exponential layer with this scale height.
+/// Hess et al. 1998, fog). Lifted snow has an asymmetry of 0.89, and dust its own properties. If the optical depth of
+/// dry particles is too great for the sky's tables, the layer contains the remainder. Such a layer thins out up to
+/// twice the scale height of `aerosol`, so that its vertical optical depth is that of an exponential layer with this
+/// scale height.
 pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &AerosolLayer) -> GroundLayer {
     if extinction_per_m <= 0.0 {
         return GroundLayer::NONE;

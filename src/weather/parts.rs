@@ -1,4 +1,4 @@
-//! Parts of the weather that can differ from place to place on their own, and their blending.
+//! Parts of the weather, each of which can differ from place to place independently, and their blending.
 
 use std::ops::BitOr;
 
@@ -20,7 +20,7 @@ impl WeatherParts {
     pub const HAZE: Self = Self(0x1);
     /// Low layer of fog, mist, dust, sand or lifted snow, with its base and top.
     pub const FOG: Self = Self(0x2);
-    /// Haze and low layer together: all of the visibility but precipitation.
+    /// Haze and low layer together: all that limits the visibility except precipitation.
     pub const VISIBILITY: Self = Self(0x3);
     /// Precipitation of all kinds, with its extinction.
     pub const PRECIPITATION: Self = Self(0x4);
@@ -63,7 +63,7 @@ impl BitOr for WeatherParts {
 }
 
 impl Conditions {
-    /// Returns the extinction of the low layer that counts in the total, 1/m: none of it in shallow or patchy fog.
+    /// Returns the extinction that the low layer adds to the total, 1/m. Shallow or patchy fog adds none.
     fn counted_fog_per_m(&self) -> f64 {
         let others =
             self.air.rayleigh_extinction_per_m + self.aerosol.extinction_per_m + self.precipitation.extinction_per_m();

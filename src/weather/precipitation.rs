@@ -1,5 +1,5 @@
-//! Precipitation in conditions, `Falling`: rates by species, from a report's kind or a saved state, and their
-//! extinction.
+//! `Falling`, the precipitation of [`super::Conditions`]: the rates of its species and their extinction, from a
+//! report's kind or a saved state.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ pub struct Falling {
     pub snow_mm_h: f64,
     /// Share of the snow that falls as snow grains, 0 to 1.
     pub grain_share: f64,
-    /// Share of the snow that falls as ice crystals, 0 to 1; the rest are flakes.
+    /// Share of the snow that falls as ice crystals, 0 to 1. Snow that is neither grains nor crystals falls as flakes.
     pub crystal_share: f64,
     /// Ice pellets and small hail, mm/h of melted water.
     pub ice_pellets_mm_h: f64,

@@ -13,8 +13,9 @@ const GUST_PEAK_FACTOR: f64 = 2.3;
 /// Acceleration of gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
 
-/// Roughness length of the sea, m, under a wind at 10 m: Charnock (1955) with 0.0144 (Garratt 1977) and the smooth-flow
-/// limit 0.11 nu / u*, solved together with the log law by repeated substitution.
+/// Roughness length of the sea, m, under a wind of `speed_10_m_s` at 10 m: Charnock (1955) with the constant 0.0144
+/// (Garratt 1977) plus the smooth-flow limit 0.11 nu / u*, with the air's kinematic viscosity nu and the friction
+/// velocity u*. The sum is solved together with the log law by repeated substitution.
 pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     let mut z0 = 1e-4;
     // Each round leaves about 0.2 of the error; after 20 rounds it is below the last bit that matters.
@@ -25,13 +26,13 @@ pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     z0
 }
 
-/// Returns the significant height of a fully developed sea, m: Pierson and Moskowitz (1964), 0.2092 U^2 / g with U at
-/// 19.5 m.
+/// Returns the significant height of a fully developed sea, m: Pierson and Moskowitz (1964), 0.2092 U^2 / g with the
+/// wind speed U at 19.5 m.
 pub fn fully_developed_wave_height_m(speed_19_5_m_s: f64) -> f64 {
     0.2092 * speed_19_5_m_s * speed_19_5_m_s / GRAVITY_M_S2
 }
 
-/// Returns the significant height in the middle of a WMO sea state (code 3700), m; 16 m for state 9.
+/// Returns the middle of the range of significant heights of a WMO sea state (code 3700), m; 16 m for state 9.
 pub fn wave_height_of_state_m(state: u8) -> f64 {
     const BOUNDS: [f64; 9] = [0.0, 0.1, 0.5, 1.25, 2.5, 4.0, 6.0, 9.0, 14.0];
     match usize::from(state) {
@@ -95,7 +96,7 @@ pub(super) fn sea_state(w: &Weather, wind: &WindProfile, height_override: Option
 }
 
 /// Returns the wetness that rain maintains against evaporation: L / (L + E), with L the liquid rate and E = 0.5 (1 -
-/// RH) + 0.02 mm/h, the daytime evaporation from a wet surface (order of Penman 1948).
+/// RH) + 0.02 mm/h, the daytime evaporation from a wet surface (of the order that Penman 1948 gives).
 pub fn wetness_from_rain(liquid_mm_h: f64, relative_humidity: f64) -> f64 {
     liquid_mm_h / (liquid_mm_h + 0.5 * (1.0 - relative_humidity) + 0.02)
 }

@@ -1,4 +1,4 @@
-//! The weather over time: changes with absolute start times, which blend without a jump in value or in rate.
+//! The weather over time: changes that begin at absolute times and blend without a jump in value or in rate.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::{
 const MAX_TRANSITION_S: f64 = 3.2e7;
 /// Largest distance of simulation time from 0, s.
 pub(crate) const MAX_TIME_S: f64 = 1e10;
-/// Time that stands for the infinite past, s.
+/// Time before every simulation time, s: the infinite past.
 const EVER_S: f64 = -1e12;
 /// Version number at the beginning of a saved timeline; increases when the format changes.
 const VERSION: u32 = 1;
@@ -154,7 +154,8 @@ impl Timeline {
         self.changes.iter().rposition(|c| c.end_s() <= now_s && c.start_s <= now_s)
     }
 
-    /// Returns the [`known_from_s`](Self::known_from_s) after an advance to `now_s`; `None` if that forgets nothing.
+    /// Returns the [`known_from_s`](Self::known_from_s) after an advance to `now_s`; `None` if the advance would forget
+    /// no change.
     pub(crate) fn ends_before(&self, now_s: f64) -> Option<f64> {
         self.last_ended(now_s).map(|i| self.changes[i].end_s())
     }

@@ -67,7 +67,8 @@ pub(crate) struct Detour {
 struct LevelWind<'a> {
     /// Grid of wind.
     volume: &'a WindVolume,
-    /// Returns the ground's height above the grid's origin at a place in metres east and north of it, m.
+    /// Function that returns the ground's height above the grid's origin, m. Its argument is a place, m east and north
+    /// of the origin.
     ground_m: &'a dyn Fn(DVec2) -> f64,
     /// Weather's wind at this height, m/s (east, north).
     weathers_m_s: DVec2,
@@ -84,8 +85,8 @@ impl LevelWind<'_> {
         Some(found.truncate().truncate() + self.weathers_m_s * (1.0 - found.w))
     }
 
-    /// Returns the mean wind on the sides of an area's inner part through which the wind enters. `size` is the size of
-    /// the whole area, m.
+    /// Returns the mean wind on those sides of an area's inner part where the wind enters. `size` is the size of the
+    /// whole area, m.
     fn entering(&self, size: DVec2) -> DVec2 {
         let along = |i: usize| (i as f64 + 0.5) / DETOUR_SIDE as f64;
         let sides = [
@@ -271,7 +272,7 @@ mod tests {
         let life_m = 40.0;
         let map = map(&volume(WindGridKind::Whole, |p| round_pillar(p.truncate())), DVec2::ZERO, life_m).expect("wind");
         let mut most = 0f64;
-        // At the map's nodes, away from the edges where it fades.
+        // At the map's nodes, away from the edges, where the lag fades.
         for (i, j) in (4..20).flat_map(|i| (4..20).map(move |j| (i, j))) {
             let p = DVec2::new(f64::from(i), f64::from(j)) * (2.0 * HALF_M / 23.0) - HALF_M;
             if p.length() < 1.5 * PILLAR_M {

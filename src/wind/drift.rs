@@ -167,8 +167,8 @@ impl<'a> Walk<'a> {
         active.iter().map(Change::end_s).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the mean wind at `t` under the `active` changes, and the speed that results where their speeds are
-    /// blended instead of their velocities. Gusts travel with this speed, which does not drop while the wind turns.
+    /// Returns the mean wind at `t` under the `active` changes, and the speed that results if the changes blend speeds
+    /// instead of velocities. Gusts travel with this speed, which does not drop while the wind turns.
     fn wind_at(&self, active: &[Change], t: f64) -> (WindProfile, f64) {
         active.iter().fold((self.base, self.base.speed_m_s()), |(wind, speed), change| {
             let share = change.share(t);

@@ -12,18 +12,18 @@ const MAX_SPEED_M_S: f64 = 300.0;
 /// Meaning of a grid's velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindGridKind {
-    /// The whole wind, which replaces the weather's inside the grid.
+    /// The whole wind, which replaces the weather's wind inside the grid.
     #[default]
     Whole,
-    /// Wind that is added to the weather's.
+    /// Wind that is added to the weather's wind.
     Added,
 }
 
-/// Velocities of the air at the nodes of a grid that is level and aligned to north, linear along each axis between
-/// them. Outside, the weather's wind blows.
+/// Velocities of the air at the nodes of a grid that is level and aligned to north. Between nodes the velocity is
+/// linear along each axis. Outside the grid the weather's wind blows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WindGrid {
-    /// Position of the lowest, south-western node in the host's world.
+    /// Position of the lowest, south-western node in the host's world, within 1e12 m of the origin.
     pub origin: DVec3,
     /// Distance between nodes east, north and up, m, \[0.01, 10 000\].
     pub cell_m: DVec3,
@@ -36,7 +36,7 @@ pub struct WindGrid {
 }
 
 impl WindGrid {
-    /// Checks that every field is in range; the error names the one that is not.
+    /// Checks that every field is in range. The error names the field that is not.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`].

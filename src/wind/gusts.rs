@@ -123,8 +123,8 @@ fn wave(k: f64, length: f64) -> [DVec2; 3] {
     [end, plain, DVec2::new(ramp.y, -ramp.x) / k]
 }
 
-/// Velocities that turbulence adds to the mean wind at a point of a stretch, per m/s of mean speed, by wander and by
-/// gusts; and how far both have carried the air since the start of the stretch, m.
+/// Velocities that wander and gusts add to the mean wind at a point of a stretch, and the displacement of the air by
+/// both.
 pub(super) struct Stirred {
     /// Velocity by the wander, per m/s of mean speed.
     pub turned: DVec2,

@@ -2,8 +2,8 @@
 //! a solved field.
 //!
 //! Each node has the share of the weather's wind that it replaces, and its own velocity times that share. The wind at a
-//! place is own + (1 - share) x the weather's. With share 1 the own velocity is the whole wind; with share 0 it is
-//! added to the weather's wind; shares between blend one into the other.
+//! place is own + (1 - share) x the weather's wind. With share 1 the own velocity is the whole wind; with share 0 it is
+//! added to the weather's wind; shares between 0 and 1 blend the two.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -11,7 +11,8 @@ use glam::{DMat3, DVec3, DVec4};
 
 use super::{WindGrid, WindGridKind, grid::about};
 
-/// Velocities at the nodes of a grid that is level and aligned to north at its origin, linear between them.
+/// Velocities at the nodes of a grid that is level and aligned to north at its origin. Between nodes the velocity is
+/// linear along each axis.
 #[derive(Debug)]
 pub(crate) struct WindVolume {
     /// Position of the lowest, south-western node in the host's world.
@@ -100,8 +101,8 @@ impl WindVolume {
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| value(i) * weight).sum())
     }
 
-    /// Returns the wind at a position of the host's world, m/s (east, north, up), where `weathers` is the weather's;
-    /// `None` outside the volume.
+    /// Returns the wind at a position of the host's world, m/s (east, north, up), where `weathers` is the weather's
+    /// wind; `None` outside the volume.
     pub fn wind(&self, position: DVec3, weathers: DVec3) -> Option<DVec3> {
         let found = self.at(self.cells_at(position))?;
         Some(found.truncate() + weathers * (1.0 - found.w))

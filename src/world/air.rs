@@ -52,7 +52,7 @@ fn capped(haze: Mie) -> Mie {
 
 /// Combines two hazes in the same air. Coefficients at altitude 0 add up. Vertical optical depths at the second
 /// wavelength add up too, so the scale height is the mean weighted by extinction. The asymmetry is the mean weighted by
-/// scattering there, so the scattered light keeps its mean cosine.
+/// scattering at that wavelength, so the scattered light keeps its mean cosine.
 fn both(a: &Mie, b: &Mie) -> Mie {
     let mean = |[x, y]: [f64; 2], [p, q]: [f64; 2]| if p + q > 0.0 { (x * p + y * q) / (p + q) } else { x };
     let sum = |x: &[f64; 3], y: &[f64; 3]| [0, 1, 2].map(|i| x[i] + y[i]);

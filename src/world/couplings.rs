@@ -14,7 +14,7 @@ use crate::{
 /// Function by which an effect changes the light of a scene.
 pub(crate) type Dim = fn(&mut Scene) -> Result<()>;
 
-/// Function that returns the cloud over rain areas above a place at a time in seconds. The place is given in the
+/// Function that returns the cloud of rain areas above a place, at a time in seconds. The place is given in the
 /// planet's and in the host's coordinates.
 pub(crate) type CloudOverAreas =
     fn(&WeatherOver<'_>, &Conditions, (&LocalFrame, DVec3), f64) -> Result<Option<CloudSlab>>;
@@ -28,7 +28,7 @@ pub(crate) type NightLux = fn(Utc, &Place, [f64; 3], &NightSettings) -> Result<[
 pub(crate) struct Couplings {
     /// Dims a scene by the weather's low layer.
     pub dim: Dim,
-    /// Returns the cloud over rain areas that dims a place, with its cover there.
+    /// Returns the cloud of rain areas that dims a place, with the cloud's cover there.
     pub cloud_over_areas: CloudOverAreas,
     /// Returns the light of the moonless sky on level ground, lux per channel, at a time and place, under air of given
     /// vertical optical depths.

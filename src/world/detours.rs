@@ -16,10 +16,10 @@ pub(super) struct DetourInputs {
     pub terrain: u64,
     /// Weather's wind (east, north) at 2 m and 20 m above ground, m/s.
     pub weathers_m_s: [DVec2; 2],
-    /// Distance that a patch drifts during its life, m.
+    /// Distance that a patch of the weather's low layer drifts during its life, m.
     pub life_m: f64,
 }
 
-/// The last map of detours, `None` where nothing lags, with its inputs.
+/// The last map of detours, `None` if no air lags, with its inputs.
 #[derive(Default)]
 pub(super) struct KeptDetours(pub Mutex<Option<(DetourInputs, Option<Arc<DetourMap>>)>>);

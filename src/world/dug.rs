@@ -13,7 +13,7 @@ pub(crate) const DUG_SIDE: i32 = 16;
 /// Dug ground of a world.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DugGround {
-    /// Rectangles of the terrain whose heights have changed since the water last followed them.
+    /// Rectangles of the terrain in which heights have changed since the water was last updated.
     pub changes: Vec<CellRect>,
     /// Patches that were dug: position east and north, in units of a patch's side.
     pub patches: Vec<[i32; 2]>,

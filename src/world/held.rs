@@ -16,8 +16,8 @@ pub(crate) struct UpdateBudget {
     pub most: std::time::Duration,
 }
 
-/// State of an effect that a context holds for all its views. `src/effects.rs` lists them; a context advances, saves
-/// and loads those in the list.
+/// State of an effect that a context holds for all its views. `src/effects.rs` lists these effects; a context advances,
+/// saves and loads each effect in the list.
 pub(crate) trait HeldEffect: std::any::Any {
     /// Prepares the state for being advanced from the present to `time_s`.
     fn begin(&mut self, _world: &World, _time_s: f64) -> Result<()> {
@@ -67,8 +67,8 @@ pub(crate) trait HeldEffect: std::any::Any {
         Ok(())
     }
 
-    /// Saves an effect whose state depends on things in the world. `for_hash`: the state is hashed and never loaded, so
-    /// hashes may replace large parts of it.
+    /// Saves an effect whose state depends on things in the world. With `for_hash` the state is hashed and never
+    /// loaded, so hashes may replace large parts of it.
     fn save_in(&self, _world: &World, _for_hash: bool, state: &mut toml::Table) -> Result<()> {
         self.save(state)
     }

@@ -1,4 +1,4 @@
-//! A scene that a view keeps between the calls of a frame, so that it is computed once for all of them.
+//! A scene that a view keeps between the calls of a frame, so that it is computed once for all these calls.
 
 use glam::DVec3;
 
@@ -8,13 +8,13 @@ use super::{
 };
 use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions, wind::Blowing};
 
-/// A scene with the weather at its place, and the inputs from which they follow.
+/// A scene with the weather at its place, and the inputs from which both follow.
 #[derive(Clone, Copy)]
 pub(crate) struct KeptScene {
     /// Inputs from which the scene follows.
     from: SceneInputs,
     pub scene: Scene,
-    /// The weather at the camera, with the precipitation of its region.
+    /// The weather at the camera, with the rain and drizzle of the rain areas there.
     pub here: Conditions,
     /// The wind, if the scene needed it.
     pub wind: Option<Blowing>,
@@ -38,7 +38,7 @@ struct SceneInputs {
     undimmed: bool,
     planet: Planet,
     night: NightSettings,
-    /// Share, albedo and threshold of the simulated snow.
+    /// Cover of the simulated snow, its albedo, and the wind above which it drifts.
     snow: Option<[f64; 3]>,
 }
 

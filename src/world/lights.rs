@@ -21,8 +21,8 @@ const SUN_LUX: f64 = 133_334.0;
 /// luminance is kept.
 const MOON_TINT: [f64; 3] = [1.12, 0.98, 0.83];
 
-/// Elevation of the sun above which moonlight is ignored, degrees: it adds less than a hundredth to the twilight of a
-/// higher sun.
+/// Elevation of the sun above which moonlight is ignored, degrees. With a higher sun moonlight adds less than a
+/// hundredth to the twilight.
 const MOON_MATTERS_BELOW_DEG: f64 = -4.0;
 
 /// Reflectance of snow of which only the depth is known.
@@ -32,9 +32,9 @@ const SNOW_ALBEDO: f64 = 0.82;
 /// light of a clear sky by less than a hundredth.
 const SNOW_STEPS: f64 = 16.0;
 
-/// Reflectance of the land for light from above, with its share of snow.
+/// Reflectance for light from above of the land with its snow.
 pub(super) struct LandSeen {
-    /// Share that snow covers.
+    /// Share of the land that snow covers.
     pub snow: f64,
     /// Albedo of land and snow together.
     pub albedo: f64,
@@ -71,7 +71,7 @@ impl World {
         self.land(c).under_sky(planet_under(&self.set.planet, c))
     }
 
-    /// Returns the land under a weather, with the simulated snow if there is any, else the reported one.
+    /// Returns the land under a weather, with the simulated snow if there is any, else with the reported snow.
     pub(super) fn land(&self, c: &Conditions) -> LandSeen {
         match &self.snow {
             Some(snow) => LandSeen::new(snow.cover, snow.country.albedo),
@@ -135,7 +135,7 @@ impl World {
         (sun, clouds)
     }
 
-    /// Returns the moon over a place, as [`Self::sun_over`].
+    /// Returns the moon over a place; `see` is that of [`Self::sun_over`].
     fn moon_over(
         &self,
         mut almanac: MoonPosition,

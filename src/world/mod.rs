@@ -1,6 +1,6 @@
-//! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock and its
-//! lights, the wind, and the host's shelters, occluder maps and lamps. It names no effect; effects with a state of
-//! their own are advanced along with it ([`HeldEffect`]).
+//! The world that all views of a simulator share: its place on the planet, the timeline of weathers, the clock, sun and
+//! moon, the wind, and the host's shelters, occluder maps and lamps. The world names no effect. Effects with a state of
+//! their own are advanced along with the world ([`HeldEffect`]).
 //!
 //! Everything here is a function of (description, timeline, time, position): two worlds with the same input give the
 //! same answers on every machine, except that the sun's direction may differ by 1e-14 (`src/almanac/celestial.rs`). No

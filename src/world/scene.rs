@@ -22,12 +22,13 @@ use crate::{
     wind::Blowing,
 };
 
-/// Luminance of a moonless sky, cd/m^2, and its light on level ground, lux, while the sun is too high for either to
-/// matter: they are then less than 1e-4 of the sunlight that the sky scatters. With a lower sun,
+/// Luminance of a moonless sky, cd/m^2, and the sky's light on level ground, lux, while the sun is so high that both
+/// are less than 1e-4 of the sunlight that the sky scatters. With a lower sun,
 /// [`Couplings::night_lux`](super::Couplings::night_lux) gives the brightness.
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
-/// Elevations of the sun, degrees, between which the computed light of the night replaces these two constants.
+/// Elevations of the sun, degrees, between which the computed light of the night replaces [`UNSEEN_NIGHT_CD_M2`] and
+/// [`UNSEEN_NIGHT_LUX`].
 const NIGHT_BEGINS_DEG: (f64, f64) = (-4.0, -8.0);
 /// Night light that [`TWILIGHT_LN_LUX`] contains, lux.
 const TABLE_NIGHT_LUX: f64 = 6.4e-4;
@@ -114,11 +115,12 @@ fn air_mass(elevation_deg: f64) -> f64 {
 }
 
 /// Returns the light, lux per channel, of a source of `spectrum` above clear air over ground of an `albedo`: (direct on
-/// a surface facing it, sky on level ground).
+/// a surface that faces the source, sky on level ground).
 ///
 /// By day the sky's share is the light that the two-stream slab (Meador & Weaver 1980) transmits diffusely, with the
-/// ground's light that the slab sends back. Below 5 degrees it blends into measured twilight. From 6 degrees on and for
-/// visibilities from 3 km on, it is within 6 % of the light of the drawn sky (`tests/frame/radiance.rs`).
+/// ground's light that the slab sends back. Below 5 degrees it blends into measured twilight. At elevations of at least
+/// 6 degrees and visibilities of at least 3 km, it is within 6 % of the light of the drawn sky
+/// (`tests/frame/radiance.rs`).
 fn clear_light(
     (planet, color): (&Planet, &[[f64; 3]; 3]),
     (altitude_m, albedo): (f64, [f64; 3]),
@@ -167,8 +169,8 @@ pub(crate) fn light_above_clouds(scene: &Scene, altitude_m: f64) -> ([f64; 3], [
 }
 
 /// Returns the luminance to which a viewer adapts: grey ground under `total` lux, and a share of the sky. With the sun
-/// near the horizon, pictures mostly show the part of the sky around it, which is many times brighter than the mean.
-/// Above the air they show the sunlit planet, whatever the sun's elevation over the place.
+/// near the horizon, pictures mostly show the part of the sky around the sun, which is many times brighter than the
+/// mean. Above the air they show the sunlit planet, whatever the sun's elevation over the place.
 fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -> f64 {
     let elevation = libm::asin(sun.direction.z.clamp(-1.0, 1.0)).to_degrees();
     let low = (1.0 - smoothstep(0.0, 30.0, elevation)) * smoothstep(-12.0, -4.0, elevation);
@@ -202,8 +204,9 @@ impl World {
         self.scene_over((name, position), time_s, conditions, &land)
     }
 
-    /// Returns the weather with the clouds that the host's map has over a place, if there is a map; and with the clouds
-    /// of rain areas as well, if any stand over it. `map_m`: the place, m east and north of the world's origin.
+    /// Returns two weathers over a place: one with the clouds of the host's map, `None` without a map, and one with the
+    /// clouds of rain areas as well, `None` if no such clouds stand over the place. `map_m` is the place, m east and
+    /// north of the world's origin.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time at which the weather is not known.
@@ -306,8 +309,8 @@ impl World {
         Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
-    /// Returns the place on the map of a position, m east and north of the world's origin. `local` is the local frame
-    /// of the position.
+    /// Returns where a position lies on the map, m east and north of the world's origin. `local` is the local frame of
+    /// the position.
     pub fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
         let o = &self.frame.origin;
@@ -324,12 +327,12 @@ impl World {
         }
     }
 
-    /// Returns the place on the map of a position of the host's world, m east and north of the world's origin.
+    /// Returns where a position in the host's world lies on the map, m east and north of the world's origin.
     pub fn map_at(&self, position: DVec3) -> DVec2 {
         DVec2::from_array(self.map_place(position, &self.frame.frame_at(position)))
     }
 
-    /// Returns the position of a place on the map in the host's world: the inverse of [`World::map_at`].
+    /// Returns the position in the host's world of a place on the map: the inverse of [`World::map_at`].
     pub fn position_on_map(&self, map_m: DVec2, altitude_m: f64) -> DVec3 {
         let o = &self.frame.origin;
         if self.frame.kind == WorldKind::Flat {

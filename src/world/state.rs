@@ -37,7 +37,7 @@ pub(crate) struct World {
     pub exposure: Exposure,
     pub tone: ToneCurve,
     pub timeline: Timeline,
-    /// Revision of the timeline: no two worlds share one, and every change of the timeline makes a new one.
+    /// Revision of the timeline. No two worlds share a revision, and every change of the timeline makes a new revision.
     pub(super) timeline_revision: u64,
     pub(super) wind: Wind,
     /// Drift of the air at the end of the last change that the timeline has forgotten.
@@ -143,7 +143,8 @@ impl World {
         Ok(())
     }
 
-    /// Returns the revision of the timeline: every change of it makes a new one, and no two worlds share one.
+    /// Returns the revision of the timeline. Every change of the timeline makes a new revision, and no two worlds share
+    /// a revision.
     pub fn timeline_revision(&self) -> u64 {
         self.timeline_revision
     }
@@ -171,7 +172,7 @@ impl World {
         Ok(self.with_lifted_snow(self.timeline.at(time_s)))
     }
 
-    /// Returns the low layer outside all regions at a time, where `c` is the weather at some place then.
+    /// Returns the weather's low layer outside all regions at `time_s`. `c` is the weather at any place at that time.
     ///
     /// # Errors
     /// As [`World::weather_outside`].
@@ -252,8 +253,8 @@ impl World {
         self.timeline.advance_keeping(self.time_s, keep_s);
     }
 
-    /// Returns the precipitation of `c`, the weather outside all regions, as a layer with its extinction. The layer is
-    /// empty if the host's fog law replaces the weather's low layer.
+    /// Returns the precipitation of `c`, the weather outside all rain areas, as a layer with its extinction. The layer
+    /// is empty if the host's fog law replaces the weather's low layer.
     pub fn falling(&self, c: &Conditions) -> FallingLayer {
         if self.set.undimmed { FallingLayer::NONE } else { FallingLayer::new(c) }
     }

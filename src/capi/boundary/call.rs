@@ -32,10 +32,11 @@ pub(in crate::capi) struct Call {
 }
 
 impl Call {
-    /// Returns the live object behind a handle whose device still answers.
+    /// Returns the live object behind a handle, if the object's device still answers.
     ///
     /// # Errors
-    /// [`Status::BadHandle`] with the parameter's name, [`Status::Poisoned`].
+    /// [`Status::BadHandle`] with the parameter's name; [`Status::Poisoned`] if an earlier call on the device has
+    /// panicked.
     pub(in crate::capi) fn get<T: handles::HandleObject>(
         &mut self,
         param: &str,

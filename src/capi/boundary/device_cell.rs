@@ -1,5 +1,5 @@
-//! State that the boundary keeps with a device: whether a panic happened in it, and the objects that can be released
-//! only once the host's context is current again.
+//! State that the boundary keeps with a device: whether a call on the device has panicked, and the objects that can be
+//! released only once the host's context is current again.
 
 use std::{
     any::Any,
@@ -68,7 +68,7 @@ impl DeviceCell {
         self.poisoned.store(true, Ordering::Release);
     }
 
-    /// Checks that nothing has panicked in the device.
+    /// Checks that no call on the device has panicked.
     ///
     /// # Errors
     /// [`Status::Poisoned`] after a panic.
@@ -119,8 +119,9 @@ impl DeviceCell {
         std::mem::take(&mut *self.retired.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Releases the objects that wait for the host's context, if the context can be entered now. Call it before code
-    /// that enters the context by [`Device::enter`], which releases none, instead of [`DeviceCell::enter`].
+    /// Releases the objects that wait for the host's context, if the context can be entered now. Call this before code
+    /// that enters the context by [`Device::enter`]. That function releases no waiting objects; [`DeviceCell::enter`]
+    /// does.
     pub(in crate::capi) fn drain(&self) {
         let waits = !self.retired.lock().unwrap_or_else(PoisonError::into_inner).is_empty();
         if waits && let Ok(_entered) = self.gpu.enter_to_release() {
@@ -128,7 +129,7 @@ impl DeviceCell {
         }
     }
 
-    /// Makes the host's context current for a batch of GPU calls, and releases the objects that waited for that.
+    /// Makes the host's context current for a batch of GPU calls, and releases the objects that waited for the context.
     ///
     /// # Errors
     /// As [`Device::enter`].

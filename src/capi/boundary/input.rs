@@ -1,4 +1,5 @@
-//! Checks of parameters other than tagged structs: numbers, enumerations, texts, buffers, lists.
+//! Checks of parameters other than tagged structs (those that begin with struct_size, struct_type and next): numbers,
+//! enumerations, texts, buffers, lists.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -22,7 +23,7 @@ pub(in crate::capi) fn check_enum(param: &str, info: &EnumInfo, value: u32) -> R
 /// Checks the pointer to an answer; nothing is written yet.
 ///
 /// # Errors
-/// If it is NULL or misaligned.
+/// If the pointer is NULL or misaligned.
 pub(in crate::capi) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
     layout::check_pointer(&param, p)?;
     Ok(p)
@@ -71,7 +72,7 @@ pub(in crate::capi) unsafe fn optional_text<'a>(param: &str, p: *const c_char) -
 /// `p` is NULL or points to `count` values that live as long as `'a`.
 ///
 /// # Errors
-/// If there are more than `limit`, or `p` is NULL while `count` is not 0.
+/// If there are more values than `limit`, or if `count` is not 0 and `p` is NULL or misaligned.
 pub(in crate::capi) unsafe fn slice<'a, T: Copy>(
     param: &str,
     p: *const T,
@@ -232,7 +233,7 @@ impl<T: Copy> Room<T> {
     /// Checks that the buffer holds `count` elements.
     ///
     /// # Errors
-    /// If it holds fewer.
+    /// If the buffer holds fewer elements.
     pub(in crate::capi) fn check_capacity(&self, param: &str, count: usize) -> Result<()> {
         if count <= self.capacity {
             return Ok(());
@@ -266,8 +267,7 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
 /// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
 ///
 /// # Errors
-/// If there are more structs than the limit, if the stride does not fit, for the first wrong field, or with the error
-/// of `take`.
+/// More structs than the limit, a stride that does not fit, the first wrong field, or the error of `take`.
 pub(in crate::capi) unsafe fn each<T: Layout>(
     list: &List<'_>,
     p: *const T,

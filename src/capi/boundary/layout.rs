@@ -49,7 +49,7 @@ pub(crate) struct StructInfo {
     pub fields: &'static [LayoutField],
 }
 
-/// An integer type with named values; for `flags` any union of them is accepted.
+/// An integer type with named values. If `flags` is set, any union of the values is accepted.
 #[derive(Debug)]
 pub(crate) struct EnumInfo {
     #[allow(dead_code, reason = "for those who debug, and the tests")]
@@ -248,8 +248,8 @@ fn expected_type<T: Layout>() -> u32 {
     head_of(&T::DEFAULT).struct_type
 }
 
-/// Checks a struct's size: it must end where a field ends, and all bytes beyond the fields of this version must be
-/// zero.
+/// Checks a struct's size: the struct must end where a field of this version ends, or be larger with only zeros beyond
+/// the fields of this version.
 ///
 /// # Safety
 /// `p` points to `size` readable bytes.
@@ -345,7 +345,7 @@ pub(crate) unsafe fn extension<T: Layout>(first: *const c_void) -> Result<Option
         // SAFETY: the chain was checked.
         let head = unsafe { *link.cast::<Head>() };
         if head.struct_type == expected_type::<T>() {
-            // SAFETY: its type says that it is a `T`.
+            // SAFETY: the link's type says that the link is a `T`.
             return unsafe { read(&T::INFO.name, link.cast::<T>()) }.map(Some);
         }
         link = head.next;

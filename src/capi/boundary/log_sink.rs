@@ -28,7 +28,7 @@ struct LogSink;
 
 impl log::Log for LogSink {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
-        // The graphics layer logs its routine work as information; only its warnings matter to a host.
+        // The graphics layer logs its routine work as information; only its warnings and errors matter to a host.
         metadata.target().starts_with("welkin") || metadata.level() <= log::Level::Warn
     }
 

@@ -43,7 +43,8 @@ pub const WK_ERROR_ABORTED: wk_status = -14;
 /// A fault inside Welkin; the message says where.
 pub const WK_ERROR_INTERNAL: wk_status = -15;
 
-/// Type of a tagged struct, in its second field. WK_X_INIT sets it.
+/// Type of a struct that begins with struct_size, struct_type and next: the value of its struct_type, which WK_X_INIT
+/// sets.
 pub type wk_struct_type = u32;
 /// wk_device_desc
 pub const WK_STRUCT_TYPE_DEVICE_DESC: wk_struct_type = 1;

@@ -1,4 +1,4 @@
-//! Owner of a device: Welkin itself or the host, with the steps to give the device back.
+//! Owner of a device (Welkin itself or the host), and the steps that give a host its device back.
 
 use crate::error::{Error, Result};
 

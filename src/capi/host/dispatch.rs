@@ -16,7 +16,7 @@ use crate::{
     frame::Stages,
 };
 
-/// Records a checked frame into the images of the device's kind of host.
+/// Records a checked frame into the host's images, by the functions for the kind of host that owns the device.
 ///
 /// # Safety
 /// `frame.target` is NULL or points to a live target struct.
@@ -41,7 +41,8 @@ pub(in crate::capi) unsafe fn record(
     }
 }
 
-/// Sets the occluder maps of a context from images of the device's kind of host.
+/// Sets the occluder maps of a context from the host's images, by the functions for the kind of host that owns the
+/// device.
 ///
 /// # Safety
 /// The images of `maps` are live and correctly described.

@@ -1,5 +1,5 @@
-//! Frames of an OpenGL host. Each call enters the host's context or its shared one, uses the host's images as textures,
-//! and restores the host's state.
+//! Frames of an OpenGL host. Each call enters the host's context or a context that shares objects with it, uses the
+//! host's images as textures, and restores the host's state.
 
 use wgpu::hal::{api::Gles, gles::TextureInner};
 

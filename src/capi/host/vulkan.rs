@@ -165,7 +165,7 @@ pub(in crate::capi) unsafe fn record(
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("welkin") });
     let mut view = object.lock();
     if view.rehearses() {
-        // Nothing of the host's is drawn into or waited for.
+        // A rehearsal draws into no image of the host and waits for no semaphore.
         return view.record(&object.context.read(), &frame, stages).map_err(in_frame);
     }
     let recorded = view.recorded_of(frame.frame_id);
@@ -189,7 +189,7 @@ pub(in crate::capi) unsafe fn record(
         .map_err(|e| e.map_field(|field| format!("frame.target.{field}")))
 }
 
-/// Returns the textures of the view that these stages write and the host's shaders read.
+/// Returns the textures of the view that `stages` write and that the host's shaders read.
 fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 4]> {
     let mut read = [const { None }; 4];
     if object.has_veil() && stages.has(Stages::MEDIUM) {

@@ -39,10 +39,10 @@ const STEP_RISE: f64 = 0.04;
 const LEAST: f64 = 0.001;
 /// Longest path that a ray is followed through a layer, from its entry, m.
 const FARTHEST_M: f64 = 60e3;
-/// Length, m, over which clouds fade out at the end of the path [`FARTHEST_M`]. Without it a cloud would end in a flat
-/// face.
+/// Length, m, over which clouds fade out at the end of the path [`FARTHEST_M`]. Without this fade a cloud would end in
+/// a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the intervals of the path to the sun, in distances from cloud to cloud.
+/// Ends of the intervals into which the path to the sun is divided, in distances from cloud to cloud.
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 /// Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: usize = 3;
@@ -57,7 +57,7 @@ const CLEAR_FROM: f64 = CLEAR - 0.05;
 /// Light of the clouds along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CloudsSeen {
-    /// Radiance, cd/m^2 for each channel.
+    /// Radiance for red, green and blue, cd/m^2.
     pub light: DVec3,
     /// Transmittance of the clouds, 0 to 1. Light that droplets scatter into the narrow forward peak counts as
     /// transmitted.
@@ -83,7 +83,7 @@ struct MarchedLayer<'a> {
 
 /// Clouds around a place, for queries.
 pub(crate) struct CloudRays<'a> {
-    /// Layers over the place.
+    /// Layers above and below the place.
     layers: Vec<MarchedLayer<'a>>,
     /// Tables of the light within the clouds.
     light: LightWithin<'a>,
@@ -129,7 +129,7 @@ impl LightWithin<'_> {
 /// State of a march: what the ray has gathered so far.
 #[derive(Clone, Copy)]
 struct MarchState {
-    /// Radiance, cd/m^2 for each channel.
+    /// Radiance for red, green and blue, cd/m^2.
     light: DVec3,
     /// Transmittance of the clouds met so far.
     transmittance: f64,

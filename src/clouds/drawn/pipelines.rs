@@ -61,7 +61,7 @@ pub(crate) struct Pipelines {
     pub follow: wgpu::RenderPipeline,
     /// Layouts of the march and of the sky. The panorama is marched with them too.
     pub march_layouts: [wgpu::BindGroupLayout; 2],
-    /// One pipeline, or two that draw one after the other.
+    /// Pipelines that resolve a picture, for each key: one, or two that draw one after the other.
     resolve: Vec<(Resolve, Vec<wgpu::RenderPipeline>)>,
 }
 

@@ -83,7 +83,7 @@ impl EvenCloud {
 }
 
 /// Returns the share of the light on a box that leaves through each face: low and high x, low and high y, base and top.
-/// It includes light that goes through without scattering, or scattered straight on. A slab has base and top only.
+/// The share includes light that is not scattered or is scattered straight on. A slab has base and top only.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter; GPU faults.

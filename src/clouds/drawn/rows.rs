@@ -10,7 +10,8 @@ pub(crate) struct MapRows {
     /// to do.
     made: u32,
     /// Number of rows that have become old, estimated from the changes of the inputs. While the inputs change, a map
-    /// that holds and is not coarse waits until this number reaches the number of rows that one frame refreshes.
+    /// that is kept ([`Turn::holds`]) and is not coarse waits until this number reaches the number of rows that one
+    /// frame refreshes.
     owed: f64,
     /// Whether the last frame refreshed some rows.
     made_some: bool,

@@ -120,7 +120,7 @@ impl LitLayer {
     /// Returns the model's light along a ray from `eye` (east, north, up), m: the march for queries through this field.
     /// `longer` scales the lengths of its steps by depth and by angle.
     pub fn model(&self, eye: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
-        // Each source has its own channel, with unit strength.
+        // Each source has its own colour channel, with unit strength.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };
         let rays = CloudRays::given(self.field(), &self.sources, light, eye, longer);
         let CloudsSeen { light, transmittance, .. } = rays.seen(direction, f64::INFINITY);
@@ -286,8 +286,8 @@ pub struct Compared {
     pub parts: [f64; 3],
     /// Standard error of the photons relative to their radiance: for the median ray, and for the mean over rays.
     pub chance: [f64; 2],
-    /// 95th percentile of the relative difference from 64 times as many steps: with the model's steps, with its steps
-    /// by depth only, and with its steps by angle only.
+    /// 95th percentile of the relative difference from the model with 64 times as many steps: with the model's own
+    /// steps, with its own steps by depth only, and with its own steps by angle only.
     pub steps: [f64; 3],
 }
 

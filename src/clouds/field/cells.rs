@@ -1,11 +1,11 @@
-//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]), without which rain would fall from a clear sky:
-//! where they stand, what they are made of, and how much of the sky they cover over a place.
+//! Cells of cloud over rain areas ([`crate::falling::area::RainArea`]): where the cells stand, what they are made of,
+//! and how much of the sky they cover over a place. Without cells, rain would fall from a clear sky.
 //!
 //! # Model
-//! A cell is an ellipse; for a polygon it is the ellipse through the corners of the bounding rectangle. Its base is
-//! that of the weather's lowest layer from which rain may fall, if that is at most `SAME_BASE_M` above the lowest top
-//! of an area's rain. Otherwise the base is that top. Under a closed layer there are no cells, because it hides the
-//! sky.
+//! A cell is an ellipse. Over a polygonal area it is the ellipse through the corners of the bounding rectangle. The
+//! base of all cells is the base of the weather's lowest layer from which rain may fall, if this is at most
+//! `SAME_BASE_M` above the lowest top of the areas' rain. Otherwise their base is this lowest top. Under a closed layer
+//! there are no cells, because such a layer hides the sky.
 //!
 //! The light at a place equals the light under one layer of the cells' cloud, whose cover is the share of the sky that
 //! the cells take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from

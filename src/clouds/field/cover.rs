@@ -49,7 +49,7 @@ fn seen_from(field: &Field<'_>, place_m: DVec2, hides: f64) -> f64 {
 
 /// Returns the mean cover seen from `places` places that are many clouds apart.
 pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
-    // Fibres are many clouds long, so the places lie farther apart.
+    // Fibres are stretched along the wind, so the places lie farther apart.
     let drawn_out = field.shape.stretch.determinant().recip();
     let far = 37.0 * field.shape.scale_m * drawn_out;
     let place = |i: usize| DVec2::new(far * i as f64, 0.618_034 * far * ((i * i) % 101) as f64);

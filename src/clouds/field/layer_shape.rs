@@ -52,7 +52,7 @@ fn filled_share(shape: &Shape) -> f64 {
 }
 
 impl Shape {
-    /// Creates the shape of a layer in still air, with its base measured from sea level.
+    /// Creates the shape of a layer in still air, for a station at sea level.
     pub(crate) fn of(slab: &CloudSlab) -> Self {
         Self::still(slab, threshold(slab))
     }
@@ -67,7 +67,7 @@ impl Shape {
         }
     }
 
-    /// Creates the shape of a layer in still air for a threshold of the map, with its base measured from sea level.
+    /// Creates the shape of a layer in still air, for a threshold of the map and a station at sea level.
     pub(crate) fn still(slab: &CloudSlab, threshold: f64) -> Self {
         // 0 for sheets, 1 for heaps.
         let heaps = (2.0 * slab.convection).min(1.0) * (1.0 - slab.cellular);

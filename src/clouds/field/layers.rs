@@ -21,11 +21,11 @@ use crate::{
 
 /// Heights of a closed layer's base above the camera between which the volume changes to the deck, m.
 const DECK_FROM_M: [f64; 2] = [200.0, 400.0];
-/// Slant optical depths of a closed layer between which the volume changes to the deck. The sun's disc seen through the
-/// layer pales there to a tenth of its surroundings, and a deck shows no disc.
+/// Slant optical depths of a closed layer between which the volume changes to the deck. At these depths the sun's disc,
+/// seen through the layer, pales to a tenth of its surroundings. A deck shows no disc.
 const DISC_PALES: [f64; 2] = [12.0, 14.0];
 
-/// Layers of cloud over a place.
+/// Layers of cloud over a place, both above and below its altitude.
 pub(crate) struct CloudLayers {
     /// Layers from the lowest up, of which the first `count` are in use.
     layers: [OverheadLayer; MAX_CLOUD_LAYERS],

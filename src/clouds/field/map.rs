@@ -23,7 +23,8 @@ pub(crate) const SECOND_OFFSET: DVec2 = DVec2::new(0.37, 0.71);
 /// Number of octaves of the sheets of gradient noise. The first octave has half as many cells along a side as the map
 /// has clouds, so that clouds stand in groups.
 const EVEN_OCTAVES: u32 = 4;
-/// Ratio of an octave's amplitude to that of the octave before, in the sheets of gradient noise and of cellular noise.
+/// Ratio of an octave's amplitude to that of the previous octave: in the sheets of gradient noise, and in those of
+/// cellular noise.
 const PERSISTENCE: [f64; 2] = [0.55, 0.4];
 /// Number of octaves of the cellular sheets.
 const CELLULAR_OCTAVES: u32 = 3;
@@ -87,7 +88,8 @@ impl Map {
         Self(texels)
     }
 
-    /// Returns the map's mip levels, the map itself first. Each texel is the mean of 2 x 2 of the level before.
+    /// Returns the map's mip levels, the map itself first. Each texel is the mean of 2 x 2 texels of the next larger
+    /// level.
     pub(crate) fn levels(&self) -> Vec<Vec<[f32; 4]>> {
         let mut levels = vec![self.0.clone()];
         let mut side = MAP_SIZE / 2;

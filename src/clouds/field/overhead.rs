@@ -28,7 +28,7 @@ use crate::{
 /// outwards by `ANVIL_WIDER / EDGE_SLOPE` of these distances.
 const ANVIL_WIDER: f64 = 2.2;
 /// Ratio of a cell's thickness to the distance from cloud to cloud above which the heads (bulges) of its clouds grow in
-/// proportion to its thickness. With smaller heads, the sides of so deep a cell would look like hanging curtains.
+/// proportion to its thickness. With smaller heads, the sides of so deep a cell would look like hanging cloth.
 const HEADS: f64 = 2.0;
 /// Largest value to which larger heads raise the [`Shape::rough`] of a cell: amplitude of the solid noise, as an
 /// excess.
@@ -52,8 +52,8 @@ impl LayersQuery<'_> {
         self.scene.conditions.cloud_slabs().next().is_none() && self.weather.regions.is_empty()
     }
 
-    /// Finds the layers for a model; `None` if it draws no volume. `maps` caches the host's maps of layers. `still`
-    /// returns a layer's shape in still air: [`Shape::of`] or a cache of it.
+    /// Finds the layers for a model; `None` if the model draws no volume. `maps` is the cache of the layers that follow
+    /// a host's cover map. `still` returns a layer's shape in still air: [`Shape::of`] or a cache of it.
     ///
     /// # Errors
     /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
@@ -96,7 +96,7 @@ impl CloudLayers {
         Ok(())
     }
 
-    /// Applies a host's map of cover to the layers that it names.
+    /// Applies a host's map of cover to the layers whose bases lie in the map's range ([`CloudMap::base_m`]).
     fn follow(&mut self, map: &Arc<CloudMap>, made: &mut LayerMaps) {
         let count = self.all().len();
         for i in 0..count {

@@ -1,5 +1,5 @@
-//! Thresholds of the map that give a layer its cover, by kind of cloud. [`super::cover`] finds the numbers of the
-//! table.
+//! Thresholds of the map that give a layer its cover, by kind of cloud. [`super::cover`] finds the numbers of
+//! `THRESHOLDS`.
 
 use crate::{
     chance::normal_quantile,

@@ -10,7 +10,7 @@ use crate::{
     scene::{FlashLamp, HostLight, LightUniform},
 };
 
-/// Largest number of lamps. If there are more, those that light clouds most are kept.
+/// Largest number of lamps and flashes. If there are more, all flashes are kept, and the lamps that light clouds most.
 const LAMPS: usize = 16;
 /// Largest number of rows in the picture of the lamps' glow.
 const ROWS: u32 = 96;
@@ -31,7 +31,7 @@ pub(crate) struct CloudLampUniform {
     pub radius: f32,
     /// Ratio of the mean intensity over all directions to that in the middle of the beam.
     pub even: f32,
-    /// Above 0 for a source inside a cloud, whatever lies on the path.
+    /// Above 0 for a source that counts as inside a cloud, whatever lies between it and the lit place.
     pub buried: f32,
     /// Padding.
     pub pad: f32,

@@ -11,11 +11,11 @@ use crate::{
 /// Light that falls on a layer from above and below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LayerLight {
-    /// Illuminance by the sun or moon on a surface that faces it, lux times exposure, for each channel.
+    /// Illuminance by the sun or moon on a surface that faces it, lux times exposure, for red, green and blue.
     pub sun: [f64; 3],
-    /// Mean radiance from above, cd/m^2 times exposure, for each channel.
+    /// Mean radiance from above, cd/m^2 times exposure, for red, green and blue.
     pub above: [f64; 3],
-    /// Mean radiance from below, cd/m^2 times exposure, for each channel.
+    /// Mean radiance from below, cd/m^2 times exposure, for red, green and blue.
     pub below: [f64; 3],
 }
 

@@ -2,7 +2,7 @@
 //!
 //! # Model
 //! A place has the depth of cloud above and below it, towards the sun and, horizontally, to either side. Its light is
-//! that in a box with these depths. Light that is scattered once keeps the true phase function. Light scattered more
+//! that of a place in a box with these depths. Light scattered once keeps the true phase function. Light scattered more
 //! often comes from the tables of [`transport`]: one for the beam on the box's top, one for the beam on the side that
 //! faces the sun, and one each for sky and ground. Near the face that the beam falls on, this light is the same from
 //! side to side. Deeper in the box it varies from side to side as a cosine, the one from which [`transport`] computes
@@ -10,7 +10,7 @@
 //!
 //! Top and side share the beam, because the sun's rays reach a place through the nearer of the two. With d the path to
 //! the top less the path to the side, the top has the share 1 / (1 + exp((1 - g') d)), and the side has the rest. A
-//! real cloud is no box: where its path to the sun, s, is longer than the box's, m, the light is multiplied by the
+//! real cloud is no box. If its path to the sun, s, is longer than the box's, m, the light is multiplied by the
 //! square of (1 + (1 - g') m) / (1 + (1 - g') s). The beam and the light of its first scatterings keep the momentum
 //! exp(-(1 - g') s) - exp(-s) (van de Hulst 1980). The component of this momentum along the axis of a table is in the
 //! table already. The component across the axis is added to the first moment.

@@ -18,8 +18,8 @@ const STEPS: usize = 32;
 /// can be told apart.
 pub const LOWEST: f64 = 0.03;
 
-/// Returns the optical depth of a layer on the path of light to a place (east, north, above the sea), m. `to_light` is
-/// a unit vector.
+/// Returns the optical depth of a layer on the path of light to `place_m` (m east, north and above the sea). `to_light`
+/// is the unit vector towards the light.
 pub(super) fn depth(field: &Field<'_>, place_m: DVec3, to_light: DVec3) -> f64 {
     let s = &field.shape;
     let (from, to) = ((s.base_m - place_m.z).max(0.0), s.base_m + s.thickness_m - place_m.z);

@@ -6,10 +6,11 @@
 //! cut off at a cap, chosen so that the share g^6 of the scattering is cut, for asymmetry g. The rest is smooth enough
 //! for eight directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
 //!
-//! A place has the scaled depth `above` and `below` it. The layers above and below it are slabs from a ladder of
-//! doubled depths. The radiance between the two slabs follows from their reflection and transmission. Its first four
-//! Legendre moments m_l give what the place scatters: J = albedo x sum of (2 l + 1) chi_l m_l P_l / (4 pi). chi_l are
-//! the moments of the phase function, and P_l the Legendre polynomials.
+//! A place has the scaled depths `above` and `below` it. The cloud above and the cloud below it are slabs from a ladder
+//! of depths, each deeper than the one before by the square root of 2. The radiance between the two slabs follows from
+//! their reflection and transmission. Its first four Legendre moments m_l give what the place scatters: J = albedo x
+//! sum of (2 l + 1) chi_l m_l P_l / (4 pi). chi_l are the moments of the phase function, and P_l the Legendre
+//! polynomials.
 //!
 //! A cloud of finite width loses light through its sides. In the diffusion approximation the light in a box varies as a
 //! cosine from side to side. It leaks as if it were absorbed at the rate D b^2 for each of the two level axes, with b =
@@ -124,7 +125,7 @@ impl Scattering {
 
     /// Returns the peak that was cut off, 1/sr, after light has gone the scaled depth `gone` in all. Of the beam that
     /// counts as going straight on, the share 1 - exp(-f gone / (1 - f)) was scattered in the peak, evenly along the
-    /// path.
+    /// path, with f = [`Scattering::forward`].
     pub fn peak(&self, versine: f64, gone: f64) -> f64 {
         let x = self.forward * gone / (1.0 - self.forward);
         let share = if x < 1e-3 { 1.0 - 0.5 * x } else { (1.0 - (-x).exp()) / x };
@@ -247,7 +248,7 @@ impl ScatterMatrices {
     }
 }
 
-/// Slabs of doubled depths of one medium with one leak rate.
+/// Slabs of one medium with one leak rate, at the depths of a ladder.
 struct SlabLadder {
     /// Two chains of slabs, each slab twice as deep as the one before it: from a slab so thin that nothing is scattered
     /// twice up to the deepest slab of the ladder. Each slab has its [`back_and_forth`] with a slab like it.
@@ -401,8 +402,8 @@ impl Transport {
         out
     }
 
-    /// Returns the table under a sky of radiance 1 over the whole upper side, with all scattered light. It is kept,
-    /// since it does not depend on the sun.
+    /// Returns the table under a sky of radiance 1 over the whole upper side, with all scattered light. The table is
+    /// computed once, since it does not depend on the sun.
     pub fn under_sky(&self) -> Arc<Table> {
         let one = |ladder: &SlabLadder, i: usize| {
             let (above, below) = (i % DEPTHS, i / DEPTHS);

@@ -13,16 +13,16 @@ use crate::moment::SceneMoment;
 /// clouds. It repeats every 20 km.
 #[derive(Clone, Debug)]
 pub struct CloudShadows {
-    /// Share of the direct light that clouds let through, of the sun or the moon, whichever is brighter. One channel of
-    /// 8 bits.
+    /// Share of the direct light that clouds let through. The light is that of the sun or the moon, whichever is
+    /// brighter. The texture has one channel of 8 bits.
     pub texture: wgpu::Texture,
-    /// Vectors whose dot products with (x, y, z, 1) of a place in the host's world, m, are its u and v. The mapping
-    /// projects the place along the light onto the plane.
+    /// Vectors whose dot products with (x, y, z, 1) of a place in the host's world, m, are the texture coordinates u
+    /// and v of the place. The mapping projects the place along the light onto the plane.
     pub uv_from_world: [DVec4; 2],
     /// Vector whose dot product with (x, y, z, 1) of a place in the host's world, m, is the place's height above the
     /// plane, m.
     pub height_from_world: DVec4,
-    /// u and v of the point of the plane below the last frame's camera.
+    /// Texture coordinates u and v of the last frame's camera, projected vertically onto the plane.
     pub camera_uv: [f64; 2],
     /// Mean share of the direct light over all places, as in [`Context::light_at`](crate::context::Context::light_at).
     pub mean_share: f64,
@@ -61,7 +61,7 @@ impl HostShadowTexture {
         Self { shadows }
     }
 
-    /// Takes over the mapping of a frame. `projection` is `None` if no clouds cast shadows that the map shows.
+    /// Stores the mapping of a frame. `projection` is `None` if no clouds cast shadows that the map shows.
     pub fn lay(&mut self, now: &SceneMoment<'_>, projection: Option<&ShadowProjection>) {
         let shadows = &mut self.shadows;
         shadows.mean_share = now.scene.brighter().direct_share;

@@ -1,6 +1,6 @@
 //! Panorama: the clouds in all directions from the camera, for mirrors on the ground and for the cube map, which show
-//! more than the picture. A frame refreshes some of its rows. `shaders/between/sky_sample.wgsl` reads it from the first
-//! layer of the picture's texture, below the picture.
+//! more than the picture. A frame refreshes some rows of the panorama. `shaders/between/sky_sample.wgsl` reads it from
+//! the first layer of the picture's texture, in the rows after those of the picture.
 
 use super::shadow_projection::{HistoryUse, ShadowInputs};
 use crate::{

@@ -33,12 +33,12 @@ const LEAP_OF_DRIFT_M: f64 = 1500.0;
 ///   fade in. The hash of the cells over rain areas has the same limit.
 const AGES: (f64, f64, f64, f64) = (4.0, 0.0025, 0.004, 600.0);
 
-/// History that a frame may take over from earlier frames.
+/// History of earlier frames that a frame may use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HistoryUse {
     /// History of earlier frames, if the view has it.
     Kept,
-    /// No history; later frames may take over from this one.
+    /// No history; later frames may use this one.
     Cut,
     /// No history: the frame is a pure function of view and time.
     None,

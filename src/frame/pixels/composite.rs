@@ -24,14 +24,15 @@ use crate::{
     surroundings::layout as around_layout,
 };
 
-/// Most cached pipelines of a device. Views with the same formats share them. On a software driver one pipeline may
-/// take more than 10 MB.
+/// Largest number of cached pipelines of a device. Views with the same formats share them. On a software driver one
+/// pipeline may take more than 10 MB.
 const MOST_PIPELINES: usize = 96;
 
-/// Most cached pipelines of the coarse grid and of the pixels interpolated from it: two or three for each weather.
+/// Largest number of cached pipelines of the coarse grid and of the pixels interpolated from it: two or three for each
+/// weather.
 const MOST_EVEN: usize = 96;
 
-/// Most cached pipelines that write the kinds of pixels.
+/// Largest number of cached pipelines that write the kinds of pixels.
 const MOST_KINDS: usize = 8;
 
 /// Properties for which a pipeline that writes the kinds of pixels is compiled.
@@ -138,7 +139,7 @@ impl Composite {
     }
 
     /// Creates the bind group of the frame's block, the effects' blocks and textures, the copy of the host's colour,
-    /// and the host's other images; `None` if an effect gave no block.
+    /// and the host's other images; `None` unless both blocks of the effects are set.
     pub fn bind(
         &self,
         device: &Device,

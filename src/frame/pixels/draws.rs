@@ -51,7 +51,7 @@ enum Kinds {
 
 /// Reason for which a variant has no draws yet.
 pub(in crate::frame) enum PipelineNotReady {
-    /// Not all pipelines are compiled; until then a single draw takes their place.
+    /// Not all pipelines are compiled yet; until they are, a single draw takes their place.
     Coming(Draws),
     Failed(Error),
 }
@@ -93,7 +93,7 @@ impl Draws {
         Self::whole(device, composite, of, (draws, looks_up)).map_err(PipelineNotReady::Failed)
     }
 
-    /// Returns all draws; compiles what is missing.
+    /// Returns all draws, and compiles the pipelines that are missing.
     fn whole(
         device: &Arc<Device>,
         composite: &mut Composite,

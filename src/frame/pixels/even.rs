@@ -1,6 +1,6 @@
 //! Sky, air and fog at every fourth pixel, interpolated where they vary smoothly.
 //!
-//! Sky, air and fog change slowly from pixel to pixel, except at edges. A small pass draws what they add to every
+//! Sky, air and fog change slowly from pixel to pixel, except at edges. A small pass draws what they add, at every
 //! fourth pixel of every fourth row. A second pass finds the cells of this grid in which linear interpolation is within
 //! a thousandth of the curve through the texels and their neighbours. A pixel in such a cell is interpolated from the
 //! cell's four texels if its surface is as far away as theirs. All other pixels are drawn in full: edges, thin objects,
@@ -44,7 +44,7 @@ pub(in crate::frame) fn grid_of(all: &Variant) -> Variant {
     }
 }
 
-/// Layouts and sampler of the grids of all views of a device.
+/// Layouts and sampler for the coarse grids of a device's views.
 pub(in crate::frame) struct EvenLayouts {
     /// Layout of the pass that finds the cells.
     pub weather: wgpu::BindGroupLayout,
@@ -95,7 +95,8 @@ impl CoarseWeather {
         if picture.iter().any(|side| *side < LEAST_SIDE) {
             return None;
         }
-        // The grid has one texel before the picture, and two after the last pixel's texel.
+        // Along each axis the grid has one texel before that of the picture's first pixel, and two after that of its
+        // last pixel.
         let size = picture.map(|side| (side - 1) / PIXELS + 4);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let weather = device.create_texture(&wgpu::TextureDescriptor {

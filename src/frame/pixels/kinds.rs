@@ -1,11 +1,11 @@
-//! Kinds of pixels, drawn one after the other, each with only the part of the composition that it needs.
+//! Kinds of pixels, drawn one after the other, each with only the shader code that it needs.
 //!
 //! The first draw writes each pixel's kind as a depth. Each draw of the composition then passes the depth test only at
 //! pixels of its own kind, before its shader runs. All draws are in one pass. Pixels interpolated from the coarse grid
-//! ([`super::even`]) are kinds of their own. The others are divided by what they show only on a software driver, which
-//! executes both sides of every branch: there a sky pixel would pay for the air in front of objects, an object for the
-//! sky behind it, and the sky for the planet's ground below it. A GPU skips the side of a branch that is not taken, so
-//! it draws all the others with one pipeline.
+//! ([`super::even`]) are kinds of their own. All other pixels are divided by what they show, but only on a software
+//! driver. Such a driver executes both sides of every branch: a sky pixel would pay for the air in front of objects, an
+//! object for the sky behind it, and the sky for the planet's ground below it. A GPU skips the side of a branch that is
+//! not taken, so it draws all other pixels with one pipeline.
 
 use super::{
     pixel_kind::{FORMAT, Pixels},
@@ -24,7 +24,7 @@ pub(in crate::frame) const DRAWS: usize = 5;
 
 /// Returns the draws that together make the picture of `all`; draws that would change nothing are left out. There is a
 /// single draw if samples have depths of their own or rays are marched. With a `grid`, interpolated pixels have draws
-/// of their own. If `splits`, the others have a draw for each kind.
+/// of their own. If `splits`, the other pixels have a draw for each kind.
 pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];

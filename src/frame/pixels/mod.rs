@@ -1,5 +1,5 @@
-//! Draws of the composition: the division of a picture into draws, each with only the part of the shader that its
-//! pixels need, and the pipelines kept for them.
+//! Draws of the composition: the division of a picture into draws, each with only the shader code that its pixels need,
+//! and the pipelines kept for them.
 //!
 //! A GPU skips, by a branch, the shader steps that a pixel does not need. A software driver executes both sides of
 //! every branch, and so pays for each step of the shader at every pixel. The division by kinds of pixels is therefore

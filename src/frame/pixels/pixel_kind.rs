@@ -14,7 +14,8 @@ pub(in crate::frame) enum Pixels {
     Uneven,
     /// Pixels at the far depth, above the level of the eye: sky.
     Above,
-    /// Pixels at the far depth, below the level of the eye: the planet's own ground, and from high up the sky over it.
+    /// Pixels at the far depth, below the level of the eye: the planet's own ground and, for a high camera, the sky
+    /// just above it.
     Below,
     /// Pixels on which the host drew.
     Drawn,
@@ -29,7 +30,7 @@ pub(in crate::frame) enum Pixels {
 
 impl Pixels {
     /// Returns the depth that represents the kind (`shaders/frame/kinds.wgsl`) and the test that passes only for this
-    /// kind; `None` for all pixels.
+    /// kind; `None` for [`Pixels::All`] and [`Pixels::Grid`].
     pub fn test(self) -> Option<(f64, wgpu::DepthStencilState)> {
         let depth = match self {
             Self::All | Self::Grid => return None,

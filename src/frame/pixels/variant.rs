@@ -19,7 +19,7 @@ pub(in crate::frame) struct Variant {
 }
 
 impl Variant {
-    /// Returns the state of the target that draws into the host's colour.
+    /// Returns the colour target state for draws into the host's colour.
     pub fn target(&self, write_mask: wgpu::ColorWrites) -> wgpu::ColorTargetState {
         wgpu::ColorTargetState { format: self.format, blend: None, write_mask }
     }
@@ -45,7 +45,7 @@ impl Variant {
         (shader, entry)
     }
 
-    /// Whether the variant equals `other` with these constants, without copying them.
+    /// Whether the variant equals `other` with `constants` in place of its own. No constants are copied.
     pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
         let Self { stages, format, samples, sampling, images, constants: own, pixels } = self;
         (*stages, *format, *samples, *sampling, *images, *pixels)

@@ -94,8 +94,7 @@ impl TargetBuilder<'_> {
             parts.push(self.part(desc, image, TargetSide::Depth)?);
         }
         let samples = parts[0].facts.samples;
-        // Beside a picture of one sample, multisampled depth is copied to depth of one sample. OpenGL ES cannot do
-        // that.
+        // If the picture has one sample, multisampled depth is copied to depth of one sample. OpenGL ES cannot do that.
         let resolved = samples == 1 && !self.ask.info.is_es();
         if let Some(other) = parts.iter().find(|p| p.facts.samples != samples && !resolved) {
             let accepted = format!("an image with as many samples as color, {samples}");
@@ -252,8 +251,8 @@ impl TargetBuilder<'_> {
             GlImage::Texture { name, target } => self.end(part.attachment(GlObject::Texture(name, target)), made)?,
             GlImage::Renderbuffer { name } => self.end(part.attachment(GlObject::Renderbuffer(name)), made)?,
         };
-        // Only the bits of a window's depth are known, and drivers differ in the depth formats to which they copy it,
-        // so several formats are tried. A copy of colour converts between formats.
+        // Only the number of bits of a window's depth is known, and drivers differ in the depth formats to which they
+        // copy it, so several formats are tried. A copy of colour converts between formats.
         let others: &[u32] = match (part.image, part.side) {
             (GlImage::Framebuffer { .. }, TargetSide::Depth) => {
                 &[DEPTH24_STENCIL8, DEPTH_COMPONENT24, DEPTH_COMPONENT32F, DEPTH32F_STENCIL8, DEPTH_COMPONENT16]
@@ -409,7 +408,7 @@ impl TargetBuilder<'_> {
         let (Some(name), Some(hal_device)) = (name, hal_device) else {
             return Err(Error::new(Status::Internal, "an OpenGL image without name or device"));
         };
-        // A drop callback tells wgpu that it does not own the object, so it never deletes it.
+        // A drop callback tells wgpu that it does not own the object, so wgpu never deletes the object.
         let keep: Option<wgpu::hal::DropCallback> = Some(Box::new(|| {}));
         // SAFETY: the name is alive and has this format and size, as OpenGL has just reported. The target is corrected
         // for multisampled textures, which the backend does not know.

@@ -4,7 +4,7 @@
 //! drawn once would stay empty. An active query of the host would count Welkin's samples. Neither can be suspended and
 //! resumed. OpenGL reports whether a query is active (`GL_CURRENT_QUERY`). It does not report whether rendering is
 //! conditional. But it is an error to begin conditional rendering twice (OpenGL 4.6 core specification, section 10.9),
-//! so a trial finds out.
+//! so a trial shows whether it is.
 
 use super::{
     api::Api,
@@ -70,7 +70,7 @@ impl Counting {
     }
 
     /// Opens a device. Refuses without opening if a query is active, because `trial` is then 0. Otherwise calls `open`
-    /// even if the trial says that rendering is conditional: if that is true, nothing is drawn and opening fails. If
+    /// even if the trial says that rendering is conditional: if it really is, nothing is drawn and opening fails. If
     /// opening succeeds all the same, trials are not reliable with this driver, and no more are made.
     ///
     /// # Errors

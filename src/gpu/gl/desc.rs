@@ -14,7 +14,7 @@ pub enum GlMode {
     /// A second context, which shares objects with the host's.
     #[default]
     Shared,
-    /// Host's context, whose state is restored after each batch.
+    /// Host's context, whose state is restored after each batch of Welkin's OpenGL calls.
     HostContext,
 }
 

@@ -6,8 +6,8 @@ use std::{
     thread::{self, ThreadId},
 };
 
-/// Reentrant lock. A call releases it instead of the drop of a guard, because entering and leaving a host are two
-/// calls.
+/// Reentrant lock. A call to [`Gate::leave`] releases the lock, not the drop of a guard, because entering and leaving a
+/// host are two calls.
 #[derive(Default)]
 pub(super) struct Gate {
     /// Thread that holds the lock, and its depth: the number of its enters that are not undone yet.

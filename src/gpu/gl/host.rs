@@ -57,7 +57,7 @@ pub(super) struct Inner {
     pub(super) active: Vec<u64>,
     /// Number last given to a target or to a use of one.
     pub(super) next_id: u64,
-    /// Error that could not be returned when it occurred; the next call that can return it does.
+    /// Error that could not be returned when it occurred; the next call that can return an error returns it.
     pub(super) fault: Option<Error>,
     /// Whether the device is gone.
     pub(super) closed: bool,
@@ -99,9 +99,9 @@ impl GlHost {
     }
 
     /// Enters the host. In shared mode the host's context or no context must be current on this thread; Welkin's
-    /// context is current on return. In the other mode the host's own context must be current, unless the host gave
-    /// `make_current`, which then makes it current; the host's state is saved. Entering again on the same thread costs
-    /// nothing.
+    /// context is current on return. In mode [`GlMode::HostContext`](super::GlMode) the host's own context must be
+    /// current, unless the host gave `make_current`, which then makes it current; the host's state is saved. Entering
+    /// again on the same thread costs nothing.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] if the right context cannot be made current or cannot be drawn in now; also any error
@@ -410,8 +410,8 @@ fn wait(api: &Api, fence: Fence) {
     }
 }
 
-/// Binds an image once and restores the binding: only after that does OpenGL guarantee the other context's changes
-/// (OpenGL 4.6 core specification, section 5.3.3, rule 4).
+/// Binds an image once and restores the binding: only after that does OpenGL guarantee that the other context's changes
+/// to the image are visible (OpenGL 4.6 core specification, section 5.3.3, rule 4).
 fn bind_again(api: &Api, image: GlImage) {
     match image {
         GlImage::Texture { name, target } => {

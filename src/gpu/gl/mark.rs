@@ -42,7 +42,7 @@ impl Mark {
         mark
     }
 
-    /// Marks the current context, so that it can be recognised. The mark is not one of the live marks.
+    /// Marks the current context, so that it can be recognised. The mark is not added to the list of live marks.
     pub(super) fn leave(api: &Api) -> Self {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let (array_was, buffer_was) = (api.uint(VERTEX_ARRAY_BINDING), api.uint(ARRAY_BUFFER_BINDING));

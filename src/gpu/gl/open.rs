@@ -151,7 +151,8 @@ fn load(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(Api, GlInfo)> {
     Ok((api, info))
 }
 
-/// Creates a framebuffer with colour, depth and stencil, for reading state, and its two textures.
+/// Creates the probe, a framebuffer with colour, depth and stencil that is bound while state is read, and its two
+/// textures.
 fn make_probe(api: &Api) -> (u32, [u32; 2]) {
     let color = image::make_texture(api, RGBA8, (1, 1), 1);
     let depth = image::make_texture(api, DEPTH24_STENCIL8, (1, 1), 1);
@@ -163,7 +164,7 @@ fn make_probe(api: &Api) -> (u32, [u32; 2]) {
     (framebuffer, [color, depth])
 }
 
-/// Test that Welkin's context is not the host's own, and shares its objects.
+/// Test that Welkin's context is not the host's own, and that the two share objects.
 struct Proof {
     texture: u32,
     /// Blend colour of the host.
@@ -320,7 +321,7 @@ fn finish(opened: Result<(Backend, Opened)>, api: &Api, probe: (u32, [u32; 2]), 
     }
 }
 
-/// Clears one texel, copies it and reads it back. This shows the names of wgpu's own objects.
+/// Clears one texel, copies it and reads it back. The bindings after each step show the names of wgpu's own objects.
 fn first_picture(opened: &Device, api: &Api) -> std::result::Result<Backend, Fault> {
     let vertex_array = api.uint(VERTEX_ARRAY_BINDING);
     let texture = |usage| {

@@ -164,8 +164,8 @@ impl Entry {
     pub(super) fn begin(&mut self, api: &Api) -> Result<()> {
         let size = (self.desc.width, self.desc.height);
         // Attaches again: otherwise a framebuffer would keep an object that the host has deleted and created anew under
-        // its name. OpenGL also guarantees another context's changes only after that (OpenGL 4.6 core specification,
-        // section 5.3.3, rule 4).
+        // its name. Only after this attachment does OpenGL guarantee that another context's changes to the object are
+        // visible (OpenGL 4.6 core specification, section 5.3.3, rule 4).
         for (framebuffer, attachment, object) in &self.made.attached {
             api.BindFramebuffer(FRAMEBUFFER, *framebuffer);
             object.attach(api, *attachment);

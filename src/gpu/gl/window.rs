@@ -1,8 +1,8 @@
 //! Check whether the window has the size that the host gives. OpenGL does not report a window's size, but it reports
-//! whether samples of a draw pass, and none outside the window do.
+//! whether any sample of a drawing passed the tests, and no sample outside the window passes.
 //!
 //! A few lines of pixels that change nothing are drawn in every frame, and their results are read in a later frame,
-//! because waiting would stall. Only a new window is waited for.
+//! because waiting would stall. Only for a new target does the check wait.
 
 use std::ffi::c_char;
 

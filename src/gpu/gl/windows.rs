@@ -24,8 +24,9 @@ impl Windows {
         Self { marks: vec![Mark::leave(host)], last: Some(0) }
     }
 
-    /// Records the context from which a call comes. If it is not that of the last call, asks the host once to make its
-    /// context current, and checks that this gives the same context. It is also valid that no context is current.
+    /// Records the context from which a call comes. If the last call came from another context, asks the host once to
+    /// make its own context current, and checks that this is the context from which the call comes. It is also valid
+    /// that no context is current.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] if the callback makes another context current.

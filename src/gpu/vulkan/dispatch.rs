@@ -343,9 +343,9 @@ unsafe extern "system" fn queue_wait_idle(queue: vk::Queue) -> vk::Result {
     unsafe { (host.real.queue_wait_idle)(queue) }
 }
 
-/// Creates a layout without the structure of binding flags below Vulkan 1.2. wgpu chains that structure (Vulkan 1.2,
-/// `VK_EXT_descriptor_indexing`) to every layout; it is empty without binding arrays, which Welkin never uses. Below
-/// 1.2 it must not be passed.
+/// Creates a descriptor set layout; below Vulkan 1.2 without the structure of binding flags. wgpu chains that structure
+/// (Vulkan 1.2, `VK_EXT_descriptor_indexing`) to every layout; it is empty without binding arrays, which Welkin never
+/// uses. Below Vulkan 1.2 this structure must not be passed.
 unsafe extern "system" fn create_descriptor_set_layout(
     device: vk::Device,
     info: *const vk::DescriptorSetLayoutCreateInfo<'_>,

@@ -40,8 +40,8 @@ impl VulkanHost {
     /// # Errors
     /// [`Status::InvalidArgument`], which names a null semaphore, or a timeline semaphore where the host did not enable
     /// timeline semaphores; nothing is then submitted. [`Status::OutOfMemory`], if there is no memory for the barriers.
-    /// [`Status::Internal`] or [`Status::DeviceLost`] for a GPU fault in the commands; if wgpu refused the commands for
-    /// it, the semaphores are neither waited for nor signalled.
+    /// [`Status::Internal`] or [`Status::DeviceLost`] for a GPU fault in the commands; if wgpu refused the commands
+    /// because of the fault, the semaphores are neither waited for nor signalled.
     ///
     /// # Safety
     /// The images' descriptions must be true, and the semaphores live and of the kind that `value` says. The queue must

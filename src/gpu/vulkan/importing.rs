@@ -40,10 +40,10 @@ impl VulkanHost {
         Ok(texture)
     }
 
-    /// Waits until the GPU no longer uses `image`, and forgets it. The host must call it for every image that it handed
-    /// over and destroys, before or after the destruction, but before it hands over another image, because Vulkan may
-    /// give a new image the old handle. After the destruction only Welkin's views are left to be destroyed, for which
-    /// the image need not exist. Not for use in a frame.
+    /// Waits until the GPU no longer uses `image`, and forgets it. The host must call this function for every image
+    /// that it handed over and destroys. The call may come before or after the destruction, but must come before the
+    /// host hands over another image, because Vulkan may give a new image the old handle. After the destruction only
+    /// Welkin's views are left to be destroyed, for which the image need not exist. Not for use in a frame.
     ///
     /// # Errors
     /// [`Status::DeviceLost`].

@@ -11,7 +11,7 @@ const SWAPCHAIN: &str = "needs VK_KHR_swapchain enabled on the device and listed
 
 /// Returns the reason for which `image` cannot be in `layout`, as the end of a sentence about the layout; `None` if it
 /// can. The rules are those of image barriers (Vulkan specification, VkImageMemoryBarrier, valid usage). `presents`
-/// says that `VK_KHR_swapchain` is enabled.
+/// says whether `VK_KHR_swapchain` is enabled.
 pub(super) fn obstacle(
     layout: vk::ImageLayout,
     image: &HostImage,

@@ -1,4 +1,4 @@
-//! Sink of each cell of a tile: the end of the cell's run-off within its block of cells. It is a pit, a cell of a
+//! Sink of each cell of a tile: the end of the cell's run-off within its block of cells. A sink is a pit, a cell of a
 //! neighbouring block, or a hole or edge of the terrain.
 //!
 //! Run-off takes the steepest of the eight directions down, as on a single grid. Paths are resolved within blocks of 32
@@ -55,7 +55,8 @@ pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     (ay, ax) < (by, bx)
 }
 
-/// Returns the sink of a cell's first step: its steepest lower neighbour, itself if it is a pit, or out of the terrain.
+/// Returns where a cell's run-off goes first: to the steepest lower neighbour, to the cell itself if it is a pit, or
+/// out of the terrain.
 fn below(terrain: &Terrain, cell: CellId) -> Sink {
     let height = f64::from(terrain.height(cell));
     let (mut steepest, mut down) = (f64::NEG_INFINITY, Sink::Pit(cell));

@@ -1,12 +1,12 @@
 //! Standing water on tiles. Hollows are found as water rises in them, and may cross the borders between tiles.
 //!
-//! The water of a pit rises over its neighbours from the lowest up, until the next cell has a lower neighbour outside
-//! the water: a saddle. This is the priority-flood (Barnes, Lehman and Mulla 2014), restricted to one hollow and to the
-//! height of its water. Further water spills over the saddle into the pit beyond. Two full lakes that spill into each
-//! other become one, which rises on from the saddle. When the water sinks below the saddle, the lake parts into the two
-//! again. This builds the depression hierarchy of Barnes, Callaghan and Wickert (2020 and 2021) from below, so the
-//! ground is examined only where water stands. After a change of the ground, the lakes that it touches are removed and
-//! their water is poured again.
+//! The water of a pit rises over its neighbours from the lowest up, until the next cell to be covered has a lower
+//! neighbour outside the water. This cell is a saddle. Such a rise is the priority-flood (Barnes, Lehman and Mulla
+//! 2014), restricted to one hollow and to the height of its water. Further water spills over the saddle into the pit
+//! beyond. Two full lakes that spill into each other become one, which rises on from the saddle. When the water sinks
+//! below the saddle, the lake parts into the two again. This builds the depression hierarchy of Barnes, Callaghan and
+//! Wickert (2020 and 2021) from below, so the ground is examined only where water stands. After a change of the ground,
+//! the lakes that it touches are removed and their water is poured again.
 //!
 //! Water is counted in millimetres times cells. Cells of equal height are ordered by place, so the same ground and
 //! water give the same hollows, whatever their history.
@@ -19,7 +19,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use super::drains::is_lower;
 use crate::terrain::{CellId, Terrain};
 
-/// Index that stands for no hollow or lake.
+/// Index that means no hollow or lake.
 const NONE: u32 = u32::MAX;
 
 /// Cell at the rim of a lake. The lowest cell compares greatest, so that the heap returns it first.
@@ -56,7 +56,7 @@ struct Close {
     to: Option<CellId>,
 }
 
-/// Hollow, as far as its cells have been found.
+/// Hollow with the cells found so far.
 #[derive(Clone, Debug)]
 struct Hollow {
     /// Indices of the two hollows from which this one was joined; `None` for the hollow of one pit.
@@ -65,15 +65,15 @@ struct Hollow {
     cells: Vec<CellId>,
     /// Heights of the cells in `cells`, mm.
     levels_mm: Vec<f64>,
-    /// Water that the hollow holds when its level is at the cell, mm times cells, for each of the cells in `cells`.
+    /// For each cell in `cells`, the water in the hollow when the level is at the cell's height, mm times cells.
     held_at: Vec<f64>,
-    /// Number of cells of its parts.
+    /// Number of cells of the hollow's parts.
     below: f64,
-    /// Water that its parts hold, mm times cells.
+    /// Water that the hollow's parts hold, mm times cells.
     base: f64,
-    /// Height at which it begins, mm: that of its pit, or of the saddle where its parts meet.
+    /// Height at which the hollow begins, mm: that of its pit, or of the saddle where its parts meet.
     birth_mm: f64,
-    /// Saddle at which it ends; `None` until it is found.
+    /// Saddle at which the hollow ends; `None` until the saddle is found.
     close: Option<Close>,
 }
 
@@ -86,7 +86,7 @@ struct Lake {
     held: f64,
     /// Height of the water's surface, mm.
     level_mm: f64,
-    /// Cells around those of its hollow, lowest first; `None` if they must be found again.
+    /// Cells beside the known cells of the hollow, lowest first; `None` if they must be found again.
     rim: Option<BinaryHeap<Rim>>,
 }
 
@@ -243,7 +243,8 @@ impl Lakes {
         lake
     }
 
-    /// Adds the next cell to a lake's hollow, or finds its saddle.
+    /// Adds the lowest cell of a lake's rim to the lake's hollow or, if that cell is the hollow's saddle, closes the
+    /// hollow.
     fn extend(&mut self, terrain: &Terrain, lake: u32) {
         if self.lake(lake).is_some_and(|l| l.rim.is_none()) {
             self.find_rim(terrain, lake);

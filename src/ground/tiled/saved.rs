@@ -14,7 +14,7 @@ use crate::{
     world::{binary_text, parse_error, text_binary, values, words},
 };
 
-/// Word in the list of a lake's pits by which the two trees listed before it join.
+/// Word in the list of a lake's pits that joins the two trees before it.
 const JOINED: u64 = u64::MAX;
 
 /// Saved water of a tile.
@@ -25,8 +25,8 @@ struct SavedWaterTile {
     tile: [i32; 2],
     /// Hash of the heights and classes.
     cells: String,
-    /// Runs of equal film and pores, in base 64. In a state that is only hashed, the hash of film and pores. Left out
-    /// if the tile has no state of its own.
+    /// Runs of equal film and pores, in base 64. In a state that is only hashed, this is the hash of film and pores.
+    /// Left out if the tile has no state of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<String>,
 }
@@ -150,8 +150,8 @@ impl SavedTiles {
     /// Returns the saved water, on the terrain that the host has set.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if it is another terrain, [`crate::Status::Parse`] if the values cannot be
-    /// water on it.
+    /// [`crate::Status::InvalidArgument`] if the state is of another terrain, [`crate::Status::Parse`] if the values
+    /// cannot be water on this terrain.
     pub fn water(&self, terrain: Option<&Terrain>) -> Result<TiledWater> {
         self.check(terrain)?;
         let unfit = || parse_error("terrain_tiles must be the water that these tiles can hold");

@@ -1,4 +1,4 @@
-//! Step of the water on all tiles, which may take several calls.
+//! Step of the water on all tiles. One step may take several calls.
 
 use super::{
     drains::Sink,

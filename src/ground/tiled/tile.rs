@@ -33,7 +33,7 @@ pub(super) struct TileWater {
     hash: OnceLock<u64>,
 }
 
-/// Returns a tile's cells in the form that the rain on them needs.
+/// Returns a tile's cells in the form that [`GridRain`] needs.
 pub(super) fn cells_of<'a>(terrain: &Terrain, tile: &'a Tile) -> CellGrid<'a> {
     CellGrid {
         origin: terrain.origin_of(tile.key),
@@ -81,7 +81,7 @@ impl TileWater {
         self.top.iter().flatten().map(|v| f64::from(*v)).sum()
     }
 
-    /// Returns whether there is any water on its cells.
+    /// Returns whether there is any water on the tile's cells.
     pub fn is_wet(&self) -> bool {
         self.begun && !self.top.is_empty()
     }

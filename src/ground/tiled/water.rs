@@ -16,7 +16,7 @@ use crate::{
     terrain::{CellId, CellRect, Terrain, TileKey},
 };
 
-/// Standing water of a cell where none stands, mm.
+/// Value of standing water for a cell that belongs to no lake, mm.
 const BARE_MM: f64 = -50.0;
 /// Distance around a change of heights, in cells, within which lakes depend on the changed heights: a lake's own cell,
 /// the saddle beside it, and the cell beyond the saddle.
@@ -33,7 +33,7 @@ pub(crate) struct Changed {
     pub is_removal: bool,
 }
 
-/// Progress of a step of which some tiles are done.
+/// Progress of a step that only some tiles have done.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepInParts {
     /// Last tile that is done.
@@ -46,7 +46,7 @@ pub(super) struct StepInParts {
 
 /// Water on a tiled terrain.
 pub(crate) struct TiledWater {
-    /// Identity of the terrain on which it lies.
+    /// Identity of the terrain on which the water lies.
     id: u64,
     /// Water of each tile, by the tile's slot in the terrain.
     pub(super) tiles: Vec<Option<Box<TileWater>>>,
@@ -76,7 +76,7 @@ pub(super) fn pit_below(tiles: &[Option<Box<TileWater>>], terrain: &Terrain, mut
     }
 }
 
-/// Pours water into pits, mm times cells, from the south-west pit on, row by row. Returns the part that leaves the
+/// Pours water, mm times cells, into pits, row by row from the south-west pit on. Returns the part that leaves the
 /// terrain.
 pub(super) fn pour_all(
     (tiles, lakes): (&[Option<Box<TileWater>>], &mut Lakes),
@@ -210,7 +210,7 @@ impl TiledWater {
         drained
     }
 
-    /// Wakes the run of a cell, so that it is stepped.
+    /// Wakes the run of a cell, so that the run is stepped.
     pub(super) fn wake(&mut self, terrain: &Terrain, cell: CellId) {
         let (slot, at) = terrain.split(cell);
         if let Some(tile) = self.tiles.get_mut(slot).and_then(Option::as_mut) {
@@ -263,7 +263,7 @@ impl TiledWater {
         self.version
     }
 
-    /// Counts all water as changed.
+    /// Marks all water as changed.
     pub fn count_version(&mut self) {
         self.version.1 += 1;
     }

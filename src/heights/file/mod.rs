@@ -86,13 +86,13 @@ impl HeightMap {
         picture::write(self, settings)
     }
 
-    /// Writes a Terragen terrain with the chunks in the order of its specification. Its scale is the distance between
-    /// samples, which must be known and the same in both directions. A step of height is as fine as the format allows:
-    /// about the sum of the heights' range and twice that distance, divided by 65 536.
+    /// Writes a Terragen terrain with the chunks in the order of its specification. The file's scale is the distance
+    /// between samples, which must be known and the same in both directions. A step of height is as fine as the format
+    /// allows: about the sum of the heights' range and twice that distance, divided by 65 536.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] for a height that is not known, sides above 32 767, a distance that is not known or
-    /// not the same in both directions, and one too small for the heights; [`Status::OutOfMemory`].
+    /// [`Status::InvalidArgument`] for a height that is not known, sides above 32 767, a distance between samples that
+    /// is not known, not the same in both directions or too small for the heights; [`Status::OutOfMemory`].
     pub fn to_ter(&self) -> Result<Vec<u8>> {
         terragen::write(self)
     }

@@ -83,8 +83,8 @@ fn decoded(bytes: &[u8]) -> std::result::Result<(Vec<u8>, ColorType), ImageError
     Ok((pixels, kind))
 }
 
-/// Returns the error for a file that cannot be decoded: the first chunk that is cut short or whose checksum is wrong,
-/// or else the compressed rows.
+/// Returns the error for a file that cannot be decoded. It names the first chunk that is cut short or whose checksum is
+/// wrong, or else the compressed rows.
 fn fault(bytes: &[u8], error: &ImageError) -> Error {
     if let ImageError::Limits(_) = error {
         return Error::new(Status::OutOfMemory, format!("byte {BEFORE_DATA}: there is no memory for the pixels"));

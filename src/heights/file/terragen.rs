@@ -16,7 +16,7 @@ pub const MAGIC: &[u8] = b"TERRAGENTERRAIN ";
 const DEFAULT_SCALE: f32 = 30.0;
 /// Longest side that all programs read; some read it as a signed number.
 const LONGEST: u32 = 32_767;
-/// Chunks of fixed size, with their marker, bytes.
+/// Markers of the chunks of fixed size, and the sizes of these chunks including the marker, bytes.
 const FIXED: [(&[u8], usize); 7] =
     [(b"SIZE", 8), (b"XPTS", 8), (b"YPTS", 8), (b"SCAL", 16), (b"CRAD", 8), (b"CRVM", 8), (b"EOF ", 4)];
 /// Largest size of a written file without its heights, bytes.
@@ -24,7 +24,7 @@ const MOST_BEFORE_HEIGHTS: u64 = 128;
 /// Marker of the chunk of heights, and the size of its marker, scale and base, bytes.
 const HEIGHTS: (&[u8], usize) = (b"ALTW", 8);
 
-/// Fields of the chunks so far.
+/// Fields of the chunks that were read so far.
 #[derive(Default)]
 struct Fields {
     size: Option<u16>,
@@ -147,7 +147,8 @@ fn fields(bytes: &[u8]) -> Result<Fields> {
         if marker != HEIGHTS.0 {
             fields.take(marker, chunk, at)?;
         }
-        // Heights of an odd number are followed by two bytes that align the next chunk; some programs leave them out.
+        // An odd number of heights is followed by two bytes that align the next chunk; some programs leave these bytes
+        // out.
         let padding = bytes.get(end..padded(end));
         at = if padding.is_some_and(|p| p.iter().all(|b| *b == 0)) { padded(end) } else { end };
     }

@@ -1,8 +1,9 @@
-//! Geometry of shadow maps: squares across the light around the eye, one inside the other, and when one is drawn anew.
+//! Geometry of shadow maps, and when a map is drawn anew. The maps are squares around the eye, perpendicular to the
+//! light, one inside the other.
 //!
 //! Maps are centred at the eye and not fitted to its frustum: a camera that turns needs no new map, and the sphere
-//! around a slice of a wide frustum is no smaller. Half sides grow by one ratio, so that a texel covers about as many
-//! pixels where each map begins (Zhang et al. 2006, logarithmic splits).
+//! around a slice of a wide frustum is no smaller. Half sides grow by one ratio, so that a texel covers about the same
+//! number of pixels where each map begins (Zhang et al. 2006, logarithmic splits).
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -15,10 +16,10 @@ const LEAST_RATIO: f64 = 2.0;
 /// Share of its half side by which a map reaches farther than it must, and by which the eye may move before the map is
 /// drawn anew.
 const MARGIN: f64 = 0.125;
-/// Angle that the light may turn before a map is drawn anew, rad: a tenth of its disc, and so of any penumbra.
+/// Angle that the light may turn before a map is drawn anew, rad: a tenth of the light's disc, and so of any penumbra.
 const TURN: f64 = 9.3e-4;
-/// Distances from the centre along the light, half sides: how far behind it a map reaches, and within which a map is
-/// used.
+/// Distances along the light from a map's centre, half sides: how far the map reaches away from the light, and within
+/// what distance it is used.
 const BEHIND: f64 = 1.25;
 const BESIDE: f64 = 1.2;
 /// Tangent of the radius of the discs of sun and moon: 0.267 degrees.
@@ -29,7 +30,8 @@ pub(crate) const DISC: f64 = 0.00465;
 pub(super) struct Cascade {
     /// Directions of the map's columns and rows, and towards the light.
     axes: DMat3,
-    /// Eye for which it was drawn, and the centre of the map: the nearest place to it on the grid of texels.
+    /// Eye for which the map was drawn, and the centre of the map: the place on the grid of texels that is nearest to
+    /// this eye.
     eye: DVec3,
     centre: DVec3,
     half_m: f64,
@@ -40,7 +42,8 @@ pub(super) struct Cascade {
 }
 
 /// Returns the distance, m, at which the finest map begins, for an eye at a height above the ground around it. It is a
-/// power of two, and stays `kept_m` as long as that fits, so that an eye which bobs needs no new maps.
+/// power of two. It stays `kept_m` as long as this is between 0.4 and 1.25 times the height, so that an eye which bobs
+/// needs no new maps.
 pub(super) fn nearest_m(above_m: f64, kept_m: f64) -> f64 {
     let above = above_m.max(NEAREST_M);
     if kept_m <= 1.25 * above && 2.5 * kept_m > above { kept_m } else { libm::exp2(libm::log2(above).floor()) }
@@ -60,7 +63,8 @@ impl Cascade {
         let level = DVec3::new(-light.y, light.x, 0.0);
         let column = if level.length() > 1e-6 { level.normalize() } else { DVec3::X };
         let axes = DMat3::from_cols(column, light.cross(column), light);
-        // Shadows of what rests keep their edges while the eye moves: maps differ by whole texels.
+        // Maps around different eyes differ by whole texels, so that shadows of resting objects keep their edges while
+        // the eye moves.
         let texel = 2.0 * half_m / f64::from(side);
         let place = axes.transpose() * eye;
         let snapped = DVec3::new((place.x / texel).round() * texel, (place.y / texel).round() * texel, place.z);
@@ -113,7 +117,7 @@ impl Cascade {
         }
     }
 
-    /// How much a map needs to be drawn anew for an eye, a light and a half side: from 1 on it is due.
+    /// Lateness of the map for an eye, a light and a half side: from 1 on the map is due to be drawn anew.
     pub fn lateness(&self, light: DVec3, eye: DVec3, half_m: f64) -> f64 {
         let moved = (eye - self.eye).length() / (MARGIN * self.half_m);
         let turned = light.cross(self.light()).length() / TURN;
@@ -150,7 +154,7 @@ mod tests {
         let nearer = map.clip(from).project_point3(place + light);
         assert!(((nearer.z - clip.z) * f64::from(block.size[0]) - 1.0).abs() < 1e-4);
         assert!((nearer - clip).truncate().length() < 1e-9);
-        // The highest corner of what it holds lies at depth 1.
+        // The highest corner of the box that the map holds lies at depth 1.
         let top = map.clip(DVec3::ZERO).project_point3(eye + DVec3::new(900.0, -10.0, 300.0));
         assert!((top.z - 1.0).abs() < 1e-9, "{top}");
     }

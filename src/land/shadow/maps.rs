@@ -23,7 +23,8 @@ pub(super) const BLOCK: u32 = 16;
 pub(in crate::land) struct ShadowMaps {
     /// Texels along a side.
     pub side: u32,
-    /// Depths of the ground as seen from the light, one layer a map, and the nearest to the light of each block.
+    /// Depths of the ground as seen from the light, one layer a map, and the depth nearest to the light in each block
+    /// of texels.
     depths: wgpu::Texture,
     tops: wgpu::Texture,
     layers: [[wgpu::TextureView; 2]; CASCADES],
@@ -37,7 +38,7 @@ pub(in crate::land) struct ShadowMaps {
 /// Pass that finds the depth nearest to the light in each block of a map.
 struct Reduction {
     pipeline: wgpu::RenderPipeline,
-    /// Bind group of each map, and the block that it binds.
+    /// Bind group of each map, and the uniform block that the group binds.
     groups: [(UniformBlock, wgpu::BindGroup); CASCADES],
 }
 
@@ -83,7 +84,7 @@ fn depth_layers(device: &wgpu::Device, side: u32, layers: u32) -> wgpu::Texture 
     })
 }
 
-/// Creates what stands for the maps where there are none: depths, and depths of blocks.
+/// Creates placeholders to bind where there are no maps: for the depths, and for the depths of blocks.
 pub(in crate::land) fn no_maps(device: &wgpu::Device) -> [wgpu::TextureView; 2] {
     let nothing = bind::as_layers(&depth_layers(device, 1, CASCADES as u32));
     [nothing.clone(), nothing]
@@ -136,7 +137,7 @@ impl ShadowMaps {
         [&self.depths, &self.tops].map(bind::as_layers)
     }
 
-    /// The texture itself, by which bindings know that it is another one.
+    /// Texture of the depths. A bind group is made anew when this texture is another one.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.depths
     }

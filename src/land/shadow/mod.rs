@@ -1,9 +1,9 @@
 //! Shadows of the sun, or of the moon, on the drawn terrain: four shadow maps around the eye, each of which serves many
 //! frames.
 //!
-//! A frame draws at most one map anew, the one that is latest, unless one is missing or far too late: `cascade.rs` says
-//! when a map is due. The ground is drawn into a map with the levels of detail of the picture, out to the farthest
-//! ground towards the light. `shaders/land/shadow_share.wgsl` reads the maps.
+//! A frame draws at most one map anew, the one that is most overdue, unless maps are missing or far too late:
+//! `cascade.rs` says when a map is due. The ground is drawn into a map with the levels of detail of the picture, out to
+//! the farthest ground towards the light. `shaders/land/shadow_share.wgsl` reads the maps.
 
 mod cascade;
 mod maps;
@@ -72,7 +72,8 @@ impl Shadows {
         }
     }
 
-    /// Takes over a change of the ground in a rectangle of cells; `None` if everything may have changed.
+    /// Updates the pages after a change of the ground in a rectangle of cells, and notes that the maps lack this
+    /// change. `rect` is `None` if everything may have changed.
     pub fn change(&mut self, device: &Device, terrain: &Terrain, rect: Option<CellRect>) {
         match rect {
             Some(rect) => self.pages.update(device, terrain, rect),
@@ -154,7 +155,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Takes back the maps for whose pages there was no room beside those of the first: a later frame draws them.
+    /// Drops the maps for whose pages there was no room beside the pages of the first map: a later frame draws these
+    /// maps.
     fn leave_out(&mut self, ranges: &mut [Range<u32>; CASCADES]) {
         let placed = self.instances.len() as u32;
         for (range, drawn) in ranges.iter_mut().zip(&mut self.drawn) {
@@ -187,7 +189,7 @@ impl Shadows {
             Some(map) => map.lateness(light, eye, sides_m[i]).max(stale(self.stale[i])),
         });
         self.stale.iter_mut().filter(|frames| **frames > 0).for_each(|frames| *frames += 1);
-        // Among equals the finest.
+        // Among maps that are equally late, the finest.
         let latest = (0..CASCADES).rev().max_by(|a, b| lateness[*a].total_cmp(&lateness[*b])).unwrap_or(0);
         std::array::from_fn(|i| lateness[i] > FAR_TOO_LATE || (i == latest && lateness[i] >= 1.0))
     }
@@ -238,7 +240,7 @@ fn side_for(rows: u32) -> u32 {
     wanted.next_multiple_of(maps::BLOCK)
 }
 
-/// Level distance from an eye to the farthest corner of the terrain, m.
+/// Horizontal distance from an eye to the farthest corner of the terrain, m.
 fn farthest_m(bounds: CellRect, eye: DVec3, cell_m: f64) -> f64 {
     let far = [0, 1].map(|i| {
         let ends = [bounds.low[i], bounds.high[i]].map(|v| (f64::from(v) * cell_m - eye[i]).abs());

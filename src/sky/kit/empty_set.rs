@@ -22,7 +22,7 @@ impl Kit {
     /// Creates the tables of a planet, empty.
     ///
     /// # Errors
-    /// Fails for a number of wavelengths in the settings that is out of range.
+    /// Fails if the number of wavelengths in the settings is out of range.
     pub(super) fn empty_set(&self, planet: &Planet, detail: Detail) -> Result<TableSet> {
         static SETS: AtomicU64 = AtomicU64::new(0);
         let device = &self.device;
@@ -57,8 +57,8 @@ impl Kit {
         })
     }
 
-    /// Returns tables that mix two sets of one detail; `weight` is the weight of the second. They are used for an air
-    /// between the airs of both sets.
+    /// Returns tables that mix two sets of the same detail; `weight` is the weight of the second set. The mix is used
+    /// for an air between the airs of both sets.
     ///
     /// # Errors
     /// As [`Kit::empty_set`].

@@ -45,8 +45,8 @@ impl Medium {
     }
 
     /// Densities relative to those at the ground (gas, haze) or at the centre of the layer (ozone). Below altitude 0
-    /// the densities of gas and haze stay at 1: real air 100 m down is 1 % denser, but a scale height of centimetres
-    /// would overflow. Above the top all densities are 0.
+    /// the densities of gas and haze stay at 1: real air 100 m down is 1 % denser, but with a scale height of
+    /// centimetres the density would overflow. Above the top all densities are 0.
     pub fn density(&self, altitude_m: f64) -> [f64; MEDIA] {
         if altitude_m > self.top_m {
             return [0.0; MEDIA];

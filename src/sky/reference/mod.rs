@@ -78,7 +78,7 @@ impl Default for Options {
     }
 }
 
-/// Position of the observer, of the sun, and the direction of the view.
+/// Altitude of the observer, and directions of the sun and of the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Altitude of the observer above the ground's sphere, m, `[-1e5, 1e12]`.
@@ -240,8 +240,8 @@ impl Reference {
         Ok(along)
     }
 
-    /// Light scattered into the first `distance_m` of a ray, and its transmittance. The ray ends earlier if it meets
-    /// the ground's sphere.
+    /// Light scattered into the first `distance_m` of a ray, and the transmittance over this distance. The ray ends
+    /// earlier if it meets the ground's sphere.
     ///
     /// # Errors
     /// As [`Reference::radiance`]; `distance_m` must be in `[0, 1e12]` m.

@@ -2,9 +2,10 @@
 //! density along a ray, in m at density 1.
 //!
 //! All formulas use altitudes: r^2 - R^2 is computed as h (2 R + h). Here r is the radius of a point, h its altitude
-//! and R the radius of the ground. The ray's perigee has the radius r_p and the altitude h_p. A point on a ray is given
-//! by u = sqrt(h - h_p). In u the path element ds = 2 r / sqrt(r + r_p) du has no pole at the perigee, and an
-//! exponential density becomes a Gaussian, so that few Gauss points give 10 digits.
+//! and R the radius of the ground. The perigee, the point of the ray's line nearest to the planet's centre, has the
+//! radius r_p and the altitude h_p. A point on a ray is given by u = sqrt(h - h_p). In u the path element ds = 2 r /
+//! sqrt(r + r_p) du has no pole at the perigee, and an exponential density becomes a Gaussian, so that few Gauss points
+//! give 10 digits.
 
 use super::medium::{MEDIA, Medium};
 use super::quadrature::GAUSS_16;
@@ -113,7 +114,7 @@ impl Ray {
         (altitude_m - self.altitude_m + self.above_perigee_m).max(0.0).sqrt()
     }
 
-    /// Distance from the origin of the point at `u` on `side` of the perigee, m.
+    /// Distance along the ray at which the point at `u` lies, on `side` of the perigee, m.
     pub fn distance_of(&self, u: f64, side: f64) -> f64 {
         side * u * (2.0 * self.perigee_radius_m + u * u).sqrt() - self.radius_m() * self.mu
     }
@@ -248,9 +249,9 @@ pub fn horizon_mu(medium: &Medium, altitude_m: f64) -> f64 {
     -(h * (2.0 * medium.bottom_m + h)).sqrt() / (medium.bottom_m + h)
 }
 
-/// Interval of a ray's whole line in the planet's shadow, for a sun at infinity, as distances from the ray's origin,
-/// which are negative behind it; `None` if all of the line is lit. `mu_s` is the cosine of the sun's zenith angle at
-/// the origin, and `nu` that of the angle between ray and sun.
+/// Interval of a ray's whole line that lies in the planet's shadow, for a sun at infinity. Its ends are distances from
+/// the ray's origin, negative behind the origin. `None` if all of the line is lit. `mu_s` is the cosine of the sun's
+/// zenith angle at the origin, and `nu` that of the angle between ray and sun.
 pub fn shadow(ray: &Ray, mu_s: f64, nu: f64) -> Option<(f64, f64)> {
     // The shadow is a cylinder of the ground's radius. It extends from the plane through the planet's centre away from
     // the sun.

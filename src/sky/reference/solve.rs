@@ -30,11 +30,12 @@ pub struct Solver<'a> {
     panel_altitudes: Vec<f64>,
     has_haze: bool,
     /// Whether the light is ignored, for each sun angle. It is ignored where the sun is so low that order 1 is below
-    /// [`DARK`] of its brightest value everywhere.
+    /// [`DARK`] of its brightest value at every altitude.
     dark: Vec<bool>,
 }
 
-/// Share of the brightest light below which light is ignored. It is a millionth of the stars' light.
+/// Share of the brightest light below which light is ignored. Light of this strength is a millionth of the stars'
+/// light.
 const DARK: f64 = 1e-12;
 
 /// Result of a sweep, the integration over all directions and sun angles, at one altitude.
@@ -355,7 +356,7 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Whether haze contributes noticeably to a sample's light. The look-up of its source is the expensive one.
+/// Whether haze contributes noticeably to a sample's light. The look-up of the haze's source is the expensive part.
 pub fn haze_matters(s: &Sample) -> bool {
     (0..3).any(|c| s.haze[c] > 1e-7 * s.gas[c] && s.haze[c] > 1e-14)
 }

@@ -1,5 +1,5 @@
 //! Source of multiple scattering: light that air or ground has scattered before, and that the air at a point scatters
-//! into a direction. The file has its tables and look-ups.
+//! into a direction. This file has the tables of the source, and their look-ups.
 //!
 //! Gas: the Rayleigh phase function is a polynomial of degree 2, so the light that gas scatters into any direction
 //! follows exactly from the second moments of the radiance, four numbers per wavelength (with the sun in the xz plane).

@@ -62,19 +62,22 @@ impl CuttingInputs {
         check_range("friction", self.friction, least, 1.2, "rad with this soil_metal")
     }
 
-    /// Factor of weight for a plane of failure at `failure` radians: (cot a + cot b) / (2 D).
+    /// Factor of weight for a plane of failure at `failure` radians: (cot a + cot b) / (2 D), with the symbols of
+    /// [`Self::resistance`].
     fn weight_factor(&self, failure: f64) -> f64 {
         0.5 * (cot(self.rake) + cot(failure)) / self.resistance(failure)
     }
 
-    /// Denominator D = cos(a + d') + sin(a + d') cot(b + phi) of all factors.
+    /// Denominator D = cos(a + d') + sin(a + d') cot(b + phi) of all factors. a is the rake, d' the friction angle
+    /// between soil and blade, phi that of the soil, and b the angle of the plane of failure.
     fn resistance(&self, failure: f64) -> f64 {
         let blade = self.rake + self.soil_metal;
         libm::cos(blade) + libm::sin(blade) * cot(failure + self.friction)
     }
 
-    /// Angle of the plane of failure with the least factor of weight, radians. With x = cot b, A = a + d' and
-    /// y = x + cot(A + phi), the factor is proportional to y + k1 + k2 + k1 k2 / y, so it is least at y = sqrt(k1 k2);
+    /// Angle of the plane of failure with the least factor of weight, radians. The symbols are those of
+    /// [`Self::resistance`]. With x = cot b, A = a + d' and y = x + cot(A + phi), the factor is proportional to
+    /// y + k1 + k2 + k1 k2 / y, so it is least at y = sqrt(k1 k2);
     /// k1 k2 = sin(d' + phi) sin(A) / (sin(a) sin(phi) sin^2(A + phi)).
     fn failure(&self) -> f64 {
         let (blade, friction) = (self.rake + self.soil_metal, self.friction);
@@ -92,7 +95,8 @@ fn cot(angle: f64) -> f64 {
 
 /// Returns the force on a blade: P = w (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965, the fundamental equation
 /// of earth moving; factors for a plane wedge by McKyes 1985, eq. 4.11 ff.), with the plane of failure at which Ng is
-/// least.
+/// least. w is the width, d the depth, gamma the weight of the soil per volume, c the cohesion, q the load on the
+/// surface and ca the adhesion; Ng, Nc, Nq and Na are their factors.
 ///
 /// # Errors
 /// [`crate::error::Status::InvalidArgument`] naming a field of `inputs` outside its range. The three angles together

@@ -1,8 +1,8 @@
 //! Heaps: rated heaps of buckets, cones, and the swell of dug soil.
 
 /// Returns the volume, m^3, of soil heaped on a level opening with the sides `sides_m`: a hipped roof that rises by
-/// `rise` per unit of length from all four sides (SAE J296 and ISO 7451 rate excavator buckets with 1, CECE and the
-/// loaders of SAE J742 and ISO 7546 with 0.5).
+/// `rise` per unit of length from all four sides. `rise` is 1 for excavator buckets in SAE J296 and ISO 7451; it is 0.5
+/// in CECE, and for loaders in SAE J742 and ISO 7546.
 pub fn heap_volume_m3(sides_m: [f64; 2], rise: f64) -> f64 {
     let (short, long) = (sides_m[0].min(sides_m[1]), sides_m[0].max(sides_m[1]));
     rise * (short * short * short / 6.0 + short * short * (long - short) / 4.0)

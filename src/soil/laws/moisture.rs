@@ -6,7 +6,7 @@ const PLATEAU_FROM: f64 = 0.1;
 const PLATEAU_TO: f64 = 0.85;
 /// Time constant with which water soaks into ground whose surface is wet, s.
 const SOAK_S: f64 = 3600.0;
-/// Time constant with which ground under a dry surface returns to its own saturation, s.
+/// Time constant with which ground under a dry surface returns to its saturation without rain and sun, s.
 const DRAIN_S: f64 = 86_400.0;
 
 /// Returns the share of its cohesion that soil has at this saturation (the share of its pores that water fills): 0 dry,
@@ -19,8 +19,8 @@ pub fn cohesion_share(saturation: f64) -> f64 {
 }
 
 /// Returns the saturation after `seconds`. `soaked` is the share of wet surface, 0 to 1, and `at_rest` the saturation
-/// without rain and sun. Where the surface is wet, water fills the rest of the pores within an hour or two; where it is
-/// dry, the ground returns to its own saturation within a day or two.
+/// without rain and sun. Where the surface is wet, water fills the rest of the pores within an hour or two; where the
+/// surface is dry, the ground returns to `at_rest` within a day or two.
 pub fn saturation_after(saturation: f64, soaked: f64, at_rest: f64, seconds: f64) -> f64 {
     let [soaks, drains] = [SOAK_S, DRAIN_S].map(|time_s| 1.0 - libm::exp(-seconds / time_s));
     let [up, down] = [soaked * soaks, (1.0 - soaked) * drains];

@@ -7,11 +7,11 @@ const LEAST_EXPONENT: f64 = 0.3;
 /// pressure, kPa, b the shorter side of the plate, m, and z the sinkage, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SinkageSet {
-    /// Cohesive modulus kc, kN/m^(n + 1); in a kind of soil \[0, 1e6\].
+    /// Cohesive modulus kc, kN/m^(n + 1). As part of a kind of soil it must lie in \[0, 1e6\].
     pub kc: f64,
-    /// Frictional modulus kphi, kN/m^(n + 2); in a kind of soil \[0.1, 1e8\].
+    /// Frictional modulus kphi, kN/m^(n + 2). As part of a kind of soil it must lie in \[0.1, 1e8\].
     pub kphi: f64,
-    /// Exponent n; in a kind of soil \[0.1, 3\].
+    /// Exponent n. As part of a kind of soil it must lie in \[0.1, 3\].
     pub n: f64,
 }
 
@@ -49,7 +49,8 @@ impl SinkageSet {
         self.kc / width_m + self.kphi
     }
 
-    /// Returns the sinkage of a plate whose shorter side is `width_m` under a pressure, m. It has no upper limit.
+    /// Returns the sinkage, m, of a plate whose shorter side is `width_m` under a pressure. The sinkage has no upper
+    /// limit.
     pub fn plate_m(&self, width_m: f64, pressure_kpa: f64) -> f64 {
         libm::pow(pressure_kpa / self.modulus(width_m), 1.0 / self.n)
     }
@@ -62,8 +63,8 @@ impl SinkageSet {
         libm::pow(3e-3 * wheel.load_n / resisted, 2.0 / (2.0 * self.n + 1.0))
     }
 
-    /// Returns the sinkage of a rigid wheel, m, from the integral of the pressure over its arc, W = b int (k z^n dx)
-    /// (Wong 2008, eq. 2.38), at most half its radius.
+    /// Returns the sinkage of a rigid wheel, m, at most half the wheel's radius, from the integral of the pressure over
+    /// the wheel's arc: W = b int (k z^n dx) (Wong 2008, eq. 2.38), with the symbols of [`Self::wheel_m`].
     pub fn wheel_integral_m(&self, wheel: &WheelLoad) -> f64 {
         let (mut low, mut high) = (0.0, 0.25 * wheel.diameter_m);
         if self.wheel_load_n(wheel, high) <= wheel.load_n {
@@ -78,8 +79,9 @@ impl SinkageSet {
 
     /// Load that a wheel carries at a sinkage, N.
     fn wheel_load_n(&self, wheel: &WheelLoad, sinkage_m: f64) -> f64 {
-        // With the height above the lowest point u = z0 sin^2(t), z = z0 cos^2(t) and dx = (D - 2 u) / sqrt(D - u)
-        // sqrt(z0) cos(t) dt; the integrand is even and smooth, so the midpoint rule converges fast.
+        // Substitutes u = z0 sin^2(t) for the height above the lowest point, where z0 is the sinkage. Then z = z0
+        // cos^2(t) and dx = (D - 2 u) / sqrt(D - u) sqrt(z0) cos(t) dt. The integrand is even and smooth, so the
+        // midpoint rule converges fast.
         const PARTS: usize = 64;
         let diameter = wheel.diameter_m;
         let part = std::f64::consts::FRAC_PI_2 / PARTS as f64;

@@ -16,19 +16,20 @@ pub struct WallLaw {
 }
 
 impl WallLaw {
-    /// Height of cohesion, 4 c / gamma, m.
+    /// Height 4 c / gamma that scales all heights, m. c is the cohesion, and gamma the weight of the soil per volume.
     fn scale_m(&self) -> f64 {
         4e3 * self.cohesion_kpa / (self.density_kg_m3 * GRAVITY_M_S2)
     }
 
     /// Returns the height at which an upright face fails, m: 4 c / gamma tan(45 + phi/2), on a plane of failure through
-    /// its toe (Culmann 1875).
+    /// its toe (Culmann 1875). phi is the friction angle, c the cohesion, and gamma the weight of the soil per volume.
     pub fn critical_height_m(&self) -> f64 {
         self.scale_m() * libm::tan(0.25 * PI + 0.5 * self.friction)
     }
 
-    /// Returns the height at which a face of this slope, in radians, fails, m: 4 c / gamma sin(beta) cos(phi) /
-    /// (1 - cos(beta - phi)) (Culmann 1875). Infinite for slopes up to the friction angle.
+    /// Returns the height, m, at which a face of the slope beta, radians, fails: 4 c / gamma sin(beta) cos(phi) / (1 -
+    /// cos(beta - phi)) (Culmann 1875), with c and gamma as in [`Self::critical_height_m`]. The height is infinite for
+    /// slopes up to the friction angle phi.
     pub fn face_height_m(&self, slope: f64) -> f64 {
         if slope <= self.friction {
             return f64::INFINITY;
@@ -45,7 +46,7 @@ impl WallLaw {
         self.bisected(|slope| self.face_height_m(slope) > height_m)
     }
 
-    /// Returns the highest face whose toe lies this far in front of its crest, m.
+    /// Returns the height, m, of the highest face whose toe lies `toe_m` in front of its crest.
     pub fn height_over_m(&self, toe_m: f64) -> f64 {
         if toe_m <= 0.0 {
             return self.critical_height_m();

@@ -28,9 +28,9 @@ impl Amount {
 
     /// Returns the sky hidden by the layers up to group `nth` of `count` consecutive groups of this class, eighths.
     ///
-    /// A single group hides the middle of its class. The sums of several groups rise within the class as the expected
-    /// values of random values spread evenly between its bounds: nth / (count + 1) of the way. Groups of FEW have
-    /// nothing below them and share the middle in equal parts.
+    /// A single group hides the middle of its class. The sums of several groups divide the class evenly, as the
+    /// expected values of ordered random numbers do: nth / (count + 1) of the way from its lower to its upper bound.
+    /// Groups of FEW have nothing below them and share the middle in equal parts.
     fn sum(self, nth: usize, count: usize) -> f64 {
         let part = nth as f64 / (count + 1) as f64;
         match self {
@@ -63,13 +63,14 @@ pub(super) fn covers(groups: &[Option<Amount>], rule: CloudAmountRule) -> Vec<f6
     groups.iter().map(|g| g.map_or(UNKNOWN_COVER, |a| a.middle() / 8.0)).collect()
 }
 
-/// Returns the covers if each group counts the sky hidden up to its layer.
+/// Returns the covers if each group gives the sky that its layer and all lower layers hide together.
 ///
-/// A group whose class is below that of a lower group, or unknown, counts in the lower group's class, because a sum
-/// cannot fall. Layers are placed independently of each other (random overlap, as everywhere in Welkin). Of the sky
-/// that the layers below leave open, a layer therefore covers (s - below) / (1 - below), with the sum s of its group
-/// and the sum `below` of the next lower group. Each cover is above 0, and 1 minus the product of the open shares stays
-/// within each group's class. Sums say nothing about a layer above an overcast; it has its own class.
+/// A group of an unknown class, or of a smaller class than some lower group, takes the largest class of the lower
+/// groups, because a sum cannot fall. Layers are placed independently of each other (random overlap, as everywhere in
+/// Welkin). Of the sky that the layers below leave open, a layer therefore covers (s - below) / (1 - below), with the
+/// sum s of its group and the sum `below` of the next lower group. Each cover is above 0, and 1 minus the product of
+/// the open shares stays within each group's class. Sums say nothing about a layer above an overcast; such a layer has
+/// the middle of its own class.
 fn covers_of_sums(groups: &[Option<Amount>]) -> Vec<f64> {
     let mut highest = Amount::Few;
     let classes: Vec<Amount> = groups

@@ -30,8 +30,8 @@ const HUMIDITY: f64 = 0.7;
 /// Livneh and Molotch 2018, Nature Communications 9, 1148). Freezing rain, freezing drizzle and ice pellets occur most
 /// often slightly below 0 C (Cortinas, Bernstein, Robbins and Strapp 2004, Weather and Forecasting 19, 377).
 const FROZEN_C: f64 = -1.0;
-/// Temperature assumed if rain and snow fall together, or an instrument cannot tell them apart, C: on average over the
-/// same stations, both are then equally likely (Jennings et al. 2018).
+/// Temperature assumed if rain and snow fall together, or an instrument cannot tell them apart, C. On average over the
+/// same stations, both are equally likely at this temperature (Jennings et al. 2018).
 const MIXED_C: f64 = 1.0;
 
 /// Returns the upper bound that a group of weather sets to the temperature, C; `None` without one.

@@ -120,9 +120,10 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
     Some(Some(group))
 }
 
-/// Reads `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles; `whole` is a number of miles in the word before. 10 is a
-/// lower bound, because automatic stations measure no further and most observers report no more (FMH-1, table 12-1); 11
-/// and more are exact. A figure with M (less than) counts as the figure itself. The inner `None` is missing (`////SM`).
+/// Reads `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles; `whole` is the previous word if it is a number of miles.
+/// 10 is a lower bound, because automatic stations measure no further and most observers report no more (FMH-1, table
+/// 12-1); 11 and more are exact. A figure with M (less than) counts as the figure itself. The inner `None` is missing
+/// (`////SM`).
 pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Reading<VisibilityGroup>> {
     let figures = text.strip_suffix("SM")?;
     if whole.is_none() && unmeasured(figures) {

@@ -58,9 +58,9 @@ fn class(intensity: Intensity) -> usize {
     }
 }
 
-/// Returns the melted rate of snow, mm/h: the one that gives the reported visibility (`extinction_per_m` is without the
-/// air's). Where fog or blowing snow contribute, snow counts with six tenths of the extinction. Limited to the bounds
-/// of the reported intensity.
+/// Returns the melted rate of snow, mm/h: the one that gives the reported visibility. `extinction_per_m` is the
+/// extinction of this visibility minus that of the air. If fog or blowing snow take part (`shared`), snow gets six
+/// tenths of it. The rate is limited to the bounds of the reported intensity.
 fn snow_rate_mm_h(intensity: Intensity, extinction_per_m: f64, shared: bool) -> f64 {
     let (lo, hi) = SNOW_CLASSES_MM_H[class(intensity)];
     hydrometeors::snow_rate_mm_h(extinction_per_m * if shared { 0.6 } else { 1.0 }).clamp(lo, hi)

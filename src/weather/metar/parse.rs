@@ -49,7 +49,7 @@ pub(super) struct Parsed {
     groups: usize,
 }
 
-/// The words that are still to be read.
+/// The words of a report, and the index of the next one to read.
 struct Reader<'a> {
     report: &'a str,
     words: Vec<Word<'a>>,
@@ -74,7 +74,7 @@ impl<'a> Reader<'a> {
         self.words.get(index).map_or(end, |w| w.at)
     }
 
-    /// Returns the byte range of the words from `first` up to the next one.
+    /// Returns the byte range of the words from the index `first` to the last one that has been read.
     fn bytes_since(&self, first: usize) -> Range<usize> {
         match self.words.get(first..self.next) {
             Some([one, .., last]) => one.at..last.at + last.text.len(),
@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
         fault(self.report, self.at(index), expected, self.words.get(index).map(|w| w.text))
     }
 
-    /// Takes the words from here to RMK or to the end, and returns their text and byte range.
+    /// Takes the words that are left, or those before RMK if `up_to_remarks`. Returns their text and byte range.
     fn rest(&mut self, up_to_remarks: bool) -> (String, Range<usize>) {
         let first = self.next;
         while self.peek(0).is_some_and(|w| !(up_to_remarks && is_remarks(w))) {
@@ -130,7 +130,7 @@ fn is_trend(text: &str) -> bool {
 ///
 /// # Errors
 /// [`Status::Parse`] with line, column and what was expected, if there is no station, no observation, or no weather
-/// group; without a place, if the text is longer than [`MAX_METAR_BYTES`].
+/// group. [`Status::Parse`] without line and column, if the text is longer than [`MAX_METAR_BYTES`].
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -289,7 +289,7 @@ fn pieces(word: &str, p: &mut Parsed) -> bool {
 const MAX_GLUED_BYTES: usize = 40;
 
 /// Splits a word without spaces into groups. At least one of them must have figures, because letters alone form words
-/// of any language. `figures`: whether a group before `word` has some.
+/// of any language. `figures` is whether a group before `word` has figures.
 fn split(word: &str, figures: bool) -> Option<Vec<&str>> {
     let has_figures = |t: &str| {
         groups::wind(t).flatten().is_some()
@@ -325,8 +325,8 @@ fn visibility_of(word: &str) -> Option<Reading<VisibilityGroup>> {
     groups::visibility_miles(None, word).or_else(|| groups::visibility_metres(word))
 }
 
-/// Takes one word that gives wind, visibility, weather or sky now. Returns `false` if the word gives none of these, or
-/// cannot be added to what was read before.
+/// Takes one word that gives the present wind, visibility, weather or sky. Returns `false` if the word gives none of
+/// these, or cannot be added to what was read before.
 fn one(word: &str, p: &mut Parsed) -> bool {
     if word == "CAVOK" {
         p.cavok = true;

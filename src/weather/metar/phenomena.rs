@@ -63,7 +63,7 @@ pub(super) struct WeatherGroup {
 }
 
 impl Phenomenon {
-    /// Whether it is precipitation.
+    /// Whether the phenomenon is precipitation.
     pub fn falls(self) -> bool {
         use Phenomenon as P;
         matches!(

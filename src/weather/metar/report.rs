@@ -1,4 +1,4 @@
-//! Result of reading a report, `MetarReport`: the weather with its circumstances; and the options for reading.
+//! `MetarReport`, the result of reading a report: the weather and its circumstances. Also the options for reading.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ impl Default for MetarOptions {
     }
 }
 
-/// Byte ranges of parts of a report in its text; empty ranges at 0 for parts that it lacks.
+/// Byte ranges of parts of a report in the report's text. A part that the report lacks has an empty range at 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MetarPlaces {
     /// Runway visual ranges, from the first to the last.
@@ -56,7 +56,8 @@ pub struct MetarReport {
     pub corrected: bool,
     /// Whether the report gives only a lower bound of the visibility (CAVOK, 9999, 10SM, P6SM), or no visibility.
     /// `weather.visibility_m` is then [`crate::weather::unlimited_visibility_m`] for its humidity and precipitation,
-    /// but at least the reported bound; if there is none, at most what the reported fog or haze allows.
+    /// but at least the reported bound. Without a reported visibility it is at most what the reported fog or haze
+    /// allows.
     pub visibility_is_minimum: bool,
     /// Lowest visibility in some direction, if the report gives one beside the prevailing visibility (`4000 1500NE`,
     /// `9999 3100`), m. For information only: extinction follows the prevailing one.

@@ -86,7 +86,7 @@ impl Lakes {
         [lake, other]
     }
 
-    /// Removes a lake and puts its water on the cells where it stood, mm.
+    /// Removes a lake. `loose` receives the cells on which it stood, each with the depth of its water there, mm.
     pub fn let_loose(&mut self, terrain: &Terrain, lake: u32, loose: &mut Vec<(CellId, f64)>) {
         let Some((l, _)) = self.of(lake) else { return };
         let (level_mm, held, first) = (l.level_mm, l.held, loose.len());

@@ -4,7 +4,7 @@ use super::{Lakes, PitBelow};
 use crate::terrain::{CellId, Terrain};
 
 /// Element of a hollow's saved tree, a list in postfix order: a pit is a tree of its own, and `Joined` makes one tree
-/// of the two before it.
+/// of the two trees before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LakeBranch {
     Pit(CellId),
