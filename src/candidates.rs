@@ -26,7 +26,7 @@ use crate::{
     stars::candidates::StarMethod,
 };
 
-/// Effects that can be drawn. A room with a new effect adds a variant.
+/// Effects that have candidates. A new room with a file `candidates.rs` adds a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Clear air with haze: the sky behind and the air in front of objects.

@@ -94,7 +94,8 @@ impl Default for ContextDesc {
     }
 }
 
-/// Functions through which a world asks effects for their influence. All worlds use the same functions.
+/// Functions by which a world learns how effects change the light and the clouds of a place. All worlds use the same
+/// functions.
 pub(crate) const COUPLINGS: Couplings =
     Couplings { dim: fog::dim, cloud_over_areas: clouds::cloud_over_areas, night_lux: stars::night_lux };
 
@@ -229,7 +230,7 @@ impl Held {
         std::mem::swap(&mut self.sea, &mut other.sea);
         world.night = self.stars.night();
         self.flow.swap_in(world, &mut other.flow);
-        // The soil reads this before the ground is advanced again.
+        // The soil reads what the ground publishes before the ground is advanced again.
         self.ground.publish(world);
     }
 }
@@ -400,7 +401,7 @@ impl Effects {
             let effect = &mut effects[place];
             let exchange = effect.composes();
             let taken = (!exchange.needs.is_empty()).then(|| given.only(exchange.needs));
-            // Merged by reference: copying ten contributions would cost a microsecond.
+            // Merged by reference: copying the contributions of all effects would cost a microsecond.
             let mut outcome = effect.compose(context, taken.as_ref().unwrap_or(&NO_OUTPUTS));
             let Ok(added) = &mut outcome else { return outcome.map(|_| ()) };
             given.take_layers(added, exchange.gives);
@@ -440,7 +441,8 @@ impl Effects {
         self.sky.tables()
     }
 
-    /// Returns the work of building the default tables, in units of one pixel of a picture with the view's settings.
+    /// Returns the work of building the tables of the sky's default settings, in units of the work of one pixel of the
+    /// sky with the view's settings.
     pub fn rebuild_work(&self) -> f64 {
         self.sky.rebuild_work()
     }

@@ -1,5 +1,5 @@
-//! Errors, all of one form: a stable status code, the path of the wrong field, and a sentence that begins with the
-//! field and says what is accepted.
+//! Errors, all of one form: a stable status code, the path of the wrong field, if the error is about one, and a
+//! sentence that begins with the field and says what is accepted.
 
 use std::{borrow::Cow, fmt};
 
@@ -190,8 +190,8 @@ impl std::error::Error for Error {}
 
 /// Largest number of characters of a host's text that an error repeats.
 const MOST_SHOWN: usize = 120;
-/// Largest size of a sentence that several errors are joined into, bytes. Everything that a host's device or image
-/// lacks is named in one error.
+/// Largest size of a sentence that several errors are joined into, bytes. It is that large because one error names
+/// everything that a host's device or image lacks.
 const MOST_JOINED: usize = 1500;
 /// Largest number of characters of a numeral; [`short_numerals`] rewrites longer ones.
 const MOST_NUMERAL: usize = 24;
@@ -254,8 +254,8 @@ pub(crate) fn beginning(text: &str, most: usize) -> Cow<'_, str> {
     }
 }
 
-/// Describes a syntax error in a TOML text: line, column and fault. The line itself is left out because it may hold a
-/// whole state.
+/// Describes an error that the TOML parser found in a text: line and column, if the error has them, and fault. The line
+/// itself is left out because it may hold a whole state.
 pub fn toml_fault(text: &str, e: &toml::de::Error) -> String {
     let Some(before) = e.span().and_then(|span| text.get(..span.start)) else {
         return format!("TOML parse error: {}", toml_message(e));

@@ -55,7 +55,7 @@
 //! | [`weather::Weather`] | description of the weather, from a report, a preset or fields in SI units |
 //! | [`frame::View`] | one camera, with the data that it keeps from frame to frame |
 //! | [`frame::Frame`] | one picture: camera, the host's images, meaning of colour and depth |
-//! | [`plan`] | choice of the parts that a view leaves out to keep a tolerance or a time |
+//! | [`plan`] | choice of what a view draws in less detail, or leaves out, to keep a tolerance or a time |
 //! | [`error::Error`] | a status, and a sentence that names the parameter and what is accepted |
 //!
 //! Each effect has a room with its model, settings and cost: [`sky`], [`stars`], [`clouds`], [`fog`], [`rain`],

@@ -10,7 +10,7 @@ override CLEAR_SKY: bool = true;
 // Whether the deck hides all of the sky. Light of the clear sky is then left out above the horizon and in the air.
 override DECK_CLOSED: bool = false;
 
-// Ratio of the air's light here to its mean over all places.
+// Ratio of the air's light along the ray to its mean over all places, per channel.
 var<private> air_lit: vec3f = vec3f(1.0);
 
 // Light added on the way to the eye, and transmittance for the light from behind.
@@ -33,7 +33,7 @@ fn air_on(path: SkyPath, d: vec3f) -> Veil {
         return Veil(vec3f(0.0), vec3f(1.0));
     }
     let transmittance = exp(-path.depth);
-    // No direct light reaches the air below a deck. The deck lights it, and distant objects fade to the deck's
+    // No direct light reaches the air below a deck. The deck lights this air, and distant objects fade to the deck's
     // luminance at the horizon.
     var light = frame.deck * overcast_gradation(0.0) * (1.0 - transmittance);
     if !DECK_CLOSED {

@@ -8,7 +8,7 @@ override BOW: bool = false;
 const BOW_ENTRIES: u32 = 160u;
 // Angle between two entries, rad.
 const BOW_STEP: f32 = 0.0069813170;
-// Indices of the two tables: for the weather's fog and rain, and for the columns under rain areas.
+// Indices of the two tables: for drops in the low air, and for drops in the columns of rain areas.
 const BOW_LOW_AIR: u32 = 0u;
 const BOW_COLUMNS: u32 = 1u;
 

@@ -1,5 +1,5 @@
 // Glow of the clouds and of the air in the light of lightning flashes. The clouds' face is the level plane in which the
-// camera sees them: their base from below, their tops from above. The f64 twins are in src/lightning/glow.rs.
+// camera sees the clouds: their base from below, or their tops from above. The f64 twins are in src/lightning/glow.rs.
 //!include "common/frame.wgsl"
 
 // Whether any flash shines.
@@ -7,12 +7,12 @@ override FLASH: bool = false;
 
 // Asymmetry of the scattering in air: haze, fog and rain have 0.7 to 0.9.
 const FLASH_ASYMMETRY: f32 = 0.75;
-// Share of the extinction that counts as loss: scattered light goes on nearly straight.
+// Share of the scattering that counts as loss, because most scattered light goes on nearly straight.
 const FLASH_TAKES: f32 = 0.2;
 // Farthest distance at which the clouds' face is lit, m.
 const FLASH_FARTHEST: f32 = 60000.0;
 
-// Distance along a ray to the clouds' face, m; 0 or less if the ray does not meet it.
+// Distance along a ray to the clouds' face, m; 0 or less if the ray does not meet the face.
 fn flash_way(d: vec3f) -> f32 {
     return frame.flash_plane / select(d.z, 1e-6, abs(d.z) < 1e-6);
 }

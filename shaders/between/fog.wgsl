@@ -6,7 +6,8 @@
 // Whether there is any fog.
 override FOG: bool = true;
 
-// Lays one layer of fog over `behind`, as far as it is drawn. `before` is the air, and other fog, up to its distance.
+// Lays one layer of fog over `behind`, by the drawn share of the fog. `before` is the air and the other fog up to the
+// distance of the layer.
 fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
     let through = mix(vec3f(1.0), layer.transmittance, drawn.y);
     let beyond = mix(1.0, layer.shade, drawn.y) * behind.light - before.light;
@@ -17,7 +18,7 @@ fn with_layer(layer: Fog, before: Veil, behind: Veil) -> Veil {
 // Lays the fog outside all banks over `behind`. A fog far away has air in front of it; fog around the camera is in
 // front of the air (fog/lookup.wgsl).
 fn with_low_air(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
-    // Drops and flakes near the eye that are drawn one by one hide this share themselves.
+    // Drops and flakes near the eye that are drawn one by one hide this optical depth themselves.
     let hidden = drawn.w * depth_of_drawn(range);
     var f = fog_beside_drops(low_air.fog, ray.origin, ray.direction, range, plane, hidden);
     if BOW {
@@ -30,14 +31,14 @@ fn with_low_air(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     return with_layer(f, before, behind);
 }
 
-// Lays the fog outside all banks over `behind`, then the banks `met`, from afar to near, each with the air and that fog
-// in front of it.
+// Lays the fog outside all banks over `behind`, then the banks `met` (banks_met) from far to near, each with the air
+// and the outer fog in front of it.
 fn with_banks(met: u32, ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     measure_banks(met, ray.origin, ray.direction, range, true);
     let paths = bank_paths;
     var veil = with_low_air(ray, range, plane, behind);
     var left = met;
-    // Software drivers draw as many rounds as the pixel of a group that meets most banks.
+    // On software drivers, all pixels of a group take as many rounds as the pixel that meets the most banks.
     for (var i = 0u; i < MOST_BANKS && left != 0u; i++) {
         let k = first_bank(left);
         left &= left - 1u;
@@ -56,7 +57,8 @@ fn with_banks(met: u32, ray: ViewRay, range: f32, plane: f32, behind: Veil) -> V
     return veil;
 }
 
-// Lays fog and fog banks over `behind`, which is the air along the whole ray (sky: its light, transmittance 0).
+// Lays fog and fog banks over `behind`: the air along the whole ray, or in a pixel of the sky the sky's light with
+// transmittance 0.
 fn with_fog(ray: ViewRay, range: f32, plane: f32, behind: Veil) -> Veil {
     if !FOG || drawn.y == 0.0 {
         return behind;

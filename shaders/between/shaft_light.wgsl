@@ -1,9 +1,9 @@
-// Factor of the light in the air where the share of direct light differs from its mean over places.
+// Factor on the light of the air where the share of direct light differs from its mean over places.
 //!include "common/frame.wgsl"
 //!include "sky/lookup.wgsl"
 
 // Ratio of the radiance that a unit of air scatters from sky light to the irradiance of that light on level ground,
-// 1/sr. The light comes evenly from half of all directions (1 / 2 pi), and 0.15 of it again from the ground.
+// 1/sr. Sky light comes evenly from half of all directions (1 / 2 pi), and the ground reflects 0.15 of it.
 const SHAFT_DIFFUSE: f32 = 0.18;
 
 // Returns the ratio of the radiance of the air in a direction to its mean, for each channel, where the share of direct

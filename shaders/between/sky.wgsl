@@ -13,8 +13,8 @@ fn clear_sky_above(d: vec3f) -> vec3f {
     return color_of(sky_radiance_above(d));
 }
 
-// Sky above the horizon without the clouds in front of it. `clear` is the light of the air, with a disc that is visible
-// in it.
+// Sky above the horizon without the clouds in front of it. `clear` is the light of the air, with the disc of sun or
+// moon if it is visible.
 fn open_sky(d: vec3f, clear: vec3f, sky: SkySample) -> vec3f {
     return mix(clear * drawn.z + night_light(sky), frame.deck * overcast_gradation(d.z), sky.deck);
 }
@@ -25,7 +25,7 @@ fn before_sky(behind: vec3f, d: vec3f, sky: SkySample) -> vec3f {
     if FLASH {
         let known = CLOUDS && sky.reach.y > 0.0;
         let way = select(flash_way(d), exp2(0.5 * (sky.reach.x + sky.reach.y)), known);
-        // The deck has no glow of its own.
+        // If the glow of the clouds is known, light is added only for the deck, which has no glow.
         let flat = select(cloud_cover(sky), sky.clouds.a * sky.deck, sky.has_glow);
         light += flash_on_clouds(d, way) * flat;
     }

@@ -6,11 +6,11 @@
 //!include "common/octahedron.wgsl"
 
 // Layers of the sky. The last layer has the stars and the glow between them, which stand behind the sky's own light and
-// replace the night floor. With clouds there are two layers before it (clouds/). The first has their radiance times
-// exposure and their transmittance. The second has log2 of the distances between which they stand, m, the share of
-// direct light that they let through to the surface that the host drew, and the difference of that share in the air in
-// front from the mean. Below the picture, the first layer has the panorama (clouds/round.wgsl) and the second the
-// clouds' glow (between/glow.wgsl).
+// replace the night floor. With clouds there are two layers before it (clouds/). The first has the clouds' radiance
+// times exposure and their transmittance. The second has log2 of the distances between which the clouds stand, m, the
+// share of direct light at the surface that the host drew, and the share of direct light in the air in front of that
+// surface, less its mean over all places. Below the picture, the first layer has the panorama (clouds/round.wgsl) and
+// the second the clouds' glow (between/glow.wgsl).
 @group(0) @binding(11) var sky_layers: texture_2d_array<f32>;
 
 override CLOUDS: bool = false;
@@ -23,7 +23,8 @@ override CLOUD_GLOW: bool = false;
 // Whether the last layer has stars and glow.
 override STARS: bool = false;
 
-// Rate at which a texel of the glow loses weight as the distance of its clouds differs from the pixel's, per octave.
+// Rate, per octave, at which a texel of the glow loses weight as the distance of its clouds differs from that of the
+// pixel's clouds.
 const GLOW_ALIKE: f32 = 12.0;
 // Side of the panorama, texels.
 const ROUND_SIDE: f32 = 96.0;
@@ -31,7 +32,7 @@ const ROUND_SIDE: f32 = 96.0;
 // No clouds: no radiance, transmittance 1.
 const NO_CLOUDS: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
-// Replaces the deck with clouds drawn as a volume, by the share that is drawn.
+// Replaces the share `frame.clouds_drawn` of the deck by `clouds`, which are drawn as a volume.
 fn sky_sample_with(clouds: vec4f) -> SkySample {
     var sky = bare_sky_sample();
     if CLOUDS {
@@ -43,7 +44,7 @@ fn sky_sample_with(clouds: vec4f) -> SkySample {
 }
 
 // Glow of the clouds in a pixel. `reach` is log2 of their distance, m. Of the texels around the pixel, those whose
-// clouds have a similar distance count.
+// clouds have a similar distance have most weight.
 fn glow_in(pixel: vec2i, reach: f32) -> vec3f {
     let size = glow_size(frame.picture);
     let at = (vec2f(pixel) + 0.5) / frame.picture * size - 0.5;
@@ -100,7 +101,7 @@ fn deck_hides_all() -> bool {
     return DECK_CLOSED && (DECK_BEHIND || !CLOUDS);
 }
 
-// Lays the clouds in front of `behind` at this range, by the share of them that is in front.
+// Lays in front of `behind` the share of the clouds that is nearer than `range`.
 fn with_clouds(behind: Veil, sky: SkySample, range: f32) -> Veil {
     if !CLOUDS {
         return behind;

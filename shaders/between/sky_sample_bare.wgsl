@@ -1,19 +1,20 @@
 // Clouds, stars and deck in a direction of the sky, and their values where there is only a deck.
 //!include "between/air.wgsl"
 
-// Share of the light behind the sky's own (stars) that replaces the night floor.
+// Share, 0 to 1, by which the light behind the sky's own (stars) replaces the night floor.
 var<private> behind_share: f32;
 
 struct SkySample {
     // Clouds: radiance times exposure, and transmittance.
     clouds: vec4f,
-    // log2 of the distances between which they stand, m, or 0; share of direct light at the surface that the host drew.
+    // log2 of the distances between which the clouds stand, m, or 0; share of direct light at the surface that the host
+    // drew.
     reach: vec3f,
-    // Difference of the share of direct light in the air in front from the mean over places.
+    // Share of direct light in the air in front, less its mean over all places.
     shafts: f32,
     // Light of lamps and flashes in the clouds divided by their cover, times exposure.
     glow: vec3f,
-    // Whether that light is known.
+    // Whether `glow` is known.
     has_glow: bool,
     // Light behind the sky's own, cd/m^2.
     behind: vec3f,

@@ -3,7 +3,7 @@
 //!include "between/fog.wgsl"
 
 // Lays the clouds, then the fog, in front of `behind`. `behind` is the air along the whole ray or, where the host drew
-// nothing, the sky with its clouds at transmittance 0. `range` is the distance along the ray, `plane` that from the
+// nothing, the sky with its clouds, with transmittance 0. `range` is the distance along the ray, `plane` that from the
 // camera's plane, m; `sky` has the clouds in this pixel.
 fn veil_before(ray: ViewRay, range: f32, plane: f32, behind: Veil, sky: SkySample) -> Veil {
     var veil = behind;

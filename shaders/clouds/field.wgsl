@@ -64,7 +64,7 @@ const SOLID_TEXELS: f32 = 64.0;
 const SECOND_LEVEL: f32 = 0.694;
 // A mean over a width w removes the share 1 - exp(-(w / x)^y) of the variance. These constants hold (x, y): for the
 // even and the cellular sheets with w in distances from cloud to cloud, and for the solid noise with w in sides of its
-// cube. A test holds the numbers (src/clouds/field/map.rs).
+// cube. A test in src/clouds/field/map.rs checks these constants.
 const EVEN_BLUR: vec2f = vec2f(2.12, 1.25);
 const CELLULAR_BLUR: vec2f = vec2f(0.84, 1.9);
 const SOLID_BLUR: vec2f = vec2f(0.14, 1.7);

@@ -22,7 +22,7 @@ struct DepthUniform {
     // Unnormalised ray direction at the picture's centre and its change per unit of ndc. Clip w is the distance along
     // the ray, in units of this vector's length.
     direction: vec3f,
-    // Plane distance per unit of clip w.
+    // Distance from the camera's plane per unit of clip w, m.
     plane_scale: f32,
     direction_dx: vec3f,
     // ln(c far + 1), for logarithmic depth.
@@ -74,7 +74,8 @@ fn depth_is_nan(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7fffffffu) > 0x7f800000u;
 }
 
-// Clip w, or metres for parallel rays. RANGE_SKY at the far end, beyond it, and for NaN.
+// Clip w of a depth sample, or metres along the ray for parallel rays. RANGE_SKY at the far end, beyond it, and for
+// NaN.
 fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     let turned = u.turn_offset + u.turn_scale * depth;
     let pole = u.pole.x + ndc.x * u.pole.y + ndc.y * u.pole.z;
@@ -93,8 +94,8 @@ fn view_depth(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return clamp(w, 0.0, RANGE_SKY);
 }
 
-// x: depth of an object, as view_depth counts it, from its clip w and its distance from the eye, m; the object is moved
-// `nearer` metres towards the eye. y: metres along its ray per unit of that depth.
+// Depth of an object in the unit of view_depth (x), and metres along its ray per unit of that depth (y). `distance` is
+// the object's distance from the eye, m. The object is moved `nearer` metres towards the eye.
 fn depth_of(u: DepthUniform, clip_w: f32, distance: f32, nearer: f32) -> vec2f {
     let slant = distance / max(clip_w, 0.05 * distance);
     let parallel = (DEPTH_KINDS & 2u) != 0u && u.kind == 1u;
@@ -120,17 +121,17 @@ fn written_depth(u: DepthUniform, w: f32) -> f32 {
     return clamp((e - u.turn_offset) / u.turn_scale, 0.0, 1.0);
 }
 
-// Position at this depth, as view_depth counts it.
+// Position at a depth in the unit of view_depth, camera-relative, m.
 fn view_point(u: DepthUniform, depth: f32, ndc: vec2f) -> vec3f {
     return view_origin(u, ndc) + view_step(u, ndc) * depth;
 }
 
-// Distance along the pixel's ray, m.
+// Distance along the pixel's ray to the surface of a depth sample, m; RANGE_SKY without a surface.
 fn view_range(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return min(view_depth(u, depth, ndc) * view_ray(u, ndc).slant, RANGE_SKY);
 }
 
-// Distance from the camera's plane, m.
+// Distance from the camera's plane to the surface of a depth sample, m; RANGE_SKY without a surface.
 fn view_plane(u: DepthUniform, depth: f32, ndc: vec2f) -> f32 {
     return min(view_depth(u, depth, ndc) * u.plane_scale, RANGE_SKY);
 }

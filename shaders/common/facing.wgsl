@@ -14,7 +14,7 @@ struct Facing {
 // Error of an unknown normal, rad.
 const UNKNOWN_FACING: f32 = 10.0;
 
-// Pixel: the depth of its surface, as view_depth counts it, and its position.
+// Pixel: depth of its surface in the unit of view_depth, and position in ndc.
 struct Beside {
     depth: f32,
     ndc: vec2f,

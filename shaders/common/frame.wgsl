@@ -8,7 +8,7 @@ const MAX_FLASHES: u32 = 8u;
 struct FlashSource {
     // Position, camera-relative, m.
     position: vec3f,
-    // Intensity that stands for the light from the clouds' face, cd: k in between/flash.wgsl.
+    // Factor k of the light from the clouds' face, cd (flash_on_clouds in between/flash.wgsl).
     clouds: f32,
     // Luminous intensity in the air, cd; 0 for a source inside a cloud.
     air: f32,
@@ -53,7 +53,7 @@ struct FrameUniform {
     // Share of the direct light of sun or moon that clouds let through.
     direct_share: f32,
     // Extinction of the rain that drawn drops replace, 1/m, and the distance up to which they replace it, m. The veil
-    // leaves this part out.
+    // leaves out this extinction.
     drops: vec2f,
     // Drawn shares of air, fog, clear sky and drops, 0 to 1 (src/plan).
     drawn: vec4f,
@@ -111,7 +111,7 @@ fn frame_ndc(uv: vec2f) -> vec2f {
 // Drawn shares, as frame.drawn. The gauge (plan/gauge.wgsl) changes them to measure the importance of each part.
 var<private> drawn: vec4f;
 
-// Optical depth up to a range of the rain and snow that is drawn as single drops and flakes.
+// Optical depth, up to the distance `range`, of the rain and snow that is drawn as single drops and flakes.
 fn depth_of_drawn(range: f32) -> f32 {
     return frame.drops.x * min(range, frame.drops.y) + frame.flakes.x * min(range, frame.flakes.y);
 }

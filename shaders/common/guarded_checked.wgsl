@@ -1,5 +1,5 @@
 // Version of guarded.wgsl for builds with debug assertions: an infinite value or a NaN passes all limits. A float
-// picture then holds it, and reading the picture back fails; other pictures are magenta there.
+// picture then holds a NaN, and reading the picture back fails; other pictures are magenta in that pixel.
 
 // Whether no channel is infinite or a NaN.
 fn is_finite(v: vec3f) -> bool {

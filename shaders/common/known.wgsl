@@ -1,8 +1,8 @@
 //!include "common/fullscreen.wgsl"
 // Known answers: the test that an OpenGL driver must pass before any other work. CPU side: src/gpu/known.rs.
 //
-// The blocks have the sizes and kinds of those that the sky's first tables read. If a driver delivered wrong bytes, the
-// loops whose bounds come from these blocks might never end.
+// The blocks have the sizes and kinds of those that the shaders of the sky's first tables read. If a driver delivered
+// wrong bytes to those shaders, their loops, whose bounds come from the blocks, might never end.
 
 // 144 bytes, like `SkyAir`.
 struct KnownRow {
@@ -35,7 +35,7 @@ struct KnownJob {
 // 384 bytes, like the quadrature.
 @group(0) @binding(2) var<uniform> rule: array<vec4f, 24>;
 @group(0) @binding(3) var<uniform> job: KnownJob;
-// Written by the queue into a part of a buffer, like the blocks of a view.
+// Block that the queue writes into a part of a buffer, like the blocks of a view.
 @group(0) @binding(4) var<uniform> written: array<vec4u, 5>;
 
 // Index of the first texel for each block.

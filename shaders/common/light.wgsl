@@ -3,9 +3,9 @@
 const MAX_LIGHTS: u32 = 64u;
 
 struct HostLight {
-    // Camera-relative, m.
+    // Position relative to the camera, (east, north, up), m.
     position: vec3f,
-    // Cosine of the angle at which the beam ends; below -1 for a lamp without a beam.
+    // Cosine of the angle at which the beam ends; below -1 for a lamp that shines to all sides.
     end: f32,
     direction: vec3f,
     // 1 / (cosine of the angle up to which the beam is full - `end`).

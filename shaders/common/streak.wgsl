@@ -11,8 +11,8 @@ const LONGEST: f32 = 0.8;
 //   xyz = c d half / |half|
 //   w = c / atanh(c)
 // A streak near the eye is cut to the part of the exposure in which it moves LONGEST d to either side; in that part it
-// hides as much as in the whole exposure. Objects at distance d darken the positions from d (1 - c) to d (1 + c) along
-// a ray. That is atanh(c) / c times the true amount, whatever the camera's direction; w undoes it.
+// hides as much as in the whole exposure. Objects at distance d thus darken a ray from d (1 - c) to d (1 + c), which is
+// atanh(c) / c times too much, whatever the camera's direction. The factor w corrects this.
 fn part_drawn(half: vec3f, d: f32) -> vec4f {
     let whole = length(half) / d;
     let c = min(whole, LONGEST);

@@ -26,7 +26,8 @@ fn tone_filmic(x: Display) -> Display {
     return hable(min(x, vec3f(1e4)) * 2.0) / hable(vec3f(11.2));
 }
 
-// Whether `curve` equals `asked`. False for curves that the pipeline cannot draw.
+// Whether `curve` is `asked`. Always true in a pipeline that draws only this curve, always false in one that cannot
+// draw it.
 fn is_curve(curve: u32, asked: u32) -> bool {
     let bit = 1u << asked;
     return CURVES == bit || ((CURVES & bit) != 0u && curve == asked);

@@ -34,7 +34,7 @@ fn listed(all: u32, room: u32) -> u32 {
     return min(blocks[all - 1u].before + seen_in(all - 1u), room);
 }
 
-// Returns the index of the thing at position `rank` of the list, which must have that many.
+// Returns the index of the thing at position `rank` of the list, which must have more things than `rank`.
 fn thing_at(rank: u32, all: u32) -> u32 {
     // Finds the last block that begins at `rank` or before.
     var block = 0u;
@@ -56,7 +56,7 @@ fn thing_at(rank: u32, all: u32) -> u32 {
         word += 1u;
         bits = blocks[block].seen[word];
     }
-    // A word has at most 32 bits, which also bounds the loop for a list that nothing has filled.
+    // The limit of 31 keeps the loop finite even for a list that no pass has filled.
     for (left = min(left, 31u); left > 0u; left--) {
         bits &= bits - 1u;
     }

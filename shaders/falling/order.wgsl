@@ -1,4 +1,4 @@
-// Computes the position in the list at which each block's things begin, and the number of things in all. Runs in one
+// Computes the position in the list at which each block's things begin, and the total number of things. Runs in one
 // workgroup.
 //!include "falling/list.wgsl"
 

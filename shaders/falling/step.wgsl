@@ -43,7 +43,7 @@ override WIND: bool = false;
 // Standard gravity, m/s^2.
 const GRAVITY: f32 = 9.80665;
 
-// Returns the velocity of the air at `p`, relative to the camera, m/s.
+// Returns the velocity of the air, m/s, at the position `p` relative to the camera.
 fn air_at(p: vec3f) -> vec3f {
     if !WIND {
         return stepping.air;
@@ -53,20 +53,22 @@ fn air_at(p: vec3f) -> vec3f {
     return wind_at(stepping.wind, place, found, stepping.air);
 }
 
-// Returns an offset, given in units of the cell's side, wrapped around and converted to units of 2^-32.
+// Returns an offset, given in sides of the cell, wrapped to at most half a side and converted to units of 2^-32 of the
+// side.
 fn wrapped(cells: vec3f) -> vec3u {
     let part = clamp(cells - floor(cells + 0.5), vec3f(-0.5), vec3f(0.4999999));
     return bitcast<vec3u>(vec3i(part * 4294967296.0));
 }
 
 // Returns the first state of a thing, at its place in the lattice: `away` from the camera, in units of 2^-32 of the
-// side. It falls at `terminal` m/s in still air.
+// side. The thing falls at `terminal` m/s in still air.
 fn begun(s: u32, away: vec3u, terminal: f32) -> State {
     let p = vec3f(bitcast<vec3i>(away)) * (stepping.sides[s] / 4294967296.0);
     return State(away + stepping.eye[s].xyz, s, air_at(p) - vec3f(0.0, 0.0, terminal), 0.0);
 }
 
-// Returns the state of thing `index` of shell `s` after the frame's steps. It falls at `terminal` m/s in still air.
+// Returns the state of thing `index` of shell `s` after the frame's steps. The thing falls at `terminal` m/s in still
+// air.
 fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     var state = from_state;
     let side = stepping.sides[s];
@@ -87,9 +89,9 @@ fn stepped(from_state: State, s: u32, index: u32, terminal: f32) -> State {
     }
     state.place += wrapped(way / side);
     // A thing that leaves the cell through the sides of an axis re-enters through the opposite side, as far inside as
-    // it had gone outside. Its coordinates on the axes after that one are random. Those on the axes before it are
-    // random too, among the positions from which a thing with this motion does not leave along these axes. This keeps
-    // an even distribution even.
+    // it had gone outside. Its coordinates on the later axes are random. Its coordinates on the earlier axes are random
+    // too, but only among the positions from which a thing with this motion does not leave along those axes. An even
+    // distribution thus stays even.
     let course = (way - stepping.moved) / side;
     let left = floor((away + way) / side + 0.5) != vec3f(0.0);
     if any(left) {

@@ -120,8 +120,8 @@ fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
     return rounded_chord(ray.start, ray.way, half, low_air.banks[ray.bank].corner + grown);
 }
 
-// Signed distance of a point of the plan from an ellipse, m, negative inside. Each of the three steps finds the nearest
-// point of the circle that touches and curves as the ellipse does at the last estimate.
+// Signed distance of a point of the plan from an ellipse, m, negative inside. Each of three steps takes the nearest
+// point of the ellipse's circle of curvature at the last estimate; the centre of this circle lies on the evolute.
 fn ellipse_distance(half: vec2f, p: vec2f) -> f32 {
     let q = abs(p);
     let spread = half.x * half.x - half.y * half.y;

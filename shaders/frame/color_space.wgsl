@@ -1,4 +1,4 @@
-// Conversion from the host's colour by its colour space.
+// Conversion of the host's colour to linear light by the host's colour space.
 //!include "common/frame.wgsl"
 //!include "common/tone.wgsl"
 

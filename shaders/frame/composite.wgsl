@@ -16,7 +16,7 @@ override PARTICLES: bool = false;
 override CLOUD_SHADOWS: bool = false;
 
 // Factor for the light on what the host drew, in the shadows of clouds: the light at the position, divided by the mean
-// over positions with which the host has lit it.
+// over all positions. The host has lit its surfaces with this mean.
 fn under_clouds(sky: SkySample, range: f32) -> vec3f {
     if !CLOUD_SHADOWS || range >= RANGE_SKY {
         return vec3f(1.0);
@@ -41,7 +41,7 @@ fn with_drops(veil: Veil, pixel: vec2i) -> Veil {
     return Veil(veil.light * clear + layer.rgb / frame.exposure, veil.transmittance * clear);
 }
 
-// Colour of a pixel with the weather, for the host's target; `host` is its colour without.
+// Colour of a pixel with the weather, for the host's target; `host` is the colour without the weather.
 fn compose(host: vec4f, seen: Seen) -> vec4f {
     drawn = frame.drawn;
     behind_share = frame.behind_drawn;

@@ -32,11 +32,12 @@ fn optical_depth(ray: ViewRay, seen: Seen) -> f32 {
     return -log(max(dot(through, vec3f(0.2126, 0.7152, 0.0722)), 1e-9));
 }
 
-// Error due to what the plan leaves out of air, fog and clear sky: |Y' - Y| / (Y + 0.01), in exposed luminance (1 =
-// white).
+// Error due to what the plan leaves out of air, fog and clear sky: |Y' - Y| / (Y + 0.01), where Y is the exposed
+// luminance (1 = white) and Y' is that of the planned picture.
 fn plan_error(host: vec3f, ray: ViewRay, seen: Seen) -> f32 {
     let sky = sky_sample_in(seen.pixel, seen.range);
-    // All of it, then what the plan draws. Drivers copy the code of a call: a loop has it once.
+    // First everything, then what the plan draws. Drivers copy a function's code to every call; a loop has only one
+    // call.
     var all = 0.0;
     var planned = 0.0;
     for (var i = 0u; i < 2u; i++) {

@@ -8,8 +8,8 @@
 struct FilterFace {
     // As in EnvironmentFace, but in the cube's own axes.
     forward: vec3f,
-    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0 means to halve a level: the
-    // mean of four texels.
+    // Square of the roughness: alpha of the distribution of Trowbridge and Reitz (GGX). 0 halves a level instead: each
+    // texel is the mean of four.
     alpha: f32,
     right: vec3f,
     // Number of sample directions.

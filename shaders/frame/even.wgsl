@@ -1,10 +1,10 @@
 // Coarse grid: sky, air and fog at every fourth pixel, for draws of pixels that are interpolated from it
 // (src/frame/pixels/even.rs).
 
-// Distance of the grid's texels in pixels. The first texel lies by this much before the picture's first pixel; the last
-// texels lie beyond its last pixel.
+// Spacing of the grid's texels, pixels. The first texel lies one spacing before the picture's first pixel, the last
+// texels beyond the picture's last pixel.
 const EVEN_PIXELS: i32 = 4;
-// Light in the grid is multiplied by this and by frame.even_scale, so that white lies in the middle of a half float's
+// Factor for light in the grid, besides frame.even_scale. With both factors, white lies in the middle of a half float's
 // range.
 const EVEN_WHITE: f32 = 64.0;
 // Limit for light in the grid: greater values are too large for half floats.

@@ -1,14 +1,14 @@
 // Finds the cells of the coarse grid in which the weather is even: linear interpolation between the four texels is
-// within a thousandth of the curves through them and their neighbours. Output: log2 of the least and the greatest range
-// of the four texels, m; for other cells the least is greater than the greatest.
+// within a thousandth of the curves through these texels and their neighbours. Output: log2 of the least and the
+// greatest range of the four texels, m; for other cells the least is greater than the greatest.
 //!include "common/fullscreen.wgsl"
 //!include "frame/even.wgsl"
 
 @group(0) @binding(0) var even_weather: texture_2d_array<f32>;
 
-// Light that is added to a texel's before the limit is taken from it: 1/200 of white.
+// Light that is added to a texel's light before the limit is computed from the sum: 1/200 of white.
 const LEAST_LIGHT: f32 = 0.005 * EVEN_WHITE;
-// Limit of the interpolation's error: a share of light + LEAST_LIGHT; for the transmittance, absolute.
+// Limit of the interpolation's error, as a share of light + LEAST_LIGHT; for the transmittance, as an absolute error.
 const MOST_ERROR: f32 = 1e-3;
 
 // Findings about four texels in a row.
@@ -21,7 +21,7 @@ struct Row {
     disc: f32,
 }
 
-// Both layers of a texel of the grid, or of the nearest one at its edge.
+// Both layers of a texel of the grid. Outside the grid, those of the nearest texel.
 fn texel(at: vec2i) -> array<vec4f, 2> {
     let last = vec2i(textureDimensions(even_weather)) - 1;
     let p = clamp(at, vec2i(0), last);
@@ -38,8 +38,8 @@ fn row(at: vec2i, along: vec2i) -> Row {
     // greater. At a step in the light the two second differences have opposite signs and would cancel each other.
     let bent = max(abs(a[0].rgb - 2.0 * b[0].rgb + c[0].rgb), abs(b[0].rgb - 2.0 * c[0].rgb + d[0].rgb)) / 8.0;
     let dimmed = max(abs(a[1].rgb - 2.0 * b[1].rgb + c[1].rgb), abs(b[1].rgb - 2.0 * c[1].rgb + d[1].rgb)) / 8.0;
-    // If the ranges of the two texels differ, a pixel between them may have any range between theirs, and the weather
-    // of that range.
+    // If the ranges of the middle two texels differ, a pixel between the texels may have any range between the two
+    // ranges, and the weather of that range.
     let apart = select(0.0, 0.5, abs(b[0].a - c[0].a) > 0.5);
     let light = max(bent, apart * abs(b[0].rgb - c[0].rgb));
     let through = max(dimmed, apart * abs(b[1].rgb - c[1].rgb));

@@ -25,7 +25,7 @@ fn scale_color(share: f32) -> vec3f {
     return mix(colors[below], colors[below + 1u], at - f32(below));
 }
 
-// Reads the host's images at a pixel; of several samples the first.
+// Reads the host's images at a pixel. If the pixel has several samples, the first is read.
 fn seen_at(in: FullscreenVarying) -> Seen {
     let pixel = vec2i(in.position.xy);
     let ndc = frame_ndc(in.uv);

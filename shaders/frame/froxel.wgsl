@@ -17,7 +17,7 @@ struct Froxel {
     @location(1) through: vec4f,
 }
 
-// Position that a texel stands for; distance along the ray, m.
+// Position whose veil a texel holds. `distance` is along the ray, m.
 struct FroxelPlace {
     ndc: vec2f,
     distance: f32,

@@ -1,4 +1,5 @@
-// Veil for the host's own transparent shaders if there are rain areas: air and fog, with the rain columns in front.
+// Veil for the host's own transparent shaders if there are rain areas: air, clouds and fog, with the rain columns in
+// front.
 //!include "frame/froxel.wgsl"
 //!include "rain/shaft.wgsl"
 
@@ -6,7 +7,8 @@
 fn froxels(in: FullscreenVarying) -> Froxel {
     let at = froxel_place(in.position.xy);
     var veil = froxel_veil(at);
-    // From far to near, as the pass that draws the layer in front of the picture blends them too.
+    // The columns are laid over the veil from far to near. The pass that draws the layer in front of the picture blends
+    // them in the same order.
     for (var k = 0u; k < column_count(); k++) {
         if shaft.rects[k].z <= shaft.rects[k].x {
             // The other columns are not in the picture.

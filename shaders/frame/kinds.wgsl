@@ -8,7 +8,8 @@
 
 override HAS_DEPTH: bool = true;
 
-// Depths of the kinds: sky above the level of the eye, below it, and pixels on which the host drew.
+// Depths of the kinds: sky above the level of the eye, sky and planet's ground below that level, and pixels on which
+// the host drew.
 const KIND_ABOVE: f32 = 0.0;
 const KIND_BELOW: f32 = 0.5;
 const KIND_DRAWN: f32 = 1.0;

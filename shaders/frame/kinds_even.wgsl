@@ -10,7 +10,8 @@ override APART: bool = false;
 // Whether the other pixels have a draw for each kind, or one draw for all.
 override SPLITS: bool = true;
 
-// Depths of the kinds: pixels that are not interpolated, interpolated ones, and those on which the host drew.
+// Depths of the kinds: pixels that are not interpolated, interpolated pixels, and interpolated pixels on which the host
+// drew if APART is true.
 const KIND_UNEVEN: f32 = 1.0;
 const KIND_EVEN: f32 = 0.25;
 const KIND_EVEN_DRAWN: f32 = 0.75;

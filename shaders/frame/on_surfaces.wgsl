@@ -6,7 +6,7 @@
 // Whether the stage SURFACE is drawn.
 override SURFACE: bool = true;
 
-// Host's data on the surface in a pixel, if it gives them: the surface class in red, and the normal.
+// Host's data on the surface in a pixel, if the host gives any: the surface class in red, and the normal.
 @group(0) @binding(9) var host_classes: texture_2d<f32>;
 @group(0) @binding(10) var host_normals: texture_2d<f32>;
 

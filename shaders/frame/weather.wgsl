@@ -8,7 +8,7 @@
 override BACKGROUND: bool = true;
 override MEDIUM: bool = true;
 
-// Whether pixels in which the host drew nothing may lie above the level of the eye, and below it.
+// Whether pixels in which the host drew nothing may lie above the level of the eye, and whether they may lie below.
 override FAR_ABOVE: bool = true;
 override FAR_BELOW: bool = true;
 // Ratio of the optical depth of clouds to their delta-scaled optical depth, in which light scattered straight on counts
@@ -29,7 +29,7 @@ fn ground_under_deck(path: SkyPath) -> vec3f {
 
 // Discs of sun and moon behind clouds. The clouds' transmittance for an image of the disc is lower than their
 // delta-scaled one, which includes light scattered straight on. Negative channels of a disc, whose red lies outside of
-// Rec. 709, are cut, so that it takes no light from the sky around it.
+// Rec. 709, are set to 0, so that the disc takes no light from the sky around it.
 fn disc_light(radiance: Radiance, sky: SkySample) -> vec3f {
     if !DISCS {
         return vec3f(0.0);
@@ -68,8 +68,8 @@ fn weather_over(ray: ViewRay, range: f32, plane: f32, sky: SkySample) -> Veil {
     let is_sky = range >= RANGE_SKY;
     let above = FAR_ABOVE && (!FAR_BELOW || ray.direction.z >= 0.0);
     var veil = Veil(vec3f(0.0), vec3f(1.0));
-    // One path serves ground and air: a driver that compiles and executes both branches then computes it once. The sky
-    // needs none.
+    // One path serves ground and air: a driver that compiles and executes both branches then computes the path once.
+    // The sky above the level of the eye needs no path.
     var path: SkyPath;
     if !(is_sky && above) {
         path = sky_path(ray.direction, range);

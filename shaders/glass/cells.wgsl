@@ -39,7 +39,7 @@ override MAPPED: bool = false;
 @group(0) @binding(1) var cells: texture_2d<u32>;
 // Move of each cell's bead: (volume that moves, units; its new place; speed + 65536 x shape; 256 x volume left behind +
 // RAN + WIPED + target cell). Target cells are numbered 0 to 8 by rows from the lower left of the nine around the bead;
-// 4 is its own.
+// 4 is the bead's own cell.
 @group(0) @binding(2) var moves: texture_2d<u32>;
 // Share of the rain that occluder maps let through to each node, in 1/128.
 @group(0) @binding(3) var mapped: texture_2d<u32>;
@@ -118,7 +118,8 @@ fn perp_dot(a: vec2i, b: vec2i) -> i32 {
     return a.x * b.y - a.y * b.x;
 }
 
-// Returns whether a blade has passed over a point, given in 1/16 cell, during the step, or lies on it.
+// Returns whether a blade passes over a point during the step, or lies on the point at the beginning or the end.
+// `point` is in 1/16 cell.
 fn swept(point: vec2i) -> bool {
     for (var i = 0u; i < 6u; i += 3u) {
         let reach = step.arms[i];
@@ -155,8 +156,8 @@ fn node(index: vec2u) -> u32 {
     return share;
 }
 
-// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between its nodes. Where all rain reaches
-// all cells the loop has no iterations, and a software driver skips it.
+// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between the nodes around it. Where all
+// rain reaches all cells the loop has no iterations, and a software driver skips its body.
 fn reached(cell: vec2i) -> u32 {
     var share = 65536u;
     for (var i = select(0u, 1u, step.limits.y == 0u && !MAPPED); i < 1u; i++) {

@@ -71,7 +71,7 @@ fn decide(in: FullscreenVarying) -> @location(0) vec4u {
     return run(cell, here, law, flags);
 }
 
-// Returns the move of a bead that no other takes in.
+// Returns the move of a bead that no other bead takes in.
 fn run(cell: vec2i, here: vec4u, law: vec4i, flags: u32) -> vec4u {
     let pinned = 180 + i32((cell_hash(cell, step.key.y) >> 8u) % 154u);
     let glides = (here.z & 0xffffu) != 0u || (here.w >> 16u) > WET_FILM || law.w > pinned;

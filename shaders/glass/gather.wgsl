@@ -91,7 +91,7 @@ fn cleared(cell: vec2i, packed_state: u32, ran: bool, wiped: bool) -> u32 {
 fn landed(cell: vec2i, bead_there: Cell, state: u32) -> vec4u {
     var c = bead_there;
     var random = cell_hash(cell, step.key.x + 3u);
-    // With a share s of the rain, two drops at once are rarer by s^2, and three by s^3.
+    // With a share s of the rain, two drops in a step are rarer by the factor s^2, and three by s^3.
     let share = reached(cell);
     let one = part_of(step.arrive.x, share);
     let two = part_of(part_of(step.arrive.y, share), share);

@@ -101,8 +101,8 @@ fn cap(to: vec2f, rho: f32, radius: f32, pixel: f32) -> Water {
     return Water(to * slope, cover, radius, height);
 }
 
-// Returns the water of a cell's bead at `q`, cells from its middle. Its outline is uneven, hangs down, and is drawn out
-// while the bead runs.
+// Returns the water of a cell's bead at the offset `q`, cells, from the bead's middle. The bead's outline is uneven,
+// hangs down, and is drawn out while the bead runs.
 fn bead(cell: vec4u, q: vec2f) -> Water {
     let radius = lens.radius * pow(f32(cell.x), 0.33333333);
     // Reach of the longest tail of the most uneven bead, plus half a pixel.
@@ -176,8 +176,9 @@ fn texel(at: vec2i) -> vec3f {
     return select(c, srgb_decode(c), ENCODED);
 }
 
-// Returns the scene averaged over squares of about 2^detail pixels a side, at least 32. Beyond the texels of the
-// smallest copy, four of them are averaged, so that a lamp does not flash in one pixel of a drop and miss the next.
+// Returns the scene averaged over squares of about 2^detail pixels a side, at least 32. For squares larger than a texel
+// of the smallest copy, four texels are averaged, so that a lamp does not flash in one pixel of a drop and miss the
+// next.
 fn wide_scene(place: vec2f, detail: f32) -> vec3f {
     let apart = 0.25 * exp2(detail) / vec2f(textureDimensions(picture));
     if detail <= 5.0 {
@@ -209,7 +210,7 @@ fn scene(uv: vec2f, detail: f32) -> vec3f {
     return mix(sharp, middle, clamp(detail / 3.0, 0.0, 1.0));
 }
 
-// Returns the texture coordinates of a direction in the picture; (0, 0) is in its first row.
+// Returns the texture coordinates of a direction in the picture; (0, 0) is in the picture's first row.
 fn picture_at(d: vec3f) -> vec2f {
     let clip = lens.clip_x * d.x + lens.clip_y * d.y + lens.clip_z * d.z;
     let ndc = clip.xy / max(clip.z, 1e-3 * length(clip) + 1e-20);
@@ -239,7 +240,7 @@ fn through(d: vec3f, w: Water, uv: vec2f) -> vec3f {
     return mix(scene(picture_at(outer), log2(max(spread, 1.0))), dark, thrown_back);
 }
 
-// Returns the highest water over the point `c` of the glass, cells.
+// Returns the highest water over a point of the glass. `c` is the point's position, cells.
 fn water_over(c: vec2f, hits: f32) -> Water {
     var best = Water(vec2f(0.0), 0.0, 0.0, -1.0);
     let base = vec2i(floor(c));
@@ -270,8 +271,8 @@ fn water_over(c: vec2f, hits: f32) -> Water {
     return best;
 }
 
-// Returns the vector to a point from the pivot of the wiper that reaches it, or of the nearer one if both do; 0 out of
-// their reach.
+// Returns the vector to a point from the pivot of the wiper that reaches the point, or from the nearer pivot if both
+// wipers do; 0 if neither does.
 fn from_pivot(c: vec2f) -> vec2f {
     var best = vec2f(0.0);
     var nearest = 1e9;
@@ -299,7 +300,7 @@ fn streaks(c: vec2f, arm: vec2f) -> f32 {
     return mix(a, b, f * f * (3.0 - 2.0 * f));
 }
 
-// Returns the mist at the height `v` on the glass, m, 0 to 1.
+// Returns the mist, 0 to 1, at the height `v`, m, on the glass.
 fn mist_at(v: f32) -> f32 {
     let height = v / lens.height;
     let cleared = 1.3 * lens.demist;

@@ -14,8 +14,8 @@ struct PaneUniform {
     origin: vec4f,
     along: vec4f,
     up: vec4f,
-    // Drops that each stand for a share of the water. xyz: velocity, (east, north, up), m/s. w: share of the water on
-    // the pane that they bring.
+    // Drops, each of which represents a share of the water. xyz: velocity, (east, north, up), m/s. w: share of the
+    // water on the pane that the drop represents.
     drops: array<vec4f, SIZES>,
 }
 

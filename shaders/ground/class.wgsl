@@ -1,5 +1,5 @@
-// Look of water on the ground: the class of a surface, and how water shows on that class. src/ground/class.rs has the
-// table.
+// Look of water on the ground: the class of a surface, and how water shows on that class. src/ground/class.rs has a
+// table of the classes.
 //!include "ground/normal.wgsl"
 
 // Look of water on vegetation. Its values are those in src/ground/class.rs.

@@ -86,9 +86,10 @@ const FARTHEST_LEVEL: f32 = 6.0;
 // Level that is deeper than any hollow: no water or snow lies there.
 const NO_LEVEL: f32 = 1000.0;
 
-// Returns the level above which the share `covered` of the hollows lies: the inverse of `normal_share`. It solves the
-// cubic y + 0.044715 y^3 = log(odds) / 1.5957691, which has one real root, by the hyperbolic sine of a third of an
-// angle.
+// Returns the level of water that covers the share `covered` of the ground: the depth that the hollows exceed on this
+// share, in units of their root mean square depth. This is the inverse of `normal_share` with the opposite sign. The
+// function solves the cubic y + 0.044715 y^3 = log(odds) / 1.5957691, which has one real root, by the hyperbolic sine
+// of a third of an angle.
 fn level_of(covered: f32) -> f32 {
     let share = clamp(covered, 1e-6, 1.0 - 1e-6);
     let odds = log(share / (1.0 - share)) / 1.5957691;

@@ -1,4 +1,5 @@
-// Normal of the ground that a pixel shows: from the host's image of normals, else from its terrain, else from depth.
+// Normal of the ground that a pixel shows: from the host's image of normals, else from the host's terrain, else from
+// the host's depth.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "ground/terrain.wgsl"
@@ -9,7 +10,7 @@ struct HostSurface {
     facing: Facing,
     // Number of the class in the host's image, 0 for none.
     number: u32,
-    // Unit normal in the host's image; w is 0 if it has none.
+    // Unit normal in the host's image; w is 0 if the image has none here.
     normal: vec4f,
 }
 
@@ -56,8 +57,8 @@ fn settled_facing(f: Facing, up: vec3f, level: f32) -> Facing {
     return Facing(normalize(mix(f.normal, up, share)), mix(f.sure, 1.0, share), f.error * (1.0 - share));
 }
 
-// Returns the share of a reflection that is kept on a surface of this slope if its normal may be wrong by `error`:
-// everything up to half the slope, nothing from twice the slope on.
+// Returns the share of a reflection that is kept on a surface of this slope if the surface's normal may be wrong by
+// `error`: 1 for errors up to half the slope, 0 for errors from twice the slope on.
 fn mirror_left(error: f32, slope: f32) -> f32 {
     return 1.0 - smoothstep(0.5 * slope, 2.0 * slope, error);
 }

@@ -11,8 +11,8 @@ const WET_SNOW: f32 = 0.15;
 const SNOW_WRAP: f32 = 0.12;
 // Width of the edges of patches of snow, in units of the hollows' root mean square depth.
 const SNOW_EDGE: f32 = 0.35;
-// Limits of the albedo that the host's colour would have in full light. Below x, lower than any outdoor ground, the
-// ground counts as in the lamp's shadow; above y it counts as lit.
+// Limits of the albedo that the host's colour would have in full light. Below x, which is less than the albedo of any
+// outdoor ground, the ground counts as in the lamp's shadow. Above y it counts as lit.
 const SHADOWED: vec2f = vec2f(0.015, 0.05);
 // Number of halvings from a cell of the rings' grid to the finest cells of glints.
 const FINEST_GLINT: f32 = 6.0;

@@ -39,9 +39,9 @@ fn kept_off(p: vec3f, fall: f32, wanted: bool) -> f32 {
     return select(0.0, 1.0, mapped_ground(p, ground.wind - vec3f(0.0, 0.0, fall), wanted));
 }
 
-// Returns for each twelfth of the water, from the slowest drops to the fastest, 1 if occluder maps keep it off `p`,
-// else 0. The maps are tested for the slowest and the fastest drops and for two speeds between. Where two of these
-// neighbours differ, bisection finds the twelfth at which the answer changes.
+// Returns for each twelfth of the rain's water, from the slowest drops to the fastest, 1 if occluder maps keep it off
+// `p`, else 0. The maps are tested for the slowest and the fastest drops and for two speeds between. Where the answers
+// for two neighbouring speeds differ, bisection finds the twelfth at which the answer changes.
 fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
     let falls = ground.falls;
     let ends = vec4f(
@@ -76,7 +76,7 @@ fn kept_off_twelfths(p: vec3f) -> array<vec4f, 3> {
 // Returns the share of the rain's water that reaches `p` past occluder maps and, if `boxes`, past boxes. Under a roof,
 // where its underside and its edge bound a drop's path, (time in the box) x (fall speed) is linear in the fall speed.
 // The values at four fall speeds therefore suffice: between them the product is interpolated, and a twelfth of the
-// water reaches `p` where it is negative.
+// water reaches `p` where the product is negative.
 fn rained_on(p: vec3f, boxes: bool) -> f32 {
     let falls = ground.falls;
     let asked = vec4f(falls[0].x, 0.5 * (falls[0].w + falls[1].x), 0.5 * (falls[1].w + falls[2].x), falls[2].w);

@@ -19,8 +19,8 @@ struct TerrainPoint {
     classes: vec4f,
     // Place of the point between the nodes, 0 to 1 east and north.
     part: vec2f,
-    // x: depth of the snow, m. y: 1 where there is snow, else 0, or a value between near its edge. z: wetness. w:
-    // albedo.
+    // x: depth of the snow, m. y: 1 where there is snow, else 0, or a value between near the edge of the snow. z:
+    // wetness. w: albedo.
     snow: vec4f,
     // Gradient of the snow's depth, m per m, (east, north, up).
     drift: vec3f,
@@ -59,7 +59,7 @@ fn terrain_at(at: vec3f) -> TerrainPoint {
     var snow = vec4f(0.0);
     var drift = vec3f(0.0);
     if SNOW {
-        // The snow is stored below the terrain's own rows.
+        // The rows of the snow follow those of the terrain's own values.
         let under = first + vec2i(0, i32(ground.terrain_last.y) + 1);
         let above = under + vec2i(0, 1);
         let corners = array(snow_of(under), snow_of(under + vec2i(1, 0)), snow_of(above), snow_of(above + vec2i(1, 0)));
@@ -68,7 +68,7 @@ fn terrain_at(at: vec3f) -> TerrainPoint {
         let northward = mix(corners[2].x - corners[0].x, corners[3].x - corners[1].x, part.x);
         // From rise per cell to rise per metre.
         drift = east * (eastward * length(ground.terrain_x.xyz)) + north * (northward * length(ground.terrain_y.xyz));
-        // Nodes without snow do not count in the means of its properties.
+        // Nodes without snow do not count in the means of the snow's wetness and albedo.
         snow = vec4f(snow.x, snow.yzw / max(snow.y, 1e-3));
     }
     let normal = normalize(ground.terrain_z.xyz - east * lies.x - north * lies.y);

@@ -9,7 +9,7 @@ struct SurfaceLook {
     soaks: f32,
     // Share of the ground that a closed film covers.
     film: f32,
-    // Root mean square slope of the ground under the film, beyond the film's own slope.
+    // Root mean square slope, along one axis, of the ground under the film, beyond the film's own slope.
     slope: f32,
     // Depth at which standing water covers most of the ground's relief, mm; with 0 no standing water is drawn.
     relief_mm: f32,
@@ -39,7 +39,7 @@ struct GroundUniform {
     entering: f32,
     // Luminance of the lit ground around, cd/m^2 per channel, which downward reflections show.
     ground_light: vec3f,
-    // Level of the film, in units of the hollows' root mean square depth: ground above it is bare.
+    // Level of the film: ground less deep than this is bare, in units of the hollows' root mean square depth.
     film_level: f32,
     // Axes of the pattern of hollows, (east, north, up), and the camera's place along each in its cell of the rings'
     // grid, m.
@@ -77,7 +77,7 @@ struct GroundUniform {
     wind: vec3f,
     // Optical depth of the fog straight up.
     fog_depth: f32,
-    // Fall speeds of the drops in the middle of each twelfth of the water, m/s, from slow to fast.
+    // Fall speeds of the drops in the middle of each twelfth of the rain's water, m/s, from slow to fast.
     falls: array<vec4f, 3>,
     // Rows that map camera-relative east, north and up to the host's terrain: cells east and north of its first node,
     // and metres above its origin.
@@ -95,10 +95,11 @@ struct GroundUniform {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Snow on level, open ground. x: level in the hollows up to which it covers the ground. y: wetness. z: albedo. w:
-    // depth, m; -1 if the terrain's cells have no snow of their own.
+    // Snow on level, open ground. x: level in the hollows up to which the snow covers the ground. y: wetness. z:
+    // albedo. w: depth, m; -1 if the terrain's cells have no snow of their own.
     snow: vec4f,
-    // x: height below which all is the sea's, with its waves, camera-relative, m. Without a sea it lies deep.
+    // x: height of the highest crests of the drawn sea, camera-relative, m. Surfaces below it count as the sea. Without
+    // a drawn sea it is -1e9.
     sea: vec4f,
     // Look of each class; the first one is the context's default.
     looks: array<SurfaceLook, SURFACE_CLASSES>,

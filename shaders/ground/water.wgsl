@@ -97,7 +97,7 @@ struct Water {
     pooled: f32,
     // Share of the ground outside standing water that is under the film.
     filmed: f32,
-    // Share of the darkening of wet ground.
+    // Share of the darkening of wet ground that the surface shows.
     soaked: f32,
 }
 

@@ -11,7 +11,8 @@ const STEEP: f32 = 0.69;
 const GENTLE: f32 = 0.81;
 // Altitudes between which natural ground loses its grass, m.
 const GRASS_ENDS: vec2f = vec2f(1900.0, 2700.0);
-// Cosine of the slope above which dug soil counts as a wall; `WALL` of src/land/cells.rs is its tangent.
+// Cosine of the least slope at which dug soil counts as a wall; `WALL` of src/land/cells.rs is the tangent of this
+// slope.
 const WALL: f32 = 0.78;
 // Change of the albedo of dug soil by the fine and by the broad noise of amplitude 1, as shares of this albedo.
 const DUG_VARIES: vec2f = vec2f(0.14, 0.09);
@@ -99,7 +100,7 @@ fn ground_luminance(in: LandVarying, footprint: f32, facet: vec3f) -> vec3f {
     let firm = mix(cosine, 1.0, min(4.0 * soil.a, 1.0));
     let albedo = (1.0 - soil.a) * ground_albedo(class_shares(uv), firm, altitude, noise) + soil.rgb;
     let lit = max(vec2f(dot(normal, land.sun.xyz), dot(normal, land.moon.xyz)), vec2f(0.0));
-    // A dug wall at an angle to the lattice is a stair of cells, whose steps cast no shadows on each other.
+    // A dug wall at an angle to the lattice is a stair of cells. The shadows of its steps on each other are left out.
     let is_wall = soil.a > 0.0 && facet.z < WALL;
     let share = shadow_share(in.place, facet, select(0.0, land.cell_m, is_wall));
     let seen = lit * mix(vec2f(1.0), vec2f(share), land.shadow.shaded.xy);
@@ -108,8 +109,8 @@ fn ground_luminance(in: LandVarying, footprint: f32, facet: vec3f) -> vec3f {
     return albedo * (direct + land.sky_lux.rgb * open + land.bounce_lux.rgb * (1.0 - open)) / PI;
 }
 
-// Returns the host's colour of a fragment. Discards it where the host's mask keeps its own, and where there is no
-// ground.
+// Returns the host's colour of a fragment. Discards the fragment where the host's mask keeps the host's pixel, and
+// where there is no ground.
 fn shown(in: LandVarying) -> vec4f {
     // Side of the square that a pixel covers on the ground.
     let area = cross(dpdx(in.place), dpdy(in.place));
@@ -142,7 +143,7 @@ struct WithDepth {
     @builtin(frag_depth) depth: f32,
 }
 
-// For logarithmic depth, which the fragment writes.
+// Draws with logarithmic depth, which the fragment stage writes.
 @fragment
 fn logarithmic(in: LandVarying) -> WithDepth {
     return WithDepth(shown(in), written_depth(frame.depth, 1.0 / max(in.position.w, 1e-20)));

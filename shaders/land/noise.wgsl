@@ -22,7 +22,7 @@ fn level_noise(low: vec2u, high: vec2u, rest: u32, share: vec2f) -> f32 {
     );
 }
 
-// Place from the eye, m, in cells of an octave's lattice.
+// Converts a place, m from the eye, to cells of an octave's lattice.
 fn octave_place(octave: Octave, place: vec3f) -> vec3f {
     let turned = vec3f(
         octave.turn.x * place.x - octave.turn.y * place.y,
@@ -58,8 +58,8 @@ fn octave_cell(octave: Octave, place: vec3f) -> OctaveCell {
 
 // Number of octaves of clods: all those of the fine noise but the longest.
 const CLOD_OCTAVES: u32 = 3u;
-// Height of clods over their length. The heights then have a standard deviation of 2.3 cm, a random roughness between
-// that of harrowed and of ploughed soil (Renard et al. 1997, chapter 5).
+// Ratio of the height of clods to their length. The heights then have a standard deviation of 2.3 cm, a random
+// roughness between that of harrowed and of ploughed soil (Renard et al. 1997, chapter 5).
 const CLOD_HEIGHT: f32 = 0.085;
 
 // Value noise of four cells of a level lattice, and its change across the square in both directions. Arguments are
@@ -111,7 +111,7 @@ fn fine_noise(place: vec3f, footprint: f32) -> f32 {
     return sum;
 }
 
-// Noise of patches, over the plan.
+// Noise of patches: a function of the place east and north alone.
 fn broad_noise(place: vec3f, footprint: f32) -> f32 {
     var sum = 0.0;
     for (var i = OCTAVES / 2u; i < OCTAVES; i++) {

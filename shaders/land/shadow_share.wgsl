@@ -42,8 +42,8 @@ fn shadow_place(map: Cascade, place: vec3f, facet: vec3f, slack_m: f32) -> Shado
     return ShadowPlace(vec2f(dot(map.u, at), dot(map.v, at)), dot(map.depth, at) + bias, slope, map.texel.x);
 }
 
-// Share of the four texels around a place, shifted by `off` texels, that lets the light pass, interpolated. The plane
-// may be higher than a texel's depth by its slope over one texel.
+// Share of the four texels around a place, shifted by `off` texels, that lets the light pass, interpolated. The
+// triangle's plane may be higher than a texel's depth by the plane's slope over one texel.
 fn compared(layer: u32, at: ShadowPlace, off: vec2f) -> f32 {
     let step = off * at.texel;
     let depth = at.depth + dot(at.slope, step) + at.texel * (abs(at.slope.x) + abs(at.slope.y));
@@ -103,8 +103,8 @@ fn wide_share(layer: u32, at: ShadowPlace, radius: f32, turns: u32) -> f32 {
     return sum / f32(COMPARISONS);
 }
 
-// Sum of the depths of what hides the light within a radius, texels, and their number. They are read at one place in
-// the middle, six on the rim and three halfway. `turns` is PLACES, or 0 for none.
+// Sum of the depths of what hides the light within a radius, texels, and their number. The depths are read at one place
+// in the middle, six on the rim and three halfway. `turns` is PLACES, or 0 for none.
 fn hidden_around(layer: u32, at: ShadowPlace, radius: f32, turns: u32) -> vec2f {
     var found = vec2f(0.0);
     var towards = vec2f(radius, 0.0);

@@ -25,8 +25,8 @@ struct Octave {
 // Shadow maps, finest first.
 const CASCADES: u32 = 4u;
 
-// Square shadow map across the light, around a centre near the eye. Places are in metres from the eye along the
-// lattice's axes; depth 0 is farthest from the light.
+// Square shadow map perpendicular to the light, around a centre near the eye. Places are in metres from the eye along
+// the lattice's axes; depth 0 is farthest from the light.
 struct Cascade {
     // Rows of the matrix from a place to texture coordinates and depth.
     u: vec4f,
@@ -35,8 +35,8 @@ struct Cascade {
     // x: distance between depth 0 and 1, m. y: square of the map's side, divided by this distance, m. z: 1 / (1.2 x
     // half of the side), 1/m. w: distance from the centre, along the light, at depth 0, m.
     size: vec4f,
-    // Side of a texel, in texture coordinates and in depth; radius, texels, of the disc of the light past something at
-    // a depth of 1 above a place; depth per metre.
+    // x: side of a texel in texture coordinates. y: side of a texel in units of depth. z: radius of the light's disc,
+    // texels, for each unit of depth between a place and what hides the disc there. w: depth per metre.
     texel: vec4f,
 }
 
@@ -49,16 +49,17 @@ struct LandShadow {
 }
 
 struct LandUniform {
-    // From the lattice's axes about the eye, m, to clip space.
+    // Matrix from metres about the eye, along the lattice's axes, to clip space.
     clip: mat4x4f,
-    // Columns: from the lattice's axes to east, north, up at the camera.
+    // Columns of the rotation from the lattice's axes to east, north, up at the camera.
     to_local: array<vec4f, 3>,
-    // Place of the eye in its cell; its height above the terrain's origin as a sum of two floats, m.
+    // x, y: place of the eye in its cell, cells. z, w: height of the eye above the terrain's origin, m, as a sum of two
+    // floats.
     eye: vec4f,
     cell_m: f32,
-    // Height of the eye above the reference of distances, cells.
+    // Vertical distance in all distances: height of the eye above one reference height, cells.
     above: f32,
-    // Weight of horizontal distances: 0 for parallel rays.
+    // Weight of the horizontal distance in distances; 0 for parallel rays.
     spread: f32,
     // Altitude of the terrain's origin, m.
     altitude: f32,
@@ -74,7 +75,7 @@ struct LandUniform {
     sun_lux: vec4f,
     moon: vec4f,
     moon_lux: vec4f,
-    // Light of the sky on level ground, and of the ground on a surface that faces down, lux.
+    // Light of the sky on level ground, and light that the ground reflects onto a surface that faces downwards, lux.
     sky_lux: vec4f,
     bounce_lux: vec4f,
     // Materials by class number.
@@ -88,7 +89,8 @@ struct LandUniform {
 @group(1) @binding(1) var page_heights: texture_2d<f32>;
 // Slopes to the east and the north, on the page's level and on the next coarser one.
 @group(1) @binding(2) var page_slopes: texture_2d<f32>;
-// Shares of classes 0 to 3; of classes 4 to 6, with the presence of ground.
+// Shares of the classes: 0 to 3 in `page_classes`, 4 to 6 in `page_ground`, whose last channel is 1 where there is
+// ground.
 @group(1) @binding(3) var page_classes: texture_2d<f32>;
 @group(1) @binding(4) var page_ground: texture_2d<f32>;
 @group(1) @binding(5) var page_sampler: sampler;

@@ -27,7 +27,7 @@ fn slot_corner(slot: u32, side: i32) -> vec2i {
     return vec2i(i32(slot % SLOTS_IN_ROW), i32(slot / SLOTS_IN_ROW)) * side;
 }
 
-// Place from the eye of a vertex of a page, along the lattice's axes. `cell` is counted from the cell below the eye.
+// Place of a page's vertex along the lattice's axes, m from the eye. `cell` is counted from the cell below the eye.
 fn vertex_place(cell: vec2i, height: f32) -> vec3f {
     return vec3f((vec2f(cell) - land.eye.xy) * land.cell_m, (height - land.eye.z) - land.eye.w);
 }

@@ -15,7 +15,7 @@ struct ChannelUniform {
     pixel_sr: f32,
     // Size of the target, pixels.
     size: vec2f,
-    // Area of a pixel for parallel rays, m^2.
+    // Area of a pixel for parallel rays, m^2; 0 otherwise.
     pixel_m2: f32,
     // Radius of a channel, m.
     radius: f32,

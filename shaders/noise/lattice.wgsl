@@ -63,7 +63,8 @@ fn gradient2(cell: vec2u, at: vec2f, period: vec2u, key: u32) -> f32 {
     return mix(low, high, t.y);
 }
 
-// Interpolates the four corners of a cell's face; `left` and `right` are the hashes of its columns.
+// Interpolates the four corners of a cell's face; `left` and `right` are the hashes of the face's two coordinates along
+// x.
 fn gradient_face(left: u32, right: u32, y: u32, far_y: u32, z: u32, at: vec3f, t: vec3f) -> f32 {
     let low = mix(
         ramp3(scramble(scramble(left + y) + z), at),

@@ -1,9 +1,9 @@
-// Computes a mip level from the one above it: the mean of 2 x 2 or 2 x 2 x 2 texels in whole bytes, halves rounded up.
-// The result equals the CPU's (src/noise/image.rs) to the bit.
+// Computes a mip level from the next finer one: the mean of 2 x 2 or 2 x 2 x 2 texels in whole bytes, halves rounded
+// up. The result equals the CPU's (src/noise/image.rs) to the bit.
 //!include "common/fullscreen.wgsl"
 
 struct Shrink {
-    // Size of the level above.
+    // Size of the finer level, texels.
     above: vec3u,
     // Slice of the level that is being drawn.
     z: u32,

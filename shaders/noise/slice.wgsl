@@ -2,12 +2,12 @@
 //!include "common/fullscreen.wgsl"
 //!include "noise/lattice.wgsl"
 
-// This constant is not in the block: a software driver compiles another shader for each value of a loop's bound in a
-// block, at every draw.
+// Number of octaves that the texels can show. This constant is not in the block: a software driver compiles another
+// shader for each value of a loop's bound in a block, at every draw.
 override OCTAVES: u32 = 1u;
 
 struct Slice {
-    // Cells of the first octave along each axis; the next one has twice as many.
+    // Cells of the first octave along each axis; each further octave has twice as many as the one before.
     frequency: vec3u,
     z: u32,
     // Logarithm to base 2 of the texture's size along each axis.
@@ -18,7 +18,7 @@ struct Slice {
     // Amplitude of the first octave, and its ratio from one octave to the next.
     amplitude: f32,
     persistence: f32,
-    // Mean of the octaves that are too fine for the texels.
+    // Sum of the means of the octaves that are too fine for the texels.
     gradient_rest: f32,
     cellular_rest: f32,
     pad1: u32,

@@ -66,11 +66,12 @@ fn gauged(p: Looked) -> vec4u {
         behind_share = frame.behind.y * drawn.z;
         shown[k] = exposed(p.host, weather_over(ray, p.range, p.plane, sky_sample_for(k, ray, p.sky)));
     }
-    // Error measure of the whole library, (Y' - Y) / (Y + 0.01) in exposed luminance (1 = white).
+    // Error measure of the whole library, (Y' - Y) / (Y + 0.01) in exposed luminance (1 = white). Y' is the luminance
+    // without the part.
     let less = vec4f(shown[1], shown[2], shown[3], select(shown[0], shown[4], frame.compositions > 4u));
     let change = clamp((less - shown[0]) / (shown[0] + 0.01) * (1.0 - p.mask), vec4f(-6e4), vec4f(6e4));
-    // The real clouds are not sampled here, because they may not be drawn now. Instead, as many pixels as clouds cover,
-    // evenly spread, count as in a cloud.
+    // The real clouds are not sampled here, because they may not be drawn now. Instead, evenly spread pixels count as
+    // in a cloud, in the share that `slant_cover` gives.
     let cell = floor((0.5 + 0.5 * p.ndc) * vec2f(64.0, 36.0));
     let in_cloud = fract(dot(cell, vec2f(0.7548777, 0.5698403))) < slant_cover(ray.direction);
     let with_volume = select(shown[IN_GAP], shown[IN_CLOUD], in_cloud);

@@ -28,7 +28,8 @@ struct Column {
     top: f32,
     // Extinction, 1/m.
     extinction: f32,
-    // Distance that the pattern has fallen, m; phase offset of its waves, rad; factor by which it is finer.
+    // Distance that the pattern has fallen, m; phase offset of the pattern's waves, rad; factor by which the pattern of
+    // a small area is finer, 1 to 10.
     fallen: f32,
     turn: f32,
     fine: f32,
@@ -42,8 +43,8 @@ struct Column {
     radius: f32,
     // Depth below the cloud over which the rain sets in, m.
     soft: f32,
-    // Sides of a polygon. x, y: inward unit normal. z: offset, m. A point p of the plan is dot(normal, p) + offset
-    // inside a side.
+    // Sides of a polygon. x, y: inward unit normal. z: offset, m. A point p of the plan lies dot(normal, p) + offset
+    // inside a side, m.
     edges: array<vec4f, MAX_CORNERS>,
 }
 
@@ -73,7 +74,7 @@ fn column_plan(i: u32, p: vec3f) -> vec2f {
     return column_turned(i, away);
 }
 
-// Returns the depth of a position in the plan inside the border, m.
+// Returns how far inside the border a position in the plan lies, m; negative outside.
 fn column_depth(i: u32, q: vec2f) -> f32 {
     let semi = columns.list[i].semi;
     let k = q / semi;

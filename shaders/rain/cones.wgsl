@@ -103,7 +103,7 @@ fn open_share(uv: vec2f, j: u32, range: f32) -> f32 {
     let open = textureSampleLevel(open_parts, open_sampler, uv, j, 0.0);
     let seen = clamp(4.0 * before - vec4f(0.0, 1.0, 2.0, 3.0), vec4f(0.0), vec4f(1.0));
     // An open quarter behind a sheltered one is known to be open only from its middle, where it was tested. Where the
-    // surface at `range` cuts the quarter, it counts from that middle on.
+    // surface at `range` cuts the quarter, the quarter counts from that middle on.
     let sure = min(open, open.xxyz);
     return dot(sure * seen + (open - sure) * max(2.0 * seen - 1.0, vec4f(0.0)), vec4f(0.25));
 }

@@ -51,8 +51,8 @@ struct RainUniform {
     // Per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that moves with the air. w:
     // distance that a drop with a speed of one unit has fallen.
     cell: array<vec4u, SHELLS>,
-    // Per shell, m. x: side of the cell. y and w: distances at which it begins to fade in and is in full, while the
-    // smaller shell fades out. z: distance at which it begins to fade out.
+    // Per shell, m. x: side of the cell. y and w: distances at which the shell begins to fade in and is drawn in full,
+    // while the next smaller shell fades out. z: distance at which the shell begins to fade out.
     shell: array<vec4f, SHELLS>,
     // Per class. x: diameter, m. y: fall speed, SPEED_UNIT. z: number of drops in a shell of the classes up to this
     // one.

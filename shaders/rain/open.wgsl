@@ -1,6 +1,6 @@
-// Tests of the places along rays to which shelters let rain pass, for the cones, on a coarse grid over the picture.
-// Whether rain reaches a place on a ray depends only on the ray and the distance, not on the host's picture. The cones
-// can therefore interpolate between the grid's rays up to any depth (rain/cones.wgsl).
+// Tests, for the cones, which places along rays rain reaches past shelters. The rays form a coarse grid over the
+// picture. Whether rain reaches a place on a ray depends only on the ray and the distance, not on the host's picture.
+// The cones can therefore interpolate between the grid's rays up to any depth (rain/cones.wgsl).
 //!include "common/fullscreen.wgsl"
 //!include "rain/drops.wgsl"
 //!include "rain/cone_block.wgsl"
@@ -20,8 +20,8 @@ fn open_quarters(j: u32, d: vec3f, between: f32) -> vec4f {
     let velocity = rain.wind - vec3f(0.0, 0.0, cones.fall);
     var open = vec4f(1.0);
     for (var i = select(0u, 4u, j < cones.first); i < 4u; i++) {
-        // The first quarter is tested at its near end, because it stands for the places behind that end; the others in
-        // their middles.
+        // The first quarter is tested at its near end, because it stands for the places behind that end. The other
+        // quarters are tested in their middles.
         let at = select((f32(i) + 0.5) * 0.25, 0.0, i == 0u);
         let range = mix(stretch.x, stretch.y, at);
         // Boxes are widened by the distance between rays. The rain that a pixel interpolates from the rays around it is

@@ -39,7 +39,7 @@ struct ShaftUniform {
     own_near: f32,
     // Indices of the drawn columns from far to near, four to a vector.
     order: array<vec4u, 4>,
-    // Rectangles of the picture that contain them, in the same order: left, bottom, right, top, ndc.
+    // Rectangles of the picture that contain these columns, in the same order: left, bottom, right, top, ndc.
     rects: array<vec4f, MAX_AREAS>,
     // Waves of the pattern. x, y, z: wave numbers to the right, ahead and up, 1/m. w: phase, rad.
     waves: array<vec4f, SHAFT_WAVES>,
@@ -54,11 +54,11 @@ struct ShaftVarying {
     @location(1) ndc: vec2f,
 }
 
-// Part of a ray inside a column.
+// Segment of a ray inside a column.
 struct Met {
     // Optical depth that the column adds.
     depth: f32,
-    // Distances along the ray of its ends, m.
+    // Distances of the segment's ends along the ray, m.
     first: f32,
     last: f32,
     // Mean of the pattern over the column's front, relative to its mean over all places.
@@ -74,8 +74,8 @@ fn shaft_vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) ins
     return ShaftVarying(vec4f(at.x, at.y * frame.y_sign, 0.0, 1.0), column, at);
 }
 
-// Returns the interval of t in which the point q + u t of the plan is at least `inset` m inside the outline, (first,
-// last): a ray's position in the plan at the distance t. last < first if there is none.
+// Returns the interval of distances t, (first, last), over which a ray lies at least `inset` m inside the outline. The
+// ray's position in the plan is q + u t. last < first if there is no such interval.
 fn column_chord(i: u32, q: vec2f, u: vec2f, inset: f32) -> vec2f {
     let inner = columns.list[i].semi - inset;
     let e = q / max(inner, vec2f(1.0));
@@ -132,8 +132,8 @@ fn column_pattern(i: u32, q: vec2f, u: vec2f, z: f32, dz: f32, a: f32, b: f32) -
     return max(1.0 + PATTERN_AMOUNT * smoothstep(PATTERN_FIRST, PATTERN_FULL, middle) * sum, 0.0);
 }
 
-// Returns two means over the piece of the ray from `a` to `b`, by four Gauss points: of the column's share, and of this
-// share times the share of its rain that has left the cloud.
+// Returns two means over the piece of the ray from `a` to `b`, by four Gauss points: of the column's share of the rain,
+// and of this share times the share of the column's rain that has left the cloud.
 fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     let x = vec4f(0.06943184, 0.33000948, 0.66999052, 0.93056816) * (b - a) + a;
     let weights = vec4f(0.17392742, 0.32607258, 0.32607258, 0.17392742);
@@ -147,7 +147,7 @@ fn piece_mean(i: u32, origin: vec3f, d: vec3f, a: f32, b: f32) -> vec2f {
     return vec2f(dot(share, vec4f(1.0)), dot(share, begun));
 }
 
-// Returns the part of a ray inside a column up to `range`; last <= first if there is none.
+// Returns the segment of a ray inside a column, up to `range`; last <= first if there is none.
 fn column_met(i: u32, origin: vec3f, d: vec3f, range: f32) -> Met {
     let lean = columns.list[i].lean;
     let ground = columns.list[i].ground;

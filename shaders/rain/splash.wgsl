@@ -1,11 +1,12 @@
-// Splashes on the surfaces in the host's picture: slots of a world-fixed grid in which drops land one after another, as
-// many as the flux brings. Slot and time of each splash follow from (seed, cell, slot, time). The entry points read the
-// depth: drops_view.wgsl.
+// Splashes on the surfaces in the host's picture. They are in slots of a grid that is fixed to the world. Drops land in
+// each slot one after another, as many as the flux brings. Slot and time of each splash follow from (seed, cell, slot,
+// time). The entry points read the depth: drops_view.wgsl.
 //!include "common/facing.wgsl"
 //!include "common/guarded.wgsl"
 //!include "rain/drops.wgsl"
 
-// Number of groups of splashing drops; all groups have the same number of drops, and each has its size.
+// Number of groups of splashing drops; all groups have the same number of drops, and each group is drawn with its mean
+// size.
 const SIZES: u32 = 8u;
 
 // Block of the splashes.
@@ -28,7 +29,7 @@ struct SplashUniform {
     ground: f32,
     // Distance at which splashes have faded out, m.
     reach: f32,
-    // Error of the host's depth: an absolute step, and a relative part.
+    // Rounding error of the host's depth: absolute, and relative to the value.
     depth_grain: vec2f,
     // Per group: diameter, m, and fall speed, m/s.
     sizes: array<vec4f, SIZES>,
@@ -83,7 +84,7 @@ fn arrival_of(instance: u32) -> Arrival {
     if AREAS {
         share *= local_splashes(vec3f(xy, splash.ground));
     }
-    // Slopes to windward get more than level ground. The bound is that of a slope of 45 degrees.
+    // Slopes that face the wind get more drops than level ground. The bound `most` is that of a slope of 45 degrees.
     let most = 1.0 + length(rain.wind.xy) / size.y;
     let landing = Landing(xy, fract(time), select(0.0, fade, value.z < share * most));
     return Arrival(landing, value.z / max(share, 1e-9), size.x, size.y, instance);
@@ -140,22 +141,24 @@ fn search_from(landing: Landing, z: f32) -> Search {
     let low = max(max(lows.x, lows.y), max(lows.z, lows.w)) + 1e-3;
     let high = min(min(highs.x, highs.y), min(highs.z, highs.w)) - 1e-3;
     let begin = clamp(z, low, max(low, high));
-    // Starts with the gap of a level plane at this depth below the eye: -1 at the eye's height, 0 at the plane.
+    // The first step assumes a level plane at the depth `eye` below the camera. Its gap is -1 at the camera's height
+    // and 0 at the plane.
     let eye = clamp(-splash.ground, 0.5, 10.0);
     return Search(begin, low, select(-1e9, high, landing.fade > 0.0), vec2f(begin + eye, 1e9), vec2f(0.0));
 }
 
 // Returns the gap of a point: how far it lies beyond the visible surface on its ray, relative to the range of the
-// surface. Along a vertical line in front of a plane, the gap is linear in the point's height, whatever the slope.
+// surface. Along a vertical line in front of a plane, the gap is linear in the point's height, whatever the plane's
+// slope.
 fn gap_of(p: vec3f, ndc: vec2f, surface: vec3f) -> f32 {
     let ray = view_ray(rain.depth, ndc);
     return dot(p - ray.origin, ray.direction) / max(dot(surface - ray.origin, ray.direction), 1e-3) - 1.0;
 }
 
 // Returns the search after the gap at its height is known. While the surface lies to one side of all reads, the search
-// steps by secants, or by halving where a secant leaves the picture. Then it uses false position between the two reads
-// that enclose the surface, as in Dowell and Jarratt 1971 (Illinois), who halve the gap of an end that stays. In front
-// of a wall, where the gap does not change, it halves the interval.
+// steps by secants, or by halving where a secant leaves the picture. Once two reads enclose the surface, the search
+// uses false position between them, as in Dowell and Jarratt 1971 (Illinois), who halve the gap of an end that stays.
+// In front of a wall, where the gap does not change, the search halves the interval.
 fn closer(search: Search, gap: f32) -> Search {
     let under = gap > 0.0;
     let low = select(search.low, search.z, under);
@@ -229,7 +232,7 @@ struct Crown {
     width: f32,
     // Premultiplied light.
     light: vec4f,
-    // East and north components of the normal along which it stands.
+    // East and north components of the normal along which the crown stands.
     lean: vec2f,
     // Drawn height, m.
     height: f32,
@@ -296,7 +299,7 @@ fn crown_corner(crown: Crown, corner: u32) -> CrownVarying {
     clip.y *= rain.y_sign;
     let position = select(vec4f(2.0, 2.0, 2.0, 1.0), vec4f(clip.xy, 0.0, clip.w), crown.width > 0.0);
     let chance = vec2f(random3(vec3u(crown.slot, rain.seed, 5u)).xy >> vec2u(8u)) / 16777216.0;
-    // Takes a depth slightly nearer than that of its foot, which stands on the visible surface.
+    // Takes a depth slightly nearer than that of the crown's foot, which stands on the visible surface.
     let depth = depth_of(rain.depth, (rain.clip * vec4f(crown.at, 1.0)).w, d, 0.2);
     return CrownVarying(position, crown.light, vec3f(depth, crown.age), vec2f(side, top), chance);
 }

@@ -15,8 +15,8 @@ struct StoneUniform {
     // Lattice of the stones, per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that
     // moves with the air. w: distance that a stone with a speed of one unit has fallen.
     air: array<vec4u, STONE_SHELLS>,
-    // Per shell, m. x: side of the cell. y: distance at which it begins to fade in. z: distance at which it begins to
-    // fade out.
+    // Per shell, m. x: side of the cell. y: distance at which the shell begins to fade in. z: distance at which the
+    // shell begins to fade out.
     shells: array<vec4f, STONE_SHELLS>,
     // Index of the first stone of each shell.
     first: vec4u,
@@ -53,10 +53,10 @@ struct StoneUniform {
 
 // Albedo of milky ice.
 const ICE_ALBEDO: f32 = 0.75;
-// Smallest and largest share of its speed that a stone keeps at its first bounce. It is low because ice that hits the
-// ground this fast cracks.
+// Smallest and largest share of its speed that a stone keeps at its first bounce. The shares are low because ice cracks
+// when it hits the ground at its fall speed.
 const FIRST_REBOUND: vec2f = vec2f(0.1, 0.32);
-// Share of the speed that it keeps at each further bounce.
+// Share of its speed that a stone keeps at each further bounce.
 const REBOUND: f32 = 0.45;
 // Number of bounces that are drawn.
 const HOPS: u32 = 3u;
@@ -135,7 +135,7 @@ fn touch_of(instance: u32) -> Touch {
 }
 
 // Returns the stone of a landing at its present place, on ground at the height `z`: it hops in parabolas, each lower
-// than the one before, and then lies.
+// than the one before, and then lies still.
 fn hopping_stone(touch: Touch, z: f32) -> Stone {
     let kind = touch.kind;
     let fall = kind.y * SPEED_UNIT;

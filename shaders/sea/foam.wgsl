@@ -39,7 +39,7 @@ fn breaking_share(shown: SeaSlopes) -> f32 {
     return min(area / max(1.0 - shown.compression, SEA_LEAST_AREA), 1.0);
 }
 
-// Density of foam where a pattern of even ranks gathers it: 1 in the mean, at most 4.
+// Density of foam that a pattern of evenly distributed ranks gathers: 1 in the mean, at most 4.
 fn gathered_at(rank: f32) -> f32 {
     let low = 1.0 - rank;
     return 4.0 * low * low * low;
@@ -68,8 +68,9 @@ fn streak_factor(at: vec2f, octaves: f32) -> f32 {
     return mix(1.0, density, gathered);
 }
 
-// Rank of a place in the pattern: foam of a share covers the places of lower rank. The rank is the product of two
-// ranks, made even again, so that neither pattern shows how it repeats.
+// Rank of a place in the pattern: foam that covers a share of the water covers the places whose rank is below the
+// share. The rank is the product of two ranks, made evenly distributed again, so that neither pattern shows how it
+// repeats.
 fn lace_rank(at: vec2f, octaves: f32) -> f32 {
     let fine = sea.foam.lace.xy + at / LACE_FINE;
     let coarse = sea.foam.lace.zw + to_tile(LACE_TURN, at) / LACE_COARSE;
@@ -87,7 +88,7 @@ struct FoamCover {
     white: f32,
 }
 
-// Foam at a place at rest, where earlier waves and hulls left some.
+// Foam at the place at rest `at`. `left` and `wake` are the shares under foam that earlier waves and hulls left.
 fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32, wake: f32) -> FoamCover {
     let has_whitecaps = sea.foam_from < SEA_NO_FOAM;
     let breaking = select(0.0, breaking_share(shown), has_whitecaps);
@@ -104,7 +105,7 @@ fn foam_cover(at: vec2f, shown: SeaSlopes, left: f32, wake: f32) -> FoamCover {
     if faded >= 1.0 {
         return FoamCover(share, mean * share);
     }
-    // Foam thins towards its edges, by a power that makes its mean thickness over the share `mean`.
+    // Foam thins towards its edges, by a power with which its mean thickness over the covered share is `mean`.
     let thickness = clamp(1.0 - lace_rank(at, shown.octaves) / share, 0.0, 1.0);
     return FoamCover(share, mix(pow(thickness, 1.0 / mean - 1.0), mean * share, faded));
 }

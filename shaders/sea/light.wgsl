@@ -8,7 +8,7 @@
 const SEA_MOST_SLOPE: f32 = 0.4;
 // Least cosine between the eye and a normal.
 const LEAST_COSINE: f32 = 0.02;
-// Share of the light that waves at grazing views throw on.
+// Share of the sky's light that another wave reflects where a mirrored ray meets it.
 const OTHER_WAVES: f32 = 0.4;
 
 // Variance of slopes along a direction.
@@ -46,7 +46,7 @@ fn mean_reflectance(cosine: f32, slope: f32) -> f32 {
     return textureSampleLevel(sea_reflectance, sea_clamped, (0.5 + at * (size - 1.0)) / size, 0.0).r;
 }
 
-// Light of the sky above the horizon, through the fog over the sea. Clouds count by their mean share.
+// Light of the sky above the horizon, through the fog over the sea. Clouds count as a deck with their mean cover.
 fn mirrored_sky(d: vec3f) -> vec3f {
     let up = normalize(vec3f(d.xy, max(d.z, 2e-3)));
     let clear = color_of(sky_radiance_above(up)) + frame.night_floor;
@@ -55,8 +55,8 @@ fn mirrored_sky(d: vec3f) -> vec3f {
     return sky * through + sea.sky_lux * ((1.0 - through) / SKY_PI);
 }
 
-// Light of sun or moon mirrored by facets (Cox and Munk 1954, equation 5): slopes are normal about a mean with these
-// covariances. Facets are lit as far as others do not hide the lamp from them.
+// Light of sun or moon mirrored by facets (Cox and Munk 1954, equation 5): slopes are normally distributed about the
+// mean `slope` with these covariances. Facets are lit as far as others do not hide the lamp from them.
 fn sea_glitter(slope: vec2f, covariances: vec3f, to_eye: vec3f, area: f32) -> vec3f {
     let lamp = sea.to_lamp;
     let middle = to_eye + lamp;
@@ -82,7 +82,7 @@ fn sea_glitter(slope: vec2f, covariances: vec3f, to_eye: vec3f, area: f32) -> ve
 // Surface in a pixel, seen from the eye.
 struct SeaFacing {
     to_eye: vec3f,
-    // Mean slope of the facets that the eye sees, apart from those that the pixel does not show.
+    // Mean slope of the facets that the eye sees, without the slopes that the pixel does not show.
     slope: vec2f,
     // Mean reflectance, and the direction of the light that the middle facet mirrors.
     reflected: f32,
@@ -95,8 +95,8 @@ fn sea_facing(point: vec3f, shown: SeaSlopes) -> SeaFacing {
     let to_eye = -normalize(point);
     let away = length(to_eye.xy);
     let level = to_eye.xy / max(away, 1e-5);
-    // Of the facets that do not move the mesh, the eye sees more of those that face it. The slopes that the pixel shows
-    // have their share of the mean.
+    // The eye sees more of the facets that face it, which shifts the mean of the slopes that do not move the mesh. The
+    // slopes that the pixel shows take a share of this shift, by their variance.
     let along = variance_along(shown.left, level);
     let all = max(shown.mapped + along, 1e-9);
     let slope = shown.slope - level * (facing_slope(sqrt(all), away / max(to_eye.z, 1e-3)) * shown.mapped / all);

@@ -8,7 +8,7 @@ const SEA_CELLS: u32 = 8u;
 const SEA_MORPH_FROM: f32 = 2.52;
 const SEA_MORPH_UNTIL: f32 = 2.98;
 
-// Distance of a place by which levels are chosen, m.
+// Distance of a place from the camera by which levels are chosen, m.
 fn mesh_distance(at: vec2f) -> f32 {
     let from_eye = abs(at - sea.eye);
     return max(max(from_eye.x, from_eye.y), sea.height);

@@ -35,8 +35,8 @@ fn outline_place(row: u32, corners: u32, p: vec2f) -> OutlinePlace {
 // Water at a place.
 struct SeaPlace {
     has_sea: bool,
-    // Ratio of the waves' height to that on the open sea. At a place without the sea's water it is that of the waves
-    // around.
+    // Ratio of the waves' height to that on the open sea. At a place without the sea's water it is the ratio of the
+    // waves around the place.
     share: f32,
 }
 

@@ -1,30 +1,31 @@
 // Surface of the sea: displacement of the mesh, and the slopes that a pixel shows. src/sea/surface.rs is the f64
 // reference of the waves' sums.
 //
-// A wave is in the mesh as far as the cells there resolve it; the rest of it is in the slopes of the pixels, as far as
-// the pixel resolves it. The slopes that are left have a known variance. Shares depend on the place alone and not on
-// the level of the mesh, so that levels meet without cracks.
+// The mesh has the share of a wave that its cells resolve. The slopes of a pixel have the rest of the wave, as far as
+// the pixel resolves it. The slopes that neither has are known by their variance. Shares depend on the place alone and
+// not on the level of the mesh, so that levels meet without cracks.
 //!include "sea/mesh.wgsl"
 //!include "sea/regions.wgsl"
 //!include "sea/wakes.wgsl"
 
 const SEA_TAU: f32 = 6.28318531;
 const SEA_HALF_TAU: f32 = 3.14159265;
-// Cells of the mesh are at most this many times shorter than their distance.
+// Least ratio of the distance of a cell of the mesh to the cell's length.
 const SEA_CELLS_TO_DISTANCE: f32 = 11.9;
-// A wave's height is wholly in the mesh if its length is at least three cells, and not at all below one and a half.
+// Length of a wave, in cells, below which its height is not in the mesh at all. From twice this length on, the height
+// is wholly in the mesh.
 const SEA_LEAST_CELLS: f32 = 1.5;
-// Its slope is wholly in the vertices at twice this length in cells, and not at all below it: between vertices that are
-// farther apart, slopes would be too small.
+// Length of a wave, in cells, below which its slope is not in the vertices at all. From twice this length on, the slope
+// is wholly in them. Between vertices that are farther apart, slopes would be too small.
 const SEA_SMOOTH_CELLS: f32 = 3.0;
-// Length, in cells, of a texel of the mip level that the mesh has of a tile. The shortest waves there, three texels
+// Length, in cells, of a texel of the mip level of a tile that the mesh reads. The shortest waves there, three texels
 // long, are low.
 const SEA_TEXELS_TO_CELL: f32 = 0.25;
 // Standard deviation of a pixel's filter as a share of the pixel's width.
 const SEA_PIXEL_DEVIATION: f32 = 0.4;
 // Largest ratio of the sides of a pixel on the surface up to which waves along the short side are told apart.
 const SEA_MOST_LENGTHENED: f32 = 2.0;
-// Compression that no sea has: without whitecaps foam begins beyond it.
+// Compression that no sea has. Without whitecaps, the threshold of foam lies above it.
 const SEA_NO_FOAM: f32 = 100.0;
 // Least standard deviation of the compression that is known by its variance alone.
 const SEA_LEAST_DEVIATION: f32 = 0.02;
@@ -35,7 +36,7 @@ const SEA_FLAT_MIP: f32 = 5.0;
 struct Footprint {
     // Unit vector from the camera, level.
     toward: vec2f,
-    // Standard deviations along it and across, m.
+    // Standard deviations along this vector and across it, m.
     along: f32,
     across: f32,
 }
@@ -56,9 +57,9 @@ fn last_turns(footprint: Footprint) -> f32 {
     return 0.39 / max(footprint.across, footprint.along / SEA_MOST_LENGTHENED);
 }
 
-// Share of a wave's amplitude that the pixel's filter lets through: (1 - x / 3)^2 with x half the square of wave number
-// times deviation, which is near exp(-x) and ends. `along` and `across` are the filter's deviations with their
-// directions.
+// Share of a wave's amplitude that the pixel's filter lets through: (1 - x / 3)^2, where x is half the square of wave
+// number, rad/m, times deviation, m. This is near exp(-x) but reaches 0. `along` and `across` are the filter's
+// deviations with their directions. `end` is the ratio of the wave number to that above which no wave is told apart.
 fn seen_share(turns: vec2f, along: vec2f, across: vec2f, end: f32) -> f32 {
     let a = dot(turns, along);
     let b = dot(turns, across);
@@ -77,7 +78,7 @@ struct SeaVertex {
     // displacement (xx, xy, yy).
     slope: vec2f,
     squeeze: vec3f,
-    // Share under foam left by waves that broke in the last seconds.
+    // Share under the foam that waves of the last seconds left.
     left: f32,
 }
 
@@ -97,7 +98,7 @@ fn compressed_area(compression: f32, deviation: f32) -> f32 {
 }
 
 // Compression of the surface by a wave of the amplitude `size` at four ages. `turn` has the sine and the cosine of the
-// wave's phase now, `step` those of the phase of a step of age. The cosines of equal steps follow from the two before
+// wave's phase now, `step` those of the phase of a step of age. Each further cosine follows from the two before it
 // (Chebyshev).
 fn past_compression(size: f32, turn: vec2f, step: vec2f) -> vec4f {
     let double = 2.0 * step.y;
@@ -124,7 +125,7 @@ fn near_turn(turns: f32) -> vec2f {
 // Sum of the single waves. `height_share` is the ratio of their heights to those on the open sea.
 fn single_waves(at: vec2f, distance: f32, footprint: Footprint, height_share: f32) -> SeaVertex {
     var out: SeaVertex;
-    // Compression at four ages, and the variance of what it has of all waves.
+    // Compression at four ages by the waves that are summed here, and the variance of this compression.
     var before = vec4f(0.0);
     var known = 0.0;
     let along = footprint.toward * footprint.along;
@@ -206,13 +207,13 @@ fn tile_shapes(at: vec2f, distance: f32) -> vec4f {
     return sum;
 }
 
-// Surface at a vertex whose place at rest is `at`, with waves of a share of their height on the open sea.
+// Surface at a vertex whose place at rest is `at`. `share` is the ratio of the waves' height to that on the open sea.
 fn sea_vertex(at: vec2f, share: f32) -> SeaVertex {
     let distance = mesh_distance(at);
     var out = single_waves(at, distance, footprint_at(at), share);
     let tiles = tile_shapes(at, distance);
     out.shift = share * (out.shift + tiles.xy);
-    // The level falls by the square of the waves' height.
+    // The fall of the mean level is proportional to the square of the waves' height.
     out.height = share * (out.height + tiles.z + share * (out.raised + tiles.w));
     out.slope *= share;
     out.squeeze *= share;
@@ -251,12 +252,13 @@ fn sea_point(at: vec2f, height: f32) -> vec3f {
 struct SeaSlopes {
     // Slope of the surface over fixed places.
     slope: vec2f,
-    // Compression without the shortest waves, and the share of its variance that these have.
+    // Compression by all but the shortest waves (`compression`), and the share of the variance of the compression that
+    // the shortest waves have (`hidden`).
     compression: f32,
     hidden: f32,
     // Covariances of the slopes that the pixel does not show: east east, east north, north north.
     left: vec3f,
-    // Variance of the shown slopes that do not move the mesh.
+    // Half the variance of the shown slopes that do not move the mesh.
     mapped: f32,
     // Binary logarithm of the pixel's width on the surface, m.
     octaves: f32,
@@ -265,7 +267,7 @@ struct SeaSlopes {
 // Nodes of the table of shown slopes.
 const SEA_SEEN: vec2f = vec2f(32.0, 16.0);
 
-// Row of the table of shown slopes, as a share of all, for a direction: opposite directions have the same.
+// Row of the table of shown slopes for a direction, as a share of all rows. Opposite directions have the same row.
 // src/sea/seen.rs has the directions of rows.
 fn seen_row(toward: vec2f) -> f32 {
     let cosine = toward.x * toward.x - toward.y * toward.y;
@@ -324,7 +326,8 @@ fn sea_slopes_at(at: vec2f, vertex_slope: vec2f, vertex_squeeze: vec3f, height_s
     let squeezed = textureSampleLevel(sea_seen, sea_repeating, place, 1u, 0.0).x;
     let left = max(sea.slopes.xyz - seen.xyz, vec3f(0.0, -1.0, 0.0));
     let hidden = clamp(1.0 - squeezed * sea.squeeze / max(sea.compression, 1e-9), 0.0, 1.0);
-    // Waves that the pixel does not show are lower too; the ripples of the wind, which no vertex or pixel has, are not.
+    // Where the waves are lower, those that the pixel does not show are lower too. The ripples of the wind, which no
+    // vertex or pixel has, are not lower.
     let square = height_share * height_share;
     let drawn = clamp((sea.slopes.w - seen.x - seen.z) / max(left.x + left.z, 1e-9), 0.0, 1.0);
     return SeaSlopes(slope, compression, square * hidden, left * mix(1.0, square, drawn), square * seen.w, octaves);

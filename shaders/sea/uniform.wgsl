@@ -18,7 +18,7 @@ struct SeaTile {
     turn: vec2f,
     // Length, m.
     length: f32,
-    // Lowering of the mean level, m.
+    // Fall of the mean level because crests are narrow, m. The surface is raised by as much.
     lowering: f32,
     // 1 for a tile with waves, 0 for one without.
     is_there: f32,
@@ -27,7 +27,7 @@ struct SeaTile {
 }
 
 struct SeaFoam {
-    // Area of foam at each age, as a share of its first area.
+    // Weight of foam at each age: the share of the foam's first area that is left, times one factor for all ages.
     kept: vec4f,
     // Texture coordinates of the anchor in the fine pattern, and in the coarse one.
     lace: vec4f,
@@ -46,8 +46,9 @@ struct SeaUniform {
     foot: vec3f,
     // Height of the camera above the sea's level, m.
     height: f32,
-    // Camera-relative change of a place of the level per metre on the map, to the east and to the north, and per square
-    // metre: east east, east north, north north.
+    // Coefficients of a series for the camera-relative place of the sea's level by the place on the map, m from the
+    // camera: linear to the east (`east`) and to the north (`north`), and quadratic for east east (`bend_xx`), east
+    // north (`bend_xy`) and north north (`bend_yy`).
     east: vec3f,
     // Number of single waves.
     waves: u32,
@@ -55,7 +56,7 @@ struct SeaUniform {
     // Angle of a pixel, rad.
     pixel: f32,
     bend_xx: vec3f,
-    // Compression of the surface at which it is under foam.
+    // Compression from which on the surface is under foam.
     foam_from: f32,
     bend_xy: vec3f,
     // Variance of the compression of all waves.
@@ -69,15 +70,17 @@ struct SeaUniform {
     most: f32,
     // Variance of slopes that stands for the disc of sun or moon.
     disc2: f32,
-    // Unit vector towards the sun or the moon, and its light on a surface that faces it, lux.
+    // Unit vector towards the sun or the moon (`to_lamp`), and the light of this lamp on a surface that faces it
+    // (`lamp_lux`), lux.
     to_lamp: vec3f,
+    // Refractive index of the water.
     index: f32,
     lamp_lux: vec3f,
-    // 1 over the octaves between the camera's height and the farthest distance from it.
+    // Reciprocal of the number of octaves from the camera's height to the distance up to which the sea is drawn.
     seen_per_octave: f32,
     // Light of the sky on level ground, lux.
     sky_lux: vec3f,
-    // Variance of the compression of the drawn waves over that of their slopes.
+    // Ratio of the variance of the drawn waves' compression to the variance of their slopes.
     squeeze: f32,
     // Luminance of the light that leaves the water when seen from above, cd/m^2.
     body: vec3f,
@@ -85,8 +88,8 @@ struct SeaUniform {
     // Luminance of a white surface, cd/m^2.
     white: vec3f,
     pad_d: f32,
-    // Covariances of all slopes, those of ripples too short to be drawn included: east east, east north, north north;
-    // and the sum of the variances of the slopes that are drawn.
+    // x, y, z: covariances of all slopes, with those of ripples too short to be drawn: east east, east north, north
+    // north. w: sum of the two variances of the slopes that are drawn.
     slopes: vec4f,
     tiles: array<SeaTile, 3>,
     foam: SeaFoam,
@@ -100,12 +103,12 @@ struct SeaWave {
     phase: f32,
     // Amplitude of the height, m.
     height: f32,
-    // Length of the wave vector, turns per metre, and of the wave, m.
+    // Length of the wave vector, turns per metre, and length of the wave, m.
     turns_per_m: f32,
     length: f32,
-    // Amplitude of the displacement over the wave vector, m^2.
+    // Factor by which the wave vector gives the amplitude of the displacement, m^2.
     shift: f32,
-    // Sine and cosine of the phase of the time between two ages of foam, 16 bits each with a sign.
+    // Sine and cosine of the change of phase from one age of foam to the next, signed numbers of 16 bits each.
     age_step: u32,
 }
 
@@ -116,13 +119,13 @@ struct SeaWave {
 @group(2) @binding(2) var sea_shapes: texture_2d_array<f32>;
 // Slopes along a tile's axes, and compression, which is smoother.
 @group(2) @binding(3) var sea_slopes: texture_2d_array<f32>;
-// Mean reflectance by the root of the cosine of the view's zenith angle, and by the root mean square slope.
+// Mean reflectance. Columns: square root of the cosine of the view's zenith angle. Rows: root mean square slope.
 @group(2) @binding(4) var sea_reflectance: texture_2d<f32>;
 @group(2) @binding(5) var sea_repeating: sampler;
 @group(2) @binding(6) var sea_clamped: sampler;
-// By distance and direction from the eye: covariances of the slopes that a pixel shows (east east, east north, north
-// north), and half the variance of those that are not in the mesh. In the second layer the variance of the slopes that
-// make foam.
+// Table of shown slopes, by distance from the eye (columns) and direction (rows). First layer: covariances of the
+// slopes that a pixel shows (east east, east north, north north), and half the variance of those that are not in the
+// mesh. Second layer: variance of the slopes that make foam.
 @group(2) @binding(7) var sea_seen: texture_2d_array<f32>;
 // Ranks of the pattern of foam.
 @group(2) @binding(8) var sea_lace: texture_2d<f32>;
@@ -133,9 +136,9 @@ struct SeaRegion {
     anchor: vec2f,
     // Square of the distance of the farthest corner from the centre, m^2.
     reach2: f32,
-    // 0 for one without water, 1 for lower waves, 2 for a lake.
+    // 0 for a region without water, 1 for one with lower waves, 2 for a lake.
     kind: u32,
-    // Ways to the right and ahead for a metre to the east on the map, and for one to the north.
+    // Ways to the right and ahead, m, for a metre to the east on the map (x, y), and for a metre to the north (z, w).
     turn: vec4f,
     // Number of corners.
     corners: u32,
@@ -167,7 +170,7 @@ struct SeaWake {
     oldest: f32,
     // Wave number of the longest waves, turns per metre.
     least_turns: f32,
-    // Index of the newest state.
+    // Index of the hull's newest state in `sea_tracks`.
     first: u32,
     pad: f32,
 }
@@ -177,7 +180,7 @@ struct HullState {
     place: vec2f,
     velocity: vec2f,
     age: f32,
-    // Rate of turn, rad/s against the clock.
+    // Rate of turn, rad/s anticlockwise.
     turn: f32,
     ahead: vec2f,
 }

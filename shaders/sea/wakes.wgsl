@@ -57,7 +57,7 @@ fn hull_state(wake: SeaWake, index: u32) -> HullState {
 struct HullEnd {
     place: vec2f,
     velocity: vec2f,
-    // Acceleration by the rate of turn.
+    // Acceleration that the rate of turn causes.
     turning: vec2f,
     age: f32,
 }
@@ -69,7 +69,8 @@ fn end_of(state: HullState, off_middle: f32) -> HullEnd {
     return HullEnd(place, velocity, vec2f(-velocity.y, velocity.x) * state.turn, state.age);
 }
 
-// S of a place for a state, and the derivative of S by age. Passages that meet in the state have the same values.
+// S of a place for a state, and the derivative of S by age. The two passages that meet in this state have the same two
+// values here.
 fn s_of(end: HullEnd, at: vec2f) -> vec2f {
     let to_place = at - end.place;
     let along = dot(end.velocity, to_place);
@@ -77,7 +78,7 @@ fn s_of(end: HullEnd, at: vec2f) -> vec2f {
     return vec2f(dot(to_place, to_place) - 0.5 * end.age * along, 1.5 * along + 0.5 * end.age * turned);
 }
 
-// Motion of bow or stern between two states, by age.
+// Motion of bow or stern between two states, as a cubic of the age.
 struct Passage {
     start: f32,
     span: f32,
@@ -122,7 +123,7 @@ fn source_at(passage: Passage, at: vec2f, past: f32) -> WakeSource {
     return WakeSource(u, to_place, velocity, s);
 }
 
-// Share of the waves of an age: those of a track begin and end gently.
+// Share of the height with which waves of an age are drawn: waves fade at both ends of a track.
 fn wake_age_share(age: f32, newest: f32, oldest: f32) -> f32 {
     let fading = WAKE_FADES.x * max(oldest - newest, 1e-6);
     let old = smoothstep(0.0, fading, oldest - age);
@@ -166,7 +167,7 @@ fn add_wake_wave(wake: SeaWake, source: WakeSource, kind: u32, end: f32, pass_fi
     let speed2 = speed * speed;
     let distance = max(length(source.to_place), 1e-6);
     let is_beyond = kind == BEYOND;
-    // What lies beyond a cusp has the waves of the cusp, which is as far away as it would be if S were 0.
+    // A place beyond a cusp has the waves of the cusp. The cusp is at the distance at which S would be 0.
     let far = max(select(distance, sqrt(max(distance * distance - source.s.x, 0.0)), is_beyond), 1e-6);
     let cosine = clamp(2.0 * far / (speed * u), 1e-3, 1.0);
     // Hulls are no faster than 60 m/s.
@@ -232,15 +233,15 @@ fn wave_times(parabola: vec3f) -> vec3f {
     let root = sqrt(max(square, 0.0));
     let twice = 2.0 * q;
     let not_flat = select(twice, select(-1e-20, 1e-20, twice >= 0.0), abs(twice) < 1e-20);
-    // Each zero in the form that does not cancel.
+    // Each zero is computed in the form in which no digits cancel.
     let falling = select(-(d + root) / not_flat, 2.0 * s / max(root - d, 1e-20), d < 0.0);
     let rising = select((root - d) / not_flat, -2.0 * s / max(d + root, 1e-20), d > 0.0);
     let least = select(-1.0, -d / not_flat, q > 0.0);
     return select(vec3f(-1.0, -1.0, least), vec3f(falling, rising, -1.0), square > 0.0);
 }
 
-// Adds the waves of a passage, from S and its slope at both ends: S is two parabolas with a common tangent in the
-// middle.
+// Adds the waves of a passage, from S and its slope at both ends. Between the ends S is taken as two parabolas with a
+// common tangent in the middle.
 fn add_passage(wake: SeaWake, passage: Passage, first: vec2f, last: vec2f, at: vec2f, end: f32, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
     let h = passage.span;
     let middle_slope = 2.0 * (last.x - first.x) / h - 0.5 * (first.y + last.y);
@@ -269,7 +270,7 @@ fn wash_at(wake: SeaWake, at: vec2f) -> f32 {
         let way = older.place - older.ahead * (0.5 * wake.length) - a;
         let part = clamp(dot(at - a, way) / max(dot(way, way), 1e-9), 0.0, 1.0);
         let off = at - a - way * part;
-        // Farther off there is none while there is any foam.
+        // Foam is computed only within one beam of the track.
         if newer.age < WASH_LASTS && dot(off, off) < wake.beam * wake.beam {
             let age = max(mix(newer.age, older.age, part), 0.0);
             let speed = mix(length(newer.velocity), length(older.velocity), part);
@@ -282,7 +283,8 @@ fn wash_at(wake: SeaWake, at: vec2f) -> f32 {
     return wash;
 }
 
-// Adds the waves of bow and stern. There is one call of all that follows: drivers copy what is called to each call.
+// Adds the waves of bow and stern. `add_passage` is called at one place only, because drivers copy a function to each
+// place that calls it.
 fn add_wake(wake: SeaWake, at: vec2f, pass_filter: WakeFilter, sum: ptr<function, WakeSurface>) {
     let states = clamp(wake.states, 1u, MOST_WAKE_STATES);
     var newer = end_of(hull_state(wake, 0u), 0.0);
@@ -293,8 +295,8 @@ fn add_wake(wake: SeaWake, at: vec2f, pass_filter: WakeFilter, sum: ptr<function
         let index = select(i - states, i, is_bow);
         let older = end_of(hull_state(wake, index), 0.5 * end * wake.length);
         let last = s_of(older, at);
-        // Where S is positive at both ends and does not fall towards the other, it has no zero and no least value
-        // between.
+        // If S is positive at both ends of a passage, S has a zero or a least value in between only if S falls at the
+        // first end and rises at the last.
         if index > 0u && (first.x <= 0.0 || last.x <= 0.0 || (first.y < 0.0 && last.y > 0.0)) {
             add_passage(wake, passage_of(newer, older), first, last, at, end, pass_filter, sum);
         }
@@ -303,15 +305,15 @@ fn add_wake(wake: SeaWake, at: vec2f, pass_filter: WakeFilter, sum: ptr<function
     }
 }
 
-// Surface of the wakes at a place, m from the anchor. No turn of the loop is left early by some pixels alone: the row
-// stays the same for all of a driver's lanes, which then read one place of a block.
+// Surface of the wakes at a place, m from the anchor. No pixel leaves a turn of the loop early. The row therefore stays
+// the same for all lanes of a driver, which then read one place of a block.
 fn wakes_at(at: vec2f, pass_filter: WakeFilter) -> WakeSurface {
     var sum: WakeSurface;
     for (var row = 0u; row < min(sea_band.wakes, MOST_SEA_HULLS); row++) {
         let wake = sea_wakes[row];
         let off = at - wake.middle;
         if dot(off, off) <= wake.reach2 {
-            // None of the hull's waves are longer than those along its track.
+            // None of the hull's waves is longer than those that run along the hull's track.
             if wake_share(vec2f(0.0), wake.least_turns, pass_filter) > 0.0 {
                 add_wake(wake, at, pass_filter, &sum);
             }

@@ -29,8 +29,9 @@ struct SkyAir {
     // Negated cosine of the zenith angle of the planet's edge, seen from the top of the air.
     top_dip: f32,
     // Light can be computed for more than three wavelengths, three at a time. Tables keep the sum of all triples,
-    // converted to light at the planet's own three wavelengths; the part of a triple may be negative. The columns of
-    // this triple's matrix (`parts` in src/planet/spectral.rs), its index, and the number of triples.
+    // converted to light at the planet's own three wavelengths; the part of a triple may be negative. The fields are
+    // the three columns of this triple's matrix (`parts` in src/planet/spectral.rs), the triple's index (`layer`) and
+    // the number of triples (`layers`).
     part_a: vec3f,
     layer: f32,
     part_b: vec3f,
@@ -54,7 +55,7 @@ fn air_optical_depth(air: SkyAir, columns: vec3f) -> vec3f {
     return air.rayleigh_scattering * columns.x + air.mie_extinction * columns.y + air.ozone_extinction * columns.z;
 }
 
-// (1 - e^-x)/x for x >= 0: the share of a layer's light that leaves it.
+// (1 - e^-x)/x for x >= 0: the share of a layer's light that leaves the layer.
 fn air_escape(x: vec3f) -> vec3f {
     let series = 1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666667));
     return select((1.0 - exp(-x)) / max(x, vec3f(1e-6)), series, x < vec3f(0.05));

@@ -22,7 +22,8 @@ struct SkyJob {
 @group(0) @binding(2) var<uniform> rule: array<vec4f, 24>;
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var<uniform> job: SkyJob;
-// Source, radiance along the quadrature, and light of the order; then sums over the orders before it.
+// Tables that a pass reads: source of the order, radiance along the directions of the quadrature, and light of the
+// order before. Then the sums of sources and of light over all orders before, and the result of `norm`.
 @group(1) @binding(0) var sky_sources: texture_2d<f32>;
 @group(1) @binding(1) var radiances: texture_2d<f32>;
 @group(1) @binding(2) var lights: texture_2d<f32>;
@@ -63,8 +64,9 @@ fn cosine_between(mu_a: Cosine, mu_b: Cosine, cos_azimuth: f32) -> Cosine {
     return clamp(mu_a * mu_b + sqrt(max((1.0 - mu_a * mu_a) * (1.0 - mu_b * mu_b), 0.0)) * cos_azimuth, -1.0, 1.0);
 }
 
-// Sum of the haze's phase function over the quadrature around the sun, which would be 1 for an infinitely fine
-// quadrature. The gather divides by it, so that a peak between two directions neither gains nor loses light.
+// Sum of the haze's phase function around the sun over the directions of the quadrature. The sum would be 1 for an
+// infinitely fine quadrature. The gather divides by it, so that a peak between two directions neither gains nor loses
+// light.
 @fragment
 fn norm(in: FullscreenVarying) -> @location(0) vec4f {
     let here = place_of(in.position);
@@ -178,8 +180,8 @@ fn scatter(in: FullscreenVarying) -> Sums {
 }
 
 // Tile 0: irradiance of the sky on a level surface. Tiles 1 to 6: integrals of the radiance of sky and ground, times
-// the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left, up). The others vanish
-// by symmetry.
+// the real spherical harmonics 00, 1z, 1x, 2zz, 2xz, 2xx-yy in the frame (towards the sun, left, up). The integrals of
+// the other harmonics up to degree 2 are 0 by symmetry.
 @fragment
 fn light(in: FullscreenVarying) -> Sums {
     let here = place_of(in.position);

@@ -2,7 +2,7 @@
 // Discs of sun and moon. The light in the air uses a lamp's geometric direction. The disc is drawn where refraction
 // shows it, lifted, and flattened at the horizon.
 
-// Lift by standard air, degrees, at an apparent elevation in degrees (Bennett 1982, arc minutes).
+// Lift by standard air, degrees, at an apparent elevation in degrees (Bennett 1982, whose formula gives arc minutes).
 fn refraction_deg(apparent_deg: f32) -> f32 {
     let a = clamp(apparent_deg, -2.0, 89.9);
     let x = (a + 7.31 / (a + 4.4)) * (SKY_PI / 180.0);
@@ -57,7 +57,8 @@ fn depth_before_disc(lamp: SkyLamp, sine: f32) -> vec3f {
     return exp(lamp.depth[0].xyz + x * (lamp.depth[1].xyz + x * (lamp.depth[2].xyz + x * lamp.depth[3].xyz)));
 }
 
-// Radiance of the discs behind air of an optical depth, or `by_height` behind the air at their own elevation.
+// Radiance of the discs behind air of the optical depth `depth`. With `by_height`, the depth is that in front of each
+// disc at the elevation of `dir`.
 fn disc_faces(dir: vec3f, pixel_angle: f32, depth: vec3f, by_height: bool) -> Radiance {
     let real = unrefracted(dir);
     var out = vec3f(0.0);

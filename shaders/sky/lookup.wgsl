@@ -3,8 +3,8 @@
 // Look-ups of the sky for other shaders. Bind group 1 is `SkyVolume::bind_group()`.
 //
 // `dir` is a unit vector from the observer in its local level frame: z up, x and y any level axes, in which the host
-// also gave the lamps' directions (`Lamp::toward`). Radiances are for the lamps' irradiance as given: W m^-2 sr^-1
-// nm^-1 with `Planet::solar_irradiance`. Distances are metres from the observer.
+// also gave the lamps' directions (`Lamp::toward`). Radiances follow the unit of the lamps' irradiance: they are in W
+// m^-2 sr^-1 nm^-1 with `Planet::solar_irradiance`. Distances are metres from the observer.
 
 struct SkyLamp {
     // Unit vector towards the lamp, geometric (without refraction).
@@ -18,9 +18,10 @@ struct SkyLamp {
     // Reciprocal of the angular radius.
     inverse_radius: f32,
     lit_from: vec3f,
-    // First sine of elevation at which `depth` is valid; `depth_scale` is the reciprocal of the interval's length.
+    // Least sine of elevation at which `depth` is valid. `depth_scale` is the reciprocal of the length of the interval
+    // of valid sines.
     depth_from: f32,
-    // Unit level direction below the lamp.
+    // Unit level vector towards the point of the horizon below the lamp.
     level: vec2f,
     // First layer of this lamp's tables.
     layer: u32,
@@ -51,11 +52,11 @@ struct SkyView {
 @group(1) @binding(0) var<uniform> sky_view: SkyView;
 // Observer's sky, and the air in front of objects.
 @group(1) @binding(1) var sky_tables: texture_2d_array<f32>;
-// Light of the planet; where pixels march, the sources lie below it.
+// Light of the planet. If pixels march, the sources lie below the light in the texture.
 @group(1) @binding(2) var sky_lights: texture_2d<f32>;
 @group(1) @binding(3) var sky_sampler: sampler;
 
-// Whether every pixel marches; set by `SkyTables::pipeline_constants` for that model.
+// Whether every pixel marches, as in the model `BruteForce`; set by `SkyTables::pipeline_constants`.
 override SKY_MARCH: bool = false;
 // Number of lamps that a pipeline draws; 2 means `lamp_count`. A constant of 0 or 1 needs no loop; on a software driver
 // a loop costs one more iteration than it has.
@@ -97,7 +98,8 @@ fn lamp_light(lamp: SkyLamp, dir: vec3f, smooth_light: vec4f, haze_light: vec4f)
     return lamp.irradiance * (sky_decode_signed(smooth_light) + phase * sky_decode_signed(haze_light));
 }
 
-// Light of a lamp along a ray by a march, for the model whose tables hold only light scattered more than once.
+// Light of a lamp along a ray by a march, for the model `BruteForce`, whose tables hold only light scattered more than
+// once.
 fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
     let nu = dot(dir, lamp.toward);
     let r = sky_view.air.bottom_m + max(sky_view.altitude, 0.0);
@@ -110,7 +112,7 @@ fn lamp_march(lamp: SkyLamp, dir: vec3f, ray: SkyRay, end: Length) -> Radiance {
 }
 
 // Ray in a direction, and the optical depth from the observer to the end of the path. Several look-ups in one direction
-// share it.
+// share this path.
 struct SkyPath {
     ray: SkyRay,
     // Distance from the observer to the end of the path, m.
@@ -167,7 +169,8 @@ fn place_above(v: f32) -> f32 {
     return sky_view.sky_above.x + v * sky_view.sky_above.z;
 }
 
-// Light from the table at texture coordinate `x`. Below the horizon it is stored divided by the opacity of the air.
+// Light from the table at texture coordinate `x`. Below the horizon the light is stored divided by the opacity of the
+// air.
 fn sky_table_light(dir: vec3f, x: f32) -> vec3f {
     var out = vec3f(0.0);
     for (var i = 0u; i < sky_lamps(); i++) {

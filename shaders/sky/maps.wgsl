@@ -2,8 +2,8 @@
 // Parametrisations of the tables. Each map stands beside its inverse; a test checks every pair.
 
 struct SkyDims {
-    // Numbers of nodes in the tables over the planet: sun angles, altitudes, and directions (zenith angle; azimuth from
-    // the sun's) into which the air scatters light: those of its source function.
+    // Numbers of nodes in the tables over the planet: sun angles, altitudes, and directions into which the air scatters
+    // light (zenith angles, and azimuths from the sun's): the directions of the sources.
     suns: u32,
     altitudes: u32,
     zeniths: u32,
@@ -109,7 +109,7 @@ fn source_direction(coordinate: vec2f) -> vec2f {
 }
 
 // Direction of the quadrature: zenith cosine and weight, so that the sum of weight times f is the integral of f over
-// mu. Nodes are dense at the horizon of `altitude` and never lie on it; the first half is below.
+// mu. Nodes are dense at the horizon of `altitude` and never lie on it; the first half lies below the horizon.
 fn rule_direction(air: SkyAir, altitude: Length, index: u32, half_size: u32, node: vec2f) -> vec2f {
     let horizon = horizon_mu(air, altitude);
     let y = node.x;

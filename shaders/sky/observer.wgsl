@@ -21,7 +21,7 @@ struct SkyObserver {
 @group(0) @binding(3) var sky_sampler: sampler;
 @group(0) @binding(4) var once_gas: texture_2d<f32>;
 @group(0) @binding(5) var once_haze: texture_2d<f32>;
-// Airs of the triples of a set of wavelengths. Not read where the planet's own three are the only ones.
+// Air at each triple of wavelengths. Not read if the planet's own three wavelengths are the only ones.
 @group(0) @binding(6) var<uniform> airs: array<SkyAir, 5>;
 @group(1) @binding(0) var<uniform> observer: SkyObserver;
 
@@ -67,7 +67,7 @@ struct KeptLight {
     haze: vec3f,
 }
 
-// Light from the ray's start to `end`, summed over all triples into the three that stand for them.
+// Light from the ray's start to `end`, summed over all triples into the three values that tables keep.
 fn kept_light(ray: SkyRay, end: Length, panels: u32, nu: Cosine) -> KeptLight {
     let mu_s = mu_s_at_start(ray, nu);
     if (LAYERS == 1u) {

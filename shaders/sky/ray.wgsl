@@ -11,8 +11,8 @@ struct SkyRay {
     // Radius and altitude of the point of the line that is closest to the planet's centre.
     perigee_radius: Length,
     perigee: Length,
-    // Distance from the point that `sky_ray` was given to this start, and from this start to the end of the ray or of
-    // the air.
+    // Distance from the point that `sky_ray` was given to the ray's start, and from the start to the end of the ray or
+    // of the air.
     before: Length,
     length: Length,
     // 1 if the ray ends on the ground.
@@ -71,9 +71,9 @@ fn erfcx(z: vec2f) -> vec2f {
 
 // Columns of gas and haze from the point at radius r straight out along the ray, in metres at the density of that
 // point, which is `rise` above the perigee p. With v^2 = r - p, ds = 2 (p + v^2)/sqrt(2p + v^2) dv is expanded to first
-// order around the point. That leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H). The relative error is 5e-7 for the
-// Earth, and 5e-3 where H is a sixth of the radius, at any angle. (The function is that of Chapman 1931; the expansion
-// is our own.)
+// order around the point. That leaves integrals of e^(-v^2/H) and v^2 e^(-v^2/H), where H is the scale height. The
+// relative error is 5e-7 for the Earth, and 5e-3 where H is a sixth of the radius, at any angle. (The function is that
+// of Chapman 1931; the expansion is our own.)
 fn chapman(air: SkyAir, rise: Length, r: Length, p: Length) -> vec2f {
     let scale_height = vec2f(air.rayleigh_scale_height_m, air.mie_scale_height_m);
     let z = sqrt(max(rise, 0.0) / scale_height);

@@ -18,7 +18,7 @@ fn half_sine(mu: Cosine) -> f32 {
     return sqrt(max(0.5 - 0.5 * mu, 0.0));
 }
 
-// Zenith cosine at coordinate v of the part above or below.
+// Zenith cosine at coordinate v of the part above or below the horizon.
 fn view_mu(edges: SkyEdges, v: f32, below: bool) -> Cosine {
     let q = edges.horizon + v * v * select(-1.0 / edges.above_scale, 1.0 / edges.below_scale, below);
     return clamp(1.0 - 2.0 * q * q, -1.0, 1.0);

@@ -18,7 +18,8 @@ struct WelkinGround {
 }
 
 // Values of one node: how soaked it is (0 to 1), share under a film, level of standing water above the ground in mm,
-// share under ice. The first two follow from the node's wetness:
+// share under ice. The first two follow from the node's wetness. In the formula, `soaked` is the texel's share of
+// soaked pores, and film_mm its film:
 //   wetness = 0.3 soaked + 0.7 (1 - exp(-film_mm / 0.15)), or 1 under standing water
 // A film of 0.15 mm covers 1 - 1/e of the grains of asphalt.
 fn welkin_ground_node(texel: vec4f) -> vec4f {

@@ -29,7 +29,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     blocks[id.x / WORDS].seen[id.x % WORDS] = seen;
 }
 
-// One workgroup counts the marked flakes before each block, and the flakes to draw.
+// Gives each block the index of its first flake in the list, and writes the arguments of the draw.
 @compute @workgroup_size(SUMS)
 fn order(@builtin(local_invocation_index) thread: u32) {
     order_blocks(thread, blocks_of(flakes.count), arrayLength(&spots));

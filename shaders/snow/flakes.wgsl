@@ -46,7 +46,7 @@ struct FlakesUniform {
     first: vec4u,
     // Number of flakes in all shells.
     count: u32,
-    // Turn at a rate of one turn unit, in 2^-32 of a turn.
+    // Angle since time 0 of a flake that turns at a rate of one TURN_UNIT, in 2^-32 of a turn.
     turn: u32,
     pad: vec2u,
     // Per shell, in 2^-32 of the cell's side. x, y, z: place of the camera in the cell that moves with the air. w:
@@ -54,8 +54,8 @@ struct FlakesUniform {
     cell: array<vec4u, SHELLS>,
     // Per shell: place of the camera in the cell fixed to the world, in 2^-32 of its side. Used for stepped flakes.
     eye: array<vec4u, SHELLS>,
-    // Per shell, m. x: side of the cell. y and w: distances at which it begins to fade in and is in full, while the
-    // smaller shell fades out. z: distance at which it begins to fade out.
+    // Per shell, m. x: side of the cell. y and w: distances at which the shell begins to fade in and is drawn in full,
+    // while the next smaller shell fades out. z: distance at which the shell begins to fade out.
     shell: array<vec4f, SHELLS>,
     // Per class. x: diameter, m. y: fall speed, SPEED_UNIT. z: radius of the helix, m. w: turns, TURN_UNIT.
     classes: array<vec4f, CLASSES>,
@@ -146,7 +146,7 @@ fn lattice_place(own: Own) -> vec3u {
     return own.random - vec3u(0u, 0u, bitcast<u32>(own.speed) * cell.w) - cell.xyz;
 }
 
-// Returns the shell of flake number `place` of all; those of the innermost shell come first.
+// Returns the shell of flake number `place` among the flakes of all shells; those of the innermost shell come first.
 fn shell_of(place: u32) -> u32 {
     return u32(place >= flakes.first.y) + u32(place >= flakes.first.z) + u32(place >= flakes.first.w);
 }
@@ -157,7 +157,7 @@ fn flake_in(run: Run, index: u32) -> Flake {
     return flake_at(own, lattice_place(own), flakes.wind - vec3f(0.0, 0.0, f32(own.speed) * SPEED_UNIT));
 }
 
-// Returns flake number `place` of all.
+// Returns flake number `place` among the flakes of all shells.
 fn flake_of(place: u32) -> Flake {
     let s = shell_of(place);
     let index = place - flakes.first[s];

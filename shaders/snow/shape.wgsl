@@ -1,13 +1,14 @@
-// Shape of a flake: a clump of crystals, each different. A disc whose edge and inside are eroded by noise: 1 - exp(-5
-// W) with W = noise - radius^2. src/snow/shape.rs has the f64 twin and the source; its tests check that the mean over
-// the disc is the flake's share of ice.
+// Shape of a flake: a clump of crystals, each different. The clump is a disc whose edge and inside are eroded by noise.
+// Its opacity at the distance r from the middle, in radii, is 1 - exp(-5 W) with W = offset + weight * noise - r^2.
+// src/snow/shape.rs has the f64 twin and the source of the formula; its tests check that the mean over the disc is the
+// flake's share of ice.
 //!include "common/hash.wgsl"
 
-// Number of octaves of the noise; each is twice as fine and half as strong as the last.
+// Number of octaves of the noise; each is twice as fine and half as strong as the one before.
 const SHAPE_OCTAVES: u32 = 4u;
-// Cells of the noise in a radius.
+// Cells of the coarsest octave of the noise in a flake's radius.
 const SHAPE_CELLS: f32 = 2.2;
-// Constant added to the noise. It and the weight set the mean opacity of a flake.
+// Constant added to the noise. This constant and SHAPE_NOISE set the mean opacity of a flake.
 const SHAPE_OFFSET: f32 = 0.8563;
 // Weight of the noise.
 const SHAPE_NOISE: f32 = 2.0;

@@ -6,15 +6,16 @@ struct GlowUniform {
     clip: mat4x4f,
     // Columns of the rotation from J2000.0 to (east, north, up).
     to_world: array<vec4f, 3>,
-    // Luminance of 1 S10 of zodiacal light, and (below) of starlight, in the target's units, times the share of night.
+    // Luminance of 1 S10 (one star of magnitude 10 a square degree) of zodiacal light (`zodiacal`) and of starlight
+    // (`starlight`), in the target's units, times the share of night.
     zodiacal: vec3f,
     // Square of the ratio of the eye's distance from the planet's centre to that of the airglow layer, less than 1.
     layer_ratio2: f32,
     starlight: vec3f,
     // 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     y_sign: f32,
-    // Airglow straight up, and (below) light of infinitely deep lit air, in the target's units, times the share of
-    // night.
+    // Airglow straight up (`airglow`), and light of infinitely deep lit air (`lit_air`), in the target's units, times
+    // the share of night.
     airglow: vec3f,
     pad0: f32,
     lit_air: vec3f,
@@ -59,8 +60,8 @@ fn van_rhijn(sine_of_elevation: f32, layer_ratio2: f32) -> f32 {
     return inverseSqrt(1.0 - layer_ratio2 * (1.0 - sine_of_elevation * sine_of_elevation));
 }
 
-// Relative air mass (Young 1994, Applied Optics 33, 1108, eq. 5). It avoids the powers of the law for points, and
-// differs from it only where almost no light from above the air is left.
+// Relative air mass (Young 1994, Applied Optics 33, 1108, eq. 5). This law avoids the powers of the one in
+// stars/points.wgsl, and differs from that one only where almost no light from above the air is left.
 fn air_mass(sine: f32) -> f32 {
     return ((1.002432 * sine + 0.148386) * sine + 0.0096467) / (((sine + 0.149864) * sine + 0.0102963) * sine + 0.000303978);
 }

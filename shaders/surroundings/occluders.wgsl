@@ -55,7 +55,7 @@ fn crosses(i: u32, p: vec3f, velocity: vec3f) -> bool {
     let map = occluders.maps[i];
     let back = map.velocity.xyz - velocity;
     let at = vec4f(p, 1.0);
-    // The values of the map's four rows at s seconds before p are a + s b.
+    // The values of the map's four rows s seconds before the path reaches `p` are a + s b.
     let a = vec4f(dot(map.x, at), dot(map.y, at), dot(map.w, at), dot(map.distance, at));
     let b = vec4f(dot(map.x.xyz, back), dot(map.y.xyz, back), dot(map.w.xyz, back), dot(map.distance.xyz, back));
     let sides = vec4f(a.xy - map.part.xy * a.z, map.part.zw * a.z - a.xy);

@@ -34,7 +34,7 @@ struct Shelters {
 @group(2) @binding(0) var<uniform> shelters: Shelters;
 
 // Returns the time, s, that a drop which came to `p` with `velocity` has spent inside the shape of box `i`, cut by its
-// planes. It is negative if the drop has not been inside: the farther away it passed, the lower.
+// planes. The time is negative if the drop has not been inside: the farther away the drop passed, the lower the time.
 fn time_within(i: u32, p: vec3f, velocity: vec3f) -> f32 {
     return time_nearby(i, p, velocity, 0.0);
 }

@@ -8,7 +8,7 @@ struct WindMap {
     // Scale and offset from camera-relative metres to texture coordinates.
     scale: vec3f,
     offset: vec3f,
-    // Texture coordinates of the first node; the last is as far from the opposite end.
+    // Texture coordinates of the first node; the last node is as far from the opposite end of the texture.
     first: vec3f,
 }
 

@@ -16,7 +16,8 @@ use crate::{
 const ARC_SECOND_DEG: f64 = 1.0 / 3600.0;
 
 /// Returns the nutation in longitude and true obliquity of the ecliptic, rad, at `t` centuries of TT since J2000
-/// (Meeus, Astronomical Algorithms, chapter 22, the two leading terms: 0.5").
+/// (Meeus, Astronomical Algorithms, chapter 22). Of each series only the two leading terms are used, so the result is
+/// within 0.5".
 pub(crate) fn nutation_obliquity(t: f64) -> (f64, f64) {
     let node = (125.044_52 - 1_934.136_261 * t).to_radians();
     let sun = (280.466_5 + 36_000.769_8 * t).to_radians();
@@ -35,7 +36,7 @@ fn mean_obliquity_deg(t: f64) -> f64 {
 pub fn mean_sidereal_time(utc: Utc) -> f64 {
     let days = utc.julian_date() - 2_451_545.0;
     let t = days / 36_525.0;
-    // Whole days are whole turns and are dropped. With them the angle would grow to millions of degrees and lose ten
+    // Whole days are whole turns and are dropped. With them the angle would be about 366 times as large and lose eight
     // bits.
     let turns = 360.0 * days.rem_euclid(1.0) + 0.985_647_366_29 * days;
     (280.460_618_37 + turns + t * t * (0.000_387_933 - t / 38_710_000.0)).rem_euclid(360.0).to_radians()
@@ -75,8 +76,8 @@ pub(crate) fn equator_of_date_to_world(utc: Utc, place: &Place) -> DMat3 {
 /// to (east, north, up) at `place`: precession, nutation and the Earth's rotation. Apply it to a star's unit vector
 /// ([`equatorial_direction`]).
 ///
-/// Accurate to 1" within two centuries of 2000, without aberration (20") and refraction. UT1 is taken as UTC (at most
-/// 0.9 s: 14").
+/// Accurate to 1" within two centuries of 2000. Aberration (20") and refraction are not applied. UT1 is taken as UTC;
+/// they differ by at most 0.9 s, which turns the sky by 14".
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] for a place or time out of range.
@@ -148,8 +149,8 @@ mod tests {
 
     #[test]
     fn venus_over_washington_in_meeus_example_13b() {
-        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, elevation 15.1249. As
-        // here, the latitude is geographic and the site is at sea level.
+        // Apparent place of date 23h 09m 16.641s, -6 43' 11.61": azimuth 68.0337 from the south, elevation 15.1249. The
+        // example's latitude is geographic, and its site is at sea level.
         let place = Place { latitude_deg: 38.921_389, longitude_deg: -77.065_556, altitude_m: 0.0 };
         let utc = Utc::from_calendar(1987, 4, 10, 19, 21, 0.0).unwrap();
         let venus = equatorial_direction(347.319_337_5, -6.719_891_7);

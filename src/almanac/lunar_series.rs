@@ -106,7 +106,7 @@ fn geocentric_ecliptic(t: f64) -> (f64, f64, f64) {
     let f = angle([93.272_095_0, 483_202.017_523_3, -0.003_653_9, -1.0 / 3_526_000.0]);
     let [a1, a2, a3] = [(119.75, 131.849), (53.09, 479_264.290), (313.45, 481_266.484)]
         .map(|(a, b): (f64, f64)| (a + b * t).to_radians());
-    // Terms with the sun's anomaly scale with the eccentricity of the Earth's orbit.
+    // Eccentricity of the Earth's orbit, relative to that at J2000. A term with n times M scales with its n-th power.
     let e = 1.0 - 0.002_516 * t - 0.000_007_4 * t * t;
     let argument = |c: &[f64]| c[0] * d + c[1] * m + c[2] * mp + c[3] * f;
     let weight = |c: &[f64]| e.powi(c[1].abs() as i32);

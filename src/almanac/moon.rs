@@ -29,7 +29,8 @@ pub struct MoonPosition {
     pub phase_angle: f64,
     /// Lit share of the disc, 0 to 1.
     pub illuminated: f64,
-    /// Unit vector in the plane of the disc towards the middle of the lit limb, (east, north, up).
+    /// Unit vector in the plane of the disc towards the middle of the lit limb, (east, north, up). If the sun, the moon
+    /// and the place lie on one line, it has any direction in that plane.
     pub bright_limb: DVec3,
     /// Illuminance above the air on a surface facing the moon, lux.
     pub illuminance_lux: f64,
@@ -67,8 +68,8 @@ pub(crate) fn lit(turned: &Topocentric) -> MoonPosition {
 }
 
 /// Returns the moon's illuminance above the air on a surface facing it, lux, at a phase angle, rad, and a distance, m.
-/// At the mean distance the magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the phase angle a in degrees
-/// (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon). One lux is magnitude -14.18.
+/// At the mean distance, 384,400 km, the magnitude is V = -12.73 + 0.026 |a| + 4e-9 a^4 with the phase angle a in
+/// degrees (Krisciunas & Schaefer 1991, eq. 9, with Allen's magnitude of the full moon). One lux is magnitude -14.18.
 pub fn moon_illuminance_lux(phase_angle: f64, distance_m: f64) -> f64 {
     let a = phase_angle.abs().to_degrees();
     let magnitude = -12.73 + 0.026 * a + 4e-9 * a.powi(4);
@@ -90,7 +91,8 @@ mod tests {
             let moon = moon_position(Utc(unix), &place).unwrap();
             let apart = moon.direction.angle_between(super::super::sun::direction(azimuth, elevation)).to_degrees();
             assert!(apart < 0.02, "{unix}: {moon:?} is {apart} degrees from {azimuth} {elevation}");
-            // That almanac gives the phase as seen from the Earth's centre: up to 0.95 degrees of parallax, 0.8 %.
+            // That almanac gives the phase as seen from the Earth's centre. The moon's parallax, up to 0.95 degrees,
+            // changes the lit share by up to 0.8 %.
             assert!((moon.illuminated * 100.0 - percent).abs() < 0.9, "{moon:?} {percent}");
         }
     }

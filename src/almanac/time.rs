@@ -51,7 +51,8 @@ pub struct Utc(pub f64);
 impl Utc {
     /// Creates a time from a calendar date (proleptic Gregorian) and a time of day: a year in \[-2000, 6000\], and a
     /// second in \[0, 60), or in \[0, 61) in minute 59 of hour 23. A leap second, 23:59:60, is the first second of the
-    /// next day, as in Unix time.
+    /// next day, as in Unix time. The last 16 hours of 6000 are accepted here, but refused by the series of sun and
+    /// moon.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -86,9 +87,8 @@ impl Utc {
     /// Returns TT - UT1, s: 69.1 s in 2026. For the years -500 to 3000 it comes from the crate `solar-positioning`: the
     /// polynomials of Espenak and Meeus (2006, with Espenak's of 2014) until 2015, then a quartic through the
     /// observations of IERS until the middle of 2026, and a quadratic through simulations (Agnew 2026) after that.
-    /// These curves meet within 0.4 s. Before and after these years the difference continues as the parabola of
-    /// Morrison and Stephenson (2004), 32 s per century squared for tidal friction, shifted to meet the fit without a
-    /// step.
+    /// These curves meet within 0.4 s. Before -500 and after 3000 the difference continues as the parabola of Morrison
+    /// and Stephenson (2004), 32 s per century squared for tidal friction, shifted to meet the fit without a step.
     pub fn delta_t_s(self) -> f64 {
         let year = 2000.0 + (self.julian_date() - 2_451_544.5) / 365.2425;
         let fitted = year.clamp(FITTED_YEARS[0], FITTED_YEARS[1]);

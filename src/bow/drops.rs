@@ -29,8 +29,8 @@ const DUST_BELOW: f64 = 0.05;
 /// Difference above the asymmetry [`DROPLETS`] at which a layer is lifted snow alone, without droplets.
 const SNOW_ABOVE: f64 = 0.03;
 
-/// Share of droplets in a layer at the ground, 0 to 1. Dust, sand, lifted snow, and fine particles whose extinction
-/// changes with the wavelength make no bow.
+/// Returns the share of droplets in the extinction of a layer at the ground, 0 to 1. Dust, sand, lifted snow, and fine
+/// particles whose extinction changes with the wavelength make no bow.
 fn droplets(layer: &GroundLayer) -> f64 {
     let off = layer.asymmetry - DROPLETS;
     let round = 1.0 - if off > 0.0 { off / SNOW_ABOVE } else { -off / DUST_BELOW };
@@ -58,8 +58,8 @@ pub(super) fn low_air(c: &Conditions, rain: impl FnOnce(&Falling, f64) -> [f64; 
     (classes.iter().sum::<f64>() > 0.0).then(|| classes.map(|v| v / all))
 }
 
-/// Returns the share of each class of drops in the summed extinction of all rain areas; `None` without any. `rain` is
-/// [`in_rain`] or a cache of it.
+/// Returns the share of each class of drops in the summed extinction of all rain areas; `None` if no drops fall in any
+/// of them. `rain` is [`in_rain`] or a cache of it.
 pub(super) fn areas(
     now: &SceneMoment<'_>,
     mut rain: impl FnMut(&Falling, f64) -> [f64; CLASSES],

@@ -15,10 +15,10 @@
 //! and the disc of the sun or the moon.
 //!
 //! The smooth phase functions of fog and rain already contain the light of both bows. The table therefore holds the
-//! bows less a smooth function with the same sum over all directions: a bow moves light and adds none. Fog and rain
-//! compute the light that they scatter once, before the phase function. The composition adds that light times the
-//! table's value, and the columns under rain areas do the same with their own light. Clouds, air and fog in front of a
-//! bow therefore dim it like everything else there.
+//! bows less a smooth function with the same sum over all directions: a bow moves light and adds none. The shaders
+//! compute the single-scattered light of fog and rain before they apply the phase function. The composition adds this
+//! light times the table's value, and the columns under rain areas do the same with their own light. Clouds, air and
+//! fog in front of a bow therefore dim it like everything else there.
 //!
 //! * *Drops*: rain by its drop sizes ([`crate::falling::sizes`]); fog by droplets with a mean diameter of 15
 //!   micrometres, whose bow is white and wide. Snow, hail and dust make no bow.
@@ -27,7 +27,8 @@
 //!   pictures whose field of view reaches the bows.
 //! * *Error*: angle within 0.25 degrees, light within 15 % and width within 25 % of Mie's theory. Drops count as
 //!   spheres; in nature drops beyond 1 mm are flat and leave the top of a bow fainter. The light on the drops is the
-//!   mean under the clouds. The cube map shows no bow, because it shows no fog.
+//!   mean under the clouds. A face of the cube map uses the tables of the frame that draws the face, so it may lack a
+//!   bow that this frame's picture does not reach.
 //!
 //! The room has no `passes.rs`, because the composition draws the bows; no `candidates.rs`, because there is one way to
 //! draw them, too cheap to be left out; and no `held.rs`, because a bow has no state.

@@ -61,8 +61,9 @@ impl Rays {
         (self.slope(self.least() + h) - self.slope(self.least() - h)) / (4.0 * h)
     }
 
-    /// Returns the optical path, in radii, relative to that through the middle of a drop of index 1. From one ray to
-    /// its neighbour the path changes by b dD, where D is the turn.
+    /// Returns the optical path of a ray, in radii, less that of a ray that goes straight to the middle of the drop and
+    /// leaves from there in the same direction, both in air. From one ray to its neighbour the path changes by b dD,
+    /// where D is the turn.
     fn path(&self, b: f64) -> f64 {
         let [ci, cr] = self.cosines(b);
         2.0 * (f64::from(self.inside) + 1.0) * self.index * cr - 2.0 * ci
@@ -82,7 +83,8 @@ impl Rays {
         self.passed(b).map(|f| f * spread.sqrt())
     }
 
-    /// Returns how far an angle from the antisolar point, rad, lies beyond the bow on its bright side, rad.
+    /// Returns the distance of `angle` from the bow, rad: above 0 on the bright side of the bow, below 0 on the dark
+    /// side. `angle` is measured from the antisolar point, rad.
     fn beyond(&self, angle: f64) -> f64 {
         let first = self.turn(self.least()) - PI;
         if self.inside == 1 { -first - angle } else { angle - first }
@@ -109,8 +111,8 @@ impl Rays {
             let b = find(least, 1.0);
             high = (self.amplitude(b, turned), self.path(b));
         } else {
-            // All rays near the edge turn by less than this angle. The path continues linearly from that of the ray at
-            // the edge.
+            // All rays between the least turn and the edge turn by less than `turned`: this side has no ray. The path
+            // continues linearly from that of the ray at the edge.
             high.1 += turned - most;
         }
         if turned < self.turn(0.0) {
@@ -146,8 +148,8 @@ impl Rays {
 /// Angle beyond the bow within which Airy's own form is used, rad.
 const NEAR_RAD: f64 = 0.0087;
 
-/// Returns Airy's function and its derivative: the series about 0 (Abramowitz and Stegun 1964, 10.4.2), and beyond 5
-/// the asymptotic expansion (10.4.59 to 10.4.62, two terms).
+/// Returns Airy's function and its derivative: for |x| below 5 by the series about 0 (Abramowitz and Stegun 1964,
+/// 10.4.2), otherwise by the asymptotic expansion (10.4.59 to 10.4.62, two terms).
 pub fn airy(x: f64) -> [f64; 2] {
     if x.abs() < 5.0 {
         let (c1, c2) = (0.355_028_053_887_817_2, 0.258_819_403_792_806_8);

@@ -26,8 +26,8 @@ const DISC_RAD: f64 = 0.00465;
 /// Entries over which the bows fade at the end of a table.
 const FADE: usize = 24;
 
-/// Drops of nearly one size. A table is a sum over classes. Radii are in micrometres; shares are those of the
-/// extinction.
+/// Drops of nearly one size, as five radii, micrometres, each with its share of the class's extinction. A table is a
+/// sum over classes.
 #[derive(Clone, Copy, Debug)]
 struct Class {
     radii_um: [f64; 5],

@@ -27,7 +27,7 @@ pub(crate) struct BowView {
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
     /// Cache of tables, by the shares of the classes.
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
-    /// Tables of the last draw: for the low air and for rain areas.
+    /// Tables of the last draw whose picture may show a bow: for the low air and for rain areas.
     shown: Box<[BowTable; 2]>,
 }
 

@@ -29,7 +29,7 @@ pub fn has_init(name: &str) -> bool {
     STRUCTS.iter().any(|s| s.name == name && s.has_init)
 }
 
-/// Calls `wk_x_init` of the struct `name` on `bytes`, which are aligned for any struct.
+/// Calls `wk_x_init` of the struct `name` on `bytes`, which are aligned for any struct, and returns the call's status.
 pub fn init(name: &str, bytes: &mut [u64], struct_size: u32) -> i32 {
     assert!(struct_size as usize <= size_of_val(bytes), "the buffer holds the struct");
     // SAFETY: `bytes` is writable and holds `struct_size` bytes.
@@ -71,8 +71,8 @@ pub fn log_in_next_call() {
     call::inject(call::Injected::Message);
 }
 
-/// Returns every enumeration and every reserved field of every struct: struct, field, offset in bytes, whether it is 8
-/// bytes wide.
+/// Returns every enumeration and every reserved field of every struct, from the struct's fourth field on: struct,
+/// field, offset in bytes, and whether the field is 8 bytes wide.
 pub fn constants() -> Vec<(&'static str, &'static str, usize, bool)> {
     let mut found = Vec::new();
     for s in STRUCTS {

@@ -92,7 +92,7 @@ pub fn fields(name: &str) -> Option<Vec<NamedField>> {
     Some(field.collect())
 }
 
-/// Returns a struct with every field at its default; `None` for an unknown name.
+/// Returns a struct with every field at its default; `None` for an unknown name and for a struct without struct_size.
 pub fn default_of(name: &str) -> Option<StructBytes> {
     let info = info(name).filter(|info| info.has_init)?;
     let mut bytes = vec![0; info.size.div_ceil(size_of::<u64>())];
@@ -219,10 +219,11 @@ impl NamedCalls {
         Ok(calls)
     }
 
-    /// Makes the call that takes one struct, by the call's name; `None` for `bytes` passes NULL.
+    /// Makes the call that takes one struct, by the call's name; `None` for `bytes` passes NULL. A call that also takes
+    /// a time gets the present simulation time.
     ///
     /// # Errors
-    /// The errors of the call; an unknown call.
+    /// The errors of the call; an unknown call; bytes of another number than the struct's.
     pub fn set(&self, call: &str, bytes: Option<&[u64]>) -> Result<(), Refusal> {
         let unknown = || Refusal { message: format!("there is no call {call} for one struct"), field: String::new() };
         let (_, name) = SETTERS.iter().find(|s| s.0 == call).ok_or_else(unknown)?;
@@ -250,7 +251,7 @@ impl NamedCalls {
         })
     }
 
-    /// Sets the weather, from a simulation time on.
+    /// Changes to a weather, beginning at simulation time `start_s` and lasting `transition_s`, s.
     ///
     /// # Errors
     /// The errors of `wk_context_set_weather`.
@@ -271,8 +272,8 @@ impl NamedCalls {
         done(unsafe { timeline::wk_context_set_weather(self.context, c, start_s, transition_s) })
     }
 
-    /// Gets a struct of answers by the name of the call: the conditions of the weather at a position, m, or the report
-    /// of the last frame.
+    /// Gets a struct of answers by the name of the call, and the struct's name: the present conditions of the weather
+    /// at a position, m, or the report of the last frame.
     ///
     /// # Errors
     /// The errors of the call; an unknown call.
@@ -294,7 +295,7 @@ impl NamedCalls {
         Ok((name, bytes))
     }
 
-    /// Simulation time of the context, s.
+    /// Simulation time of the context, s; 0 if an earlier call has panicked.
     pub fn time_s(&self) -> f64 {
         self.with(|_, context| context.time_s()).unwrap_or(0.0)
     }

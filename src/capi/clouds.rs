@@ -6,7 +6,7 @@
 //!
 //! Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). The
 //! stage SURFACE then finds the place of each pixel from the host's depth, and multiplies the pixel by the ratio of the
-//! light there to the mean light. A host that lights an object separately, such as the view out of a cab, can query the
+//! light there to the mean light. A host that lights an object separately, such as a cab's interior, can query the
 //! share at the object's place (wk_context_get_sun_share).
 
 use std::{ffi::c_void, ptr::null};
@@ -33,8 +33,8 @@ pub type wk_cloud_model = u32;
 /// clear sky.
 pub const WK_CLOUD_MODEL_DECK: wk_cloud_model = 0;
 /// Volumes that the camera can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen from
-/// below is drawn as a deck. Each frame computes one of every sixteen pixels; wk_frame.frame_id selects which, so
-/// increase it by one in every frame.
+/// below is drawn as a deck. Each frame computes one of every sixteen pixels (by default: see wk_clouds.square_side);
+/// wk_frame.frame_id selects which, so increase it by one in every frame.
 pub const WK_CLOUD_MODEL_VOLUME: wk_cloud_model = 1;
 
 /// Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in place of the volume

@@ -38,6 +38,7 @@ pub struct wk_conditions {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
+    /// Shallow or patchy fog, which a reported visibility leaves out, is not included.
     pub extinction_per_m: f64,
     /// Meteorological optical range for extinction_per_m, m; at most 1e9, the value without any air.
     pub visibility_m: f64,

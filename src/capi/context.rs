@@ -194,7 +194,7 @@ pub(super) fn exposure_in(param: &str, e: Error) -> Error {
     e.map_field(|_| format!("{param}.exposure_value"))
 }
 
-/// Converts the description to the Rust side's.
+/// Checks a description and converts it to that of the Rust API.
 ///
 /// # Safety
 /// `desc.planet_toml` and `desc.cache_dir` are NULL or strings, and the chain is checked.
@@ -300,7 +300,7 @@ pub type wk_progress_fn = Option<unsafe extern "C" fn(user: *mut c_void, share: 
 /// Call this function at load time, behind a progress bar. The call reuses tables that another context of the device
 /// already shows or that lie in the context's cache_dir, and writes new tables to cache_dir. Without this call the
 /// first frame shows a draft of the sky, which differs from the finished sky by at most 3 of 255 display steps, and 120
-/// frames refine it without a visible step. A frame with WK_FRAME_NO_HISTORY builds all tables itself
+/// frames refine it without a visible step; a frame with WK_FRAME_NO_HISTORY then builds all tables itself
 /// (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen times, the last time with 1. An
 /// aborted build leaves the context as it was and writes no file.
 /// Thread: exclusive on the context; with an OpenGL host, the thread where its OpenGL context is (or can be made)

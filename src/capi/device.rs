@@ -174,7 +174,8 @@ pub(super) fn options(desc: &wk_device_desc) -> DeviceOptions {
 /// Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
 /// can be made) current. Elsewhere, or when the OpenGL context is already gone, Welkin abandons the device's GPU
 /// objects.
-/// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
+/// Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures; WK_ERROR_DEVICE_LOST if a host's Vulkan device
+/// is lost: the wk_device is then destroyed all the same.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_destroy(device: *mut wk_device) -> wk_status {
     guard("wk_device_destroy", |_| {

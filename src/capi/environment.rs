@@ -8,8 +8,8 @@
 //! Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 *
 //! roughness) is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS
 //! and set their filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first
-//! frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and when light or weather jump. A view draws the cube map
-//! only after the first wk_view_get_environment.
+//! frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and when light, weather or place jump. A view draws the
+//! cube map only after the first wk_view_get_environment.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -46,7 +46,8 @@ pub struct wk_environment {
     /// Factor from texels to cd/m^2; 0 before the first frame. It changes only in frames that draw all faces.
     pub cd_m2_per_unit: f64,
     /// Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these values are in the
-    /// host's units. In the display spaces they are display values before the tone curve.
+    /// host's units. In the display spaces they are exposed luminances, to which the tone curve still has to be
+    /// applied.
     pub light_scale: f64,
 }
 
@@ -63,10 +64,10 @@ impl wk_environment {
     };
 }
 
-/// Gets the native texture of the cube map. Once you have called this function, the first wk_view_record of each frame
-/// with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays
-/// the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
-/// wk_view_record. Call this function after each frame to get the frame's scales.
+/// Gets the native texture of the cube map. Once you have called this function, the faces that are due are drawn in
+/// each frame by its first wk_view_record with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM. The texture belongs to the view
+/// and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after
+/// each such wk_view_record. Call this function after each frame to get the frame's scales.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
 #[unsafe(no_mangle)]

@@ -207,15 +207,16 @@ pub struct wk_own_target {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// The image to draw into. Default NULL.
+    /// The image to draw into, of any wk_format with four channels. Default NULL.
     pub color: *const wk_texture,
     /// Surface to draw into if `color` is NULL: Welkin draws into its acquired image. Default NULL.
     pub surface: *const wk_surface,
     /// Depth of the host's picture, WK_FORMAT_R32_FLOAT, as large as `color`. With NULL (the default) every pixel shows
     /// the sky.
     pub depth: *const wk_texture,
-    /// Mask: where its red is 1, the host's pixel stays (cab, HUD); where its red is 0, Welkin draws weather. As large
-    /// as `color`. Default NULL.
+    /// Mask: where its red is 1, the host's pixel stays (cab, HUD); where its red is 0, Welkin draws weather.
+    /// WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM, WK_FORMAT_RGBA8_SRGB or WK_FORMAT_BGRA8_UNORM, as large as `color`.
+    /// Default NULL.
     pub mask: *const wk_texture,
     /// Surface class of each pixel: the byte of red is a wk_surface_class, or 0 to use the class of the host's terrain
     /// or the context's default. WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM or WK_FORMAT_BGRA8_UNORM, as large as
@@ -260,7 +261,8 @@ pub struct wk_frame_light {
     pub next: *const c_void,
     /// Unit vector in the host's world towards the sun, or towards the moon when the moon is brighter.
     pub direction: [f64; 3],
-    /// Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 below the horizon.
+    /// Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 when that light is below
+    /// the horizon.
     pub direct: [f64; 3],
     /// Light from sky, clouds and fog on level ground, and direct light from the fainter of sun and moon.
     pub ambient: [f64; 3],
@@ -325,7 +327,8 @@ pub(super) struct Images<'a> {
     pub(super) normals: Option<&'a wgpu::Texture>,
 }
 
-/// Converts a checked C frame with its images to the Rust side's frame.
+/// Converts a C frame, whose fields have been checked one by one, and its images to the Rust API's frame. `bottom_left`
+/// says that the first row of the images always lies at clip y = -1, as in OpenGL.
 ///
 /// # Errors
 /// The first field that is out of range, named as in the header.

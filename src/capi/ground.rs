@@ -37,8 +37,8 @@ pub type wk_ground_model = u32;
 pub const WK_GROUND_REPORTED: wk_ground_model = 0;
 /// A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills the
 /// ground's pores, the film on it and its hollows. The water drains and dries by wind, sun and humidity (Penman 1948)
-/// in steps of 10 s. After a leap of more than a day only the last day is simulated, which starts with the wetness of
-/// the weather at that time. See wk_context_update for leaps that take more than one call.
+/// in steps of 10 s. After a leap of more than a day only the last day is simulated, from the wetness of the weather at
+/// the beginning of that day. See wk_context_update for leaps that take more than one call.
 pub const WK_GROUND_SIMULATED: wk_ground_model = 1;
 
 /// Source of the lying snow.

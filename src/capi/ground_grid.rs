@@ -100,10 +100,10 @@ impl wk_ground_cell {
     }
 }
 
-/// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. With NULL
-/// the ground is level everywhere. Setting the same grid again keeps its water, even with other classes; a different
-/// grid starts as wet as level ground is. For the largest grids the call may take some tenths of a second. A failed
-/// call changes nothing.
+/// Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. NULL
+/// removes the grid, but not tiles; without either the ground is level everywhere. Setting the same grid again keeps
+/// its water, even with other classes; a different grid starts as wet as level ground is. For the largest grids the
+/// call may take some tenths of a second. A failed call changes nothing.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -49,9 +49,10 @@ pub struct wk_ground_texture {
     /// standing_mm crosses 0.
     pub texture: u64,
     /// Number that changes whenever `texture` becomes another object, even one of the same name: after another grid was
-    /// set or loaded.
+    /// set or loaded. For tiles it never changes.
     pub generation: u64,
-    /// Revision of the texture's contents, as in wk_context_get_ground_cells.
+    /// Revision of the texture's contents: for a grid, that of wk_context_get_ground_cells; for tiles, the number of
+    /// writes to the texture so far.
     pub revision: u64,
     /// Width, texels: the number of nodes of a grid to the east, or 512 for tiles.
     pub width: u32,

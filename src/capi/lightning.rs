@@ -300,12 +300,12 @@ pub unsafe extern "C" fn wk_context_trigger_flash(
     })
 }
 
-/// Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. The two
-/// times are at most 3600 s apart. Flashes that start farther from the position than `most_distance_m`, in [0, 50000]
-/// m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0 nothing else
-/// is written, and the call succeeds. If `capacity` is too small, the call writes only the number and fails.
-/// `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the call
-/// uses the earliest weather that the timeline knows.
+/// Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. `until_s`
+/// is from 0 to 3600 s later than `from_s`. Flashes that start farther from the position than `most_distance_m`, in [0,
+/// 50000] m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0
+/// nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the number and
+/// fails. `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the
+/// call uses the earliest weather that the timeline knows.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
 #[unsafe(no_mangle)]

@@ -3,10 +3,10 @@
 //! It has two floors. `boundary` is the lower one: the numbers of statuses and struct types, the layouts of structs,
 //! checks of parameters, handles and the objects behind them, the cell of a device, and the guard that keeps panics
 //! inside. It has no `wk_*` call. The files beside it are the upper floor: the `wk_*` calls with their structs, the
-//! code that several of them share (`host`, `weather_convert`), `abi`, the tests' view of the interface, and `by_name`,
-//! the view of tools that are made from the header. Each file may use the lower floor, and other files of the upper
-//! floor as long as no cycle of files results. The lower floor uses the upper one only in generated code:
-//! `boundary::layout` includes the tables that `build.rs` writes from all structs.
+//! code that several of them share (`host`, `weather_convert`), `abi`, the tables of the interface for tests, and
+//! `by_name`, the structs and calls by their names for tools that are made from the header. Each file may use the lower
+//! floor, and other files of the upper floor as long as no cycle of files results. The lower floor uses the upper one
+//! only in generated code: `boundary::layout` includes the tables that `build.rs` writes from all structs.
 //!
 //! Each `pub mod` below without an attribute (so neither `abi` nor `by_name`) is one section of `include/welkin.h`, in
 //! this order; its `//!` text is the section's article. `build.rs` writes the header from them (cbindgen does the

@@ -27,7 +27,7 @@ use crate::{error::Status, rain::MAX_OCCLUDER_MAPS};
 include!(concat!(env!("OUT_DIR"), "/init_occluder.rs"));
 
 /// Sets the maps of objects that keep rain off, at most 4, and replaces those set before; count 0 removes all. After an
-/// error the previous maps stay. They are not part of a saved state, because each channel may have its own.
+/// error the previous maps stay. No map is part of a saved state, because each channel may have maps of its own.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
 /// WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.

@@ -73,7 +73,8 @@ impl wk_occluder_map {
         generation: 0,
     };
 
-    /// Returns the map's camera and time as the Rust API's struct.
+    /// Returns the map's camera, and its objects' time and velocity, as the Rust API's struct. `bottom_left` says that
+    /// the first row always lies at clip y = -1, as in OpenGL.
     pub(super) fn taken(&self, bottom_left: bool) -> Taken {
         Taken {
             clip_from_world: DMat4::from_cols_array(&self.clip_from_world),

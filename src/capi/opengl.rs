@@ -36,10 +36,12 @@ include!(concat!(env!("OUT_DIR"), "/init_opengl.rs"));
 /// `wk_device_destroy`; call that function while the contexts live. Welkin never deletes the host's objects.
 /// Thread: the one on which the host's context is current.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
-/// or the wrong one is current, or, in WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples
-/// or primitives is active; WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if it
-/// has a wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if its driver draws a few known texels wrong or does
-/// not finish them within 6 s.
+/// or the wrong one is current, if make_current fails, if the context cannot draw now (a display list is being
+/// compiled, the render mode is not GL_RENDER, or the current program is marked for deletion), or, in
+/// WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples or primitives is active;
+/// WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if the context already has a
+/// wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if the context's driver draws a few known texels wrong or
+/// does not finish them within 6 s.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_opengl(
     desc: *const wk_opengl_host_desc,

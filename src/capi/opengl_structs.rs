@@ -135,8 +135,9 @@ pub struct wk_opengl_target {
     /// The image to draw into. Default none.
     pub color: wk_opengl_image,
     /// The host's depth; none (the default) shows the sky in every pixel. If `color` is a framebuffer, use the same
-    /// one, else another image. It has as many samples as `color`. If `color` has one sample (a resolved picture),
-    /// depth may have more, except on OpenGL ES; one sample of each pixel is then used.
+    /// one, else another image. The depth has as many samples as `color`, with one exception: where `color` has one
+    /// sample (a resolved picture), the depth may have more, except on OpenGL ES. One sample of each pixel is then
+    /// used.
     pub depth: wk_opengl_image,
     /// A mask of one sample: where red is 1, the host's pixel stays; where it is 0, Welkin draws weather. Default none.
     pub mask: wk_opengl_image,

@@ -313,8 +313,8 @@ impl wk_part_plan {
     }
 }
 
-/// Sets the limits for the view's pictures: tolerance and time. NULL removes them, and everything is drawn again.
-/// Unchanged after an error.
+/// Sets the limits for the view's pictures: tolerance and time. NULL removes them, and everything is drawn again. After
+/// an error the previous limits stay.
 /// Thread: exclusive on the view.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]

@@ -2,15 +2,15 @@
 //!
 //! These functions serve sensors, reflections and lighting that the host computes itself. They give the radiance of the
 //! sky in a direction, as a picture shows it in pixels that the host did not draw. The radiance includes the clear air,
-//! clouds as the model draws them, fog with precipitation, the glow of the night sky, and below the horizon the
-//! planet's own ground. It excludes the discs of sun and moon (wk_context_get_light has their light), stars and
-//! planets, rain areas, and everything that the host drew.
+//! clouds as the context's cloud model draws them (wk_context_set_cloud_model), fog with precipitation, the glow of the
+//! night sky, and below the horizon the planet's own ground. It excludes the discs of sun and moon
+//! (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host drew.
 //!
 //! The double-precision reference of the sky computes the answers on the calling thread, without work of the GPU. The
-//! first query in a new state of the air solves the reference, which takes a second or two; other threads that query
-//! meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
-//! states are kept for all contexts of a device. docs/reflections.md has the cost for each direction and the difference
-//! from pictures.
+//! first query in a new state of the air solves the reference, which takes a second or two. Other threads that ask for
+//! radiances wait meanwhile. While the weather changes, the air has a new state at every time. The solutions of the
+//! last four states are kept for all contexts of a device. docs/reflections.md has the cost for each direction and the
+//! difference from pictures.
 
 use glam::DVec3;
 
@@ -75,6 +75,8 @@ pub unsafe extern "C" fn wk_context_get_sky_radiance_at(
     unsafe { radiance("wk_context_get_sky_radiance_at", point, list, (radiances, radiance_size)) }
 }
 
+/// Checks the inputs of a query of radiances, and writes its answers.
+///
 /// # Safety
 /// The position is NULL or three numbers. Each list is NULL or as long as its count says.
 unsafe fn radiance(

@@ -2,9 +2,10 @@
 //!
 //! WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
 //! drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
-//! so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
-//! host's depth hides them; sky, ground, sun and lamps light them. Drops splash on the surfaces that the picture shows
-//! within ten metres of the camera.
+//! so all channels of a simulator draw the same rain and any time can be shown again. Only drops that follow a wind
+//! varying in space depend on the frames drawn before. The wind carries the drops; the host's depth hides them; sky,
+//! ground, sun and lamps light them. Drops splash on the surfaces that the picture shows within ten metres of the
+//! camera.
 //!
 //! Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
 //! drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
@@ -36,8 +37,8 @@ pub type wk_rain_model = u32;
 pub const WK_RAIN_MODEL_AUTOMATIC: wk_rain_model = 0;
 /// No drops: all rain is extinction in the air.
 pub const WK_RAIN_MODEL_VEIL: wk_rain_model = 1;
-/// Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
-/// rain without compute shaders (wk_caps.tier 0). No splashes.
+/// Streaks on three nested cones around the camera, without splashes. This is the cheapest moving rain without compute
+/// shaders (wk_caps.tier 0). Its cost depends only on the picture's size.
 pub const WK_RAIN_MODEL_CONES: wk_rain_model = 2;
 /// Single drops to 4 m, each at a place that seed and time give; cones beyond 4 m only where lamps light the rain.
 pub const WK_RAIN_MODEL_DROPS: wk_rain_model = 3;
@@ -108,7 +109,8 @@ pub struct wk_shelter {
     pub axes: [f64; 9],
     /// Half the size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1.
     pub half_size_m: [f64; 3],
-    /// Velocity, m/s; its length is at most 2000. Default 0, 0, 0.
+    /// Velocity, m/s; its length is at most 2000. Default 0, 0, 0. A box faster than 0.1 m/s keeps neither rain nor
+    /// snow off the ground below it.
     pub velocity_m_s: [f64; 3],
 }
 

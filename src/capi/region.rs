@@ -3,15 +3,16 @@
 //! Weather regions have a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a
 //! shape on the ground plan, a wk_weather, and a perimeter outside the shape, over which the region's weather fades
 //! into the weather around it. The region's field `has` lists the parts of that weather that hold in the region. At
-//! each place, every query and the picture of a camera there see the merged weather. Queries between two points
-//! integrate the extinction of all regions on the way. Regions move at their own velocity, never with the wind; a host
-//! may also set them again in every frame. wk_context_save keeps them, and they are the same on all channels of a
-//! simulator.
+//! each place, queries and the picture of a camera there use the weather that all regions there give together. Queries
+//! between two points integrate the extinction of all regions on the way. Regions move at their own velocity, never
+//! with the wind; a host may also set them again in every frame. wk_context_save keeps them. Channels of a simulator
+//! that set the same regions have the same weather.
 //!
-//! Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that both
-//! regions merge are averaged by the regions' weights. The averages are those of extinction (not visibility), rates,
-//! temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its weather is that at
-//! the camera. docs/regions.md has the rules, and a table of what differs by place and what does not yet.
+//! Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that
+//! several regions list in `merges` are averaged by these regions' weights. The averages are those of extinction (not
+//! visibility), rates, temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its
+//! weather is that at the camera. docs/regions.md has the rules, a table of what differs by place, and the quantities
+//! that do not differ yet.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -38,8 +39,8 @@ include!(concat!(env!("OUT_DIR"), "/init_region.rs"));
 pub type wk_weather_part_flags = u32;
 /// Haze: visibility_m without fog and precipitation, and the aerosol fields.
 pub const WK_WEATHER_PART_HAZE: wk_weather_part_flags = 0x1;
-/// Low layer: fog or mist with its top, or matter that the wind lifts. Without WK_WEATHER_PART_HAZE it lies in the haze
-/// of the weather around the region.
+/// Low layer: fog or mist with its top, or matter that the wind lifts. In a region without WK_WEATHER_PART_HAZE, this
+/// layer lies in the haze of the weather around the region.
 pub const WK_WEATHER_PART_FOG: wk_weather_part_flags = 0x2;
 /// Precipitation of all kinds.
 pub const WK_WEATHER_PART_PRECIPITATION: wk_weather_part_flags = 0x4;
@@ -81,8 +82,8 @@ pub struct wk_weather_region {
     pub next: *const c_void,
     /// Parts of `weather` that the region has. Default 0.
     pub has: wk_weather_part_flags,
-    /// Parts that are averaged with those of earlier regions that merge them too. In all other parts the region
-    /// replaces the earlier regions of the list. Default 0.
+    /// Parts that are averaged with those of earlier regions that merge them too. In all other parts that it has, the
+    /// region replaces the earlier regions of the list. Default 0.
     pub merges: wk_weather_part_flags,
     /// Weather inside the region, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its
     /// heights are above the station of the weather outside; station_altitude_m, the runway visual range and the ozone
@@ -97,8 +98,9 @@ pub struct wk_weather_region {
     /// Radius of a rectangle's corners, m. Range [0, 1e6], at most the smaller half extent. Default 0.
     pub corner_radius_m: f64,
     /// Corners of a polygon, in clockwise or counter-clockwise order, convex or not. Each corner is two numbers: its
-    /// distances from the centre to the right of the heading and along the heading, m, within 1e6. The sides must not
-    /// cross or touch others, and the polygon must be larger than 1 m^2. Default 0.
+    /// distances from the centre to the right of the heading and along the heading, m, within 1e6. A side must not
+    /// cross or touch any other, except its neighbours at their common corners. The area must be larger than 1 m^2.
+    /// Default 0.
     pub corners_m: [f64; 32],
     /// Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0.
     pub corner_count: u32,
@@ -116,7 +118,7 @@ pub struct wk_weather_region {
     /// Share by which the region acts, to fade it in and out. Range [0, 1], default 1.
     pub strength: f64,
     /// Upward velocity of the wind 100 m or more above the station, m/s. Lower down it decreases linearly to 0 at the
-    /// station's height. Needs WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
+    /// station's height. Without WK_WEATHER_PART_WIND in `has` it has no effect. Range [-50, 50], default 0.
     pub vertical_wind_m_s: f64,
 }
 

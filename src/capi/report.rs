@@ -31,7 +31,7 @@ use crate::{
 
 include!(concat!(env!("OUT_DIR"), "/init_report.rs"));
 
-/// Flags of a report.
+/// Properties of a report.
 pub type wk_metar_flags = u32;
 /// A special report (SPECI).
 pub const WK_METAR_SPECIAL: wk_metar_flags = 1;
@@ -39,7 +39,7 @@ pub const WK_METAR_SPECIAL: wk_metar_flags = 1;
 pub const WK_METAR_AUTOMATIC: wk_metar_flags = 2;
 /// A correction (COR).
 pub const WK_METAR_CORRECTED: wk_metar_flags = 4;
-/// The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM).
+/// The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM), or no visibility.
 pub const WK_METAR_VISIBILITY_IS_MINIMUM: wk_metar_flags = 8;
 
 /// Fields that a report leaves out or marks as missing.
@@ -48,22 +48,24 @@ pub type wk_metar_assumed_flags = u32;
 pub const WK_METAR_ASSUMED_WIND: wk_metar_assumed_flags = 0x1;
 /// wind_from_deg: 0 is assumed.
 pub const WK_METAR_ASSUMED_WIND_DIRECTION: wk_metar_assumed_flags = 0x2;
-/// visibility_m: the visibility that humidity and precipitation allow is assumed, at most 1 km in fog and 5 km in mist
-/// or haze.
+/// visibility_m: the visibility that humidity and precipitation allow is assumed. It is at most 1 km in fog, dust
+/// storms and sandstorms, and at most 5 km in mist, haze, smoke, volcanic ash, dust and sand.
 pub const WK_METAR_ASSUMED_VISIBILITY: wk_metar_assumed_flags = 0x4;
-/// Present weather (`//`): neither precipitation nor fog nor haze is assumed.
+/// Present weather (`//`, or PWINO in the remarks): neither precipitation nor fog nor haze is assumed.
 pub const WK_METAR_ASSUMED_PRECIPITATION: wk_metar_assumed_flags = 0x8;
 /// Clouds (`//////`, or no group at all): none are assumed besides those that are reported.
 pub const WK_METAR_ASSUMED_CLOUDS: wk_metar_assumed_flags = 0x10;
 /// base_m of a layer (`BKN///`): 600 m is assumed.
 pub const WK_METAR_ASSUMED_CLOUD_BASE: wk_metar_assumed_flags = 0x20;
-/// cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed.
+/// cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed. With WK_CLOUD_AMOUNT_SUMS the group takes the
+/// largest class of the groups below it instead (FEW if there are none), except above an overcast layer.
 pub const WK_METAR_ASSUMED_CLOUD_COVER: wk_metar_assumed_flags = 0x40;
 /// vertical_visibility_m (`VV///`): 60 m is assumed.
 pub const WK_METAR_ASSUMED_VERTICAL_VISIBILITY: wk_metar_assumed_flags = 0x80;
-/// temperature_c: 15 is assumed, but at most -1 in snow or freezing precipitation, and at most 1 where rain and snow
-/// fall together or the precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative
-/// humidity is assumed.
+/// temperature_c: 15 is assumed, or, if the dew point is reported, the temperature for a relative humidity of 0.7. The
+/// assumed temperature is at most -1 in snow, ice pellets, snow grains, ice crystals and freezing precipitation or fog,
+/// and at most 1 where rain and snow fall together or the precipitation is unknown. It is never below the reported dew
+/// point.
 pub const WK_METAR_ASSUMED_TEMPERATURE: wk_metar_assumed_flags = 0x100;
 /// relative_humidity: 0.7 is assumed, or the humidity that a reported dew point gives at the assumed temperature.
 pub const WK_METAR_ASSUMED_HUMIDITY: wk_metar_assumed_flags = 0x200;
@@ -129,7 +131,7 @@ pub struct wk_metar {
     pub hour: u32,
     /// Minute, UTC.
     pub minute: u32,
-    /// Flags of a report.
+    /// Properties of the report: a union of WK_METAR_SPECIAL and the flags that follow it.
     pub flags: wk_metar_flags,
     /// Fields that the report leaves out or marks as missing.
     pub assumed: wk_metar_assumed_flags,
@@ -229,8 +231,8 @@ impl wk_metar {
 /// set it from a list of airports.
 /// Thread: any.
 /// Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
-/// weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
-/// do not fit.
+/// weather: the message has line and column, what was expected there and what was found. WK_ERROR_PARSE for a text that
+/// is too long; WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_weather_from_metar(
     report: *const c_char,
@@ -305,7 +307,7 @@ unsafe fn places(
 /// Reads the report and writes the results to the caller's structs.
 ///
 /// # Errors
-/// As [`Weather::from_metar`], about the parameter `report`; too little room for the layers.
+/// As [`Weather::from_metar`], about the parameter `report`; [`Status::InvalidArgument`] if the layers do not fit.
 fn answer(text: &str, options: &MetarOptions, (weather, metar): ReportRoom) -> Result<Status> {
     let report = Weather::from_metar_with(text, options).map_err(|e| e.in_text("report"))?;
     weather.set(&report.weather)?;

@@ -1,12 +1,12 @@
 //! The sea: settings and queries
 //!
 //! Describe your sea. Queries then give the height and slope of its surface and the motion of the water at any time, so
-//! that a hull can float by the answers. Without settings a context has no sea. A wave height or swell that you set
-//! here replaces that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else
-//! follows the weather: its wind raises waves by fetch and duration. The waves have the requested height within 1 %,
-//! their pattern does not repeat, and the same time gives the same bits on every machine. Regions
-//! (wk_context_set_sea_regions) describe dry places, sheltered harbours, and lakes with a level of their own. Hulls
-//! (wk_context_set_sea_hulls) raise wakes.
+//! that a hull can float by the answers. Without settings a context has no sea. A wave height, swell or water
+//! temperature that you set here replaces that of the weather (wk_weather.sea_significant_wave_height_m,
+//! swell_height_m, sea_temperature_c). If neither you nor the weather gives a wave height or a sea state, the weather's
+//! wind raises the waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
+//! repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
+//! places, sheltered harbours, and lakes with a level of their own. Hulls (wk_context_set_sea_hulls) raise wakes.
 //!
 //! ```text
 //! wk_sea sea = WK_SEA_INIT;
@@ -39,7 +39,7 @@ pub use super::sea_structs::*;
 
 include!(concat!(env!("OUT_DIR"), "/init_sea.rs"));
 
-/// Renames a field of [`SeaSettings`] as the header names it.
+/// Renames the field in an error: a field of [`SeaSettings`] gets its name in the header.
 fn header_name(e: Error) -> Error {
     let flat = |field: &str| match field {
         "wind_sea.significant_m" => "significant_height_m".into(),
@@ -58,7 +58,8 @@ fn header_name(e: Error) -> Error {
 /// Reads a sea with its lists.
 ///
 /// # Safety
-/// `sea` is NULL or a struct of its size, whose lists are NULL or as long as they say.
+/// `sea` is NULL or points to a struct of the size in its `struct_size`. Each of its lists is NULL or has as many
+/// elements as its count says.
 unsafe fn settings_of(sea: *const wk_sea) -> Result<SeaSettings> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"sea", sea)? };
@@ -94,10 +95,11 @@ unsafe fn settings_of(sea: *const wk_sea) -> Result<SeaSettings> {
     Ok(settings)
 }
 
-/// Sets the sea; NULL removes it. Part of the saved state. Set it before the first update, because its fetch applies to
-/// all past weather that the timeline still knows. Unchanged after an error.
+/// Sets the sea; NULL removes it. Part of the saved state. Set it before the first update: waves grow from the past
+/// weather that the timeline still knows, and updates forget past weather. A new fetch applies to all of this past.
+/// Unchanged after an error.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, also for two sources of the wave height.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_sea(context: *mut wk_context, sea: *const wk_sea) -> wk_status {
     guard("wk_context_set_sea", |call| {
@@ -170,18 +172,18 @@ pub unsafe extern "C" fn wk_context_set_sea_hulls(
     })
 }
 
-/// Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
-/// them. The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of
-/// the sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those
-/// of the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length
-/// of the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+/// Gets the sea at places of the host's world, at most wk_caps.max_batch of them, at a past or future simulation time.
+/// The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of the
+/// sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of
+/// the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of
+/// the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
 /// `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
 /// of your header for points. The first call for a time costs some milliseconds; the results for the last two times are
 /// kept, and each place then costs some microseconds. No work of the GPU is needed, and nothing is allocated after the
 /// first calls.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
-/// wk_context_get_conditions.
+/// Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position or a `shortest_wave_m`
+/// out of range; for times as wk_context_get_conditions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_sea_at(
     context: *const wk_context,
@@ -228,7 +230,7 @@ pub struct wk_sea_state {
     pub struct_type: wk_struct_type,
     /// No extensions in this version: NULL.
     pub next: *const c_void,
-    /// Level without waves, m above mean sea level: the mean level plus the tide.
+    /// Level without waves, m above mean sea level: wk_sea.level_m plus the tide.
     pub level_m: f64,
     /// Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
     pub significant_height_m: f64,

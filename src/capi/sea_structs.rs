@@ -128,8 +128,8 @@ pub struct wk_sea_wave {
     pub period_s: f64,
     /// Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
-    /// Time after simulation time 0 at which a crest passes the world's origin, in degrees of the period (360 is one
-    /// period). Range [-360, 360], default 0.
+    /// Time from simulation time 0 until a crest passes the world's origin, in degrees: 360 is one period of the wave.
+    /// Range [-360, 360], default 0.
     pub phase_deg: f64,
 }
 
@@ -486,8 +486,8 @@ pub struct wk_sea_point {
     pub acceleration_m_s2: [f64; 3],
     /// Depth of the water under the surface, m.
     pub depth_m: f64,
-    /// Share of the place under foam, 0 to 1: foam of waves that break now, and what is left of the foam of the last
-    /// 3.6 s.
+    /// Share of the place under foam, 0 to 1: foam of waves that break now, what is left of the foam of the last 3.6 s,
+    /// and the wash of hulls.
     pub foam: f64,
     /// 1 where there is water, 0 where there is none or in a dry region.
     pub has_water: u32,

@@ -1,8 +1,9 @@
 //! How the sky is drawn
 //!
-//! Four models use the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
-//! scattering in clear air and haze. The others are for comparison and for slow machines. Put a wk_sky_settings into
-//! wk_context_desc.next, or pass it to wk_context_set_sky_settings later.
+//! There are four models of the sky. They share the functions by which a pixel looks up the tables, and differ in the
+//! tables. Use the default model: 95 % of its pixels are within 2.4 % of converged multiple scattering in clear air and
+//! haze. The other models are for comparison and for slow machines. Put a wk_sky_settings into wk_context_desc.next, or
+//! pass it to wk_context_set_sky_settings later.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -60,7 +61,8 @@ pub struct wk_sky_settings {
     pub sky_below: u32,
     /// Number of distances in the table of the air in front of objects. Range [4, 64], default 16.
     pub air_slices: u32,
-    /// Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64.
+    /// Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE), rounded up to a multiple of 4. Range [1, 4096],
+    /// default 64.
     pub march_cells: u32,
     /// Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
     /// the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel,

@@ -2,8 +2,9 @@
 //!
 //! WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
 //! speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
-//! The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
-//! lamps light them. Farther away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
+//! Only flakes near a wind that varies in space depend on the frames drawn before. The wind carries the flakes; the
+//! host's depth hides them; none fall under shelters and occluder maps; sky, ground, sun and lamps light them. Farther
+//! away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
 
 use std::{ffi::c_void, ptr::null};
 

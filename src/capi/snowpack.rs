@@ -27,7 +27,7 @@ include!(concat!(env!("OUT_DIR"), "/init_snowpack.rs"));
 
 /// Class of the grip that snow leaves to a wheel.
 pub type wk_snow_friction = u32;
-/// No snow, or too little to matter.
+/// No snow, or so little that it covers less than 30 % of the ground.
 pub const WK_SNOW_FRICTION_BARE: wk_snow_friction = 0;
 /// Loose, dry snow.
 pub const WK_SNOW_FRICTION_LOOSE: wk_snow_friction = 1;
@@ -55,7 +55,7 @@ pub struct wk_lying_snow {
     /// Share of the ground that snow covers, 0 to 1.
     pub cover: f64,
     /// Point of the snow's surface above or below the queried position, in the host's world: at the terrain's height
-    /// plus the snow's depth. Off the host's terrain, the queried position itself.
+    /// plus the snow's depth. Off the host's terrain, or more than 3 m above it, the queried position itself.
     pub surface_m: [f64; 3],
     /// Grip of a wheel.
     pub friction: wk_snow_friction,
@@ -112,8 +112,11 @@ impl wk_snow_strip {
     };
 }
 
+/// Reads a strip with its points.
+///
 /// # Safety
-/// `strip` is NULL or a struct of its size, whose list is NULL or as long as the struct says.
+/// `strip` is NULL or points to a struct of the size in its `struct_size`. Its list is NULL or has `point_count`
+/// elements.
 unsafe fn strip_of(strip: *const wk_snow_strip) -> Result<SnowStrip> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"strip", strip)? };

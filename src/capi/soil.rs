@@ -127,9 +127,9 @@ fn tool_named(e: Error) -> Error {
     })
 }
 
-/// Sets the soil of the terrain's tiles, at first undug; NULL removes the soil with all changes by digging. Setting
-/// equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the soil. Part of the
-/// saved state. Unchanged after an error.
+/// Sets the soil of the terrain's tiles. The ground is undug at first; NULL removes the soil with all changes by
+/// digging. Setting equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the
+/// soil. Part of the saved state. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
 /// WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
@@ -144,8 +144,8 @@ pub unsafe extern "C" fn wk_context_set_soil(context: *mut wk_context, soil: *co
     })
 }
 
-/// Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which is never given to
-/// another tool of the state. Unchanged after an error.
+/// Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which no other tool of
+/// the same soil gets. Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
 /// remain, and for a pose before the last update.
@@ -268,12 +268,12 @@ pub unsafe extern "C" fn wk_context_get_soil_resistance(
     })
 }
 
-/// Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is its mass,
-/// in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if there is
-/// ground to land on, else 0.
+/// Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is the mass
+/// of the soil, in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if
+/// there is ground to land on, else 0.
 /// Thread: exclusive.
-/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
-/// update remain.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter, also where loose soil would lie more than 1000 m deep;
+/// WK_ERROR_WRONG_ORDER without soil, and while steps of an update remain.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_bring_soil(
     context: *mut wk_context,
@@ -333,10 +333,10 @@ pub unsafe extern "C" fn wk_context_get_soil_points(
 }
 
 /// Gets the rectangles in which soil has changed heights since a revision of the terrain
-/// (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` always gets the
-/// number of rectangles. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it
-/// succeeds. `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns the heights and
-/// kinds of a rectangle's cells. Do not pass these heights to wk_context_update_terrain: the tiles are the undug
+/// (wk_context_get_terrain_revision), ordered by rows from the south. A revision of 0 gets all. `*out_count` always
+/// gets the number of rectangles. If `capacity` is too small, nothing else is written and the call fails; with capacity
+/// 0 it succeeds. `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns the heights
+/// and kinds of a rectangle's cells. Do not pass these heights to wk_context_update_terrain: the tiles are the undug
 /// ground.
 /// Thread: concurrent.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
@@ -378,8 +378,8 @@ pub unsafe extern "C" fn wk_context_get_soil_changes(
 /// north from `first_cell` on, at most 2^20 in all. `points` must have room for all of them. `point_size` is
 /// sizeof(wk_soil_point) of your header.
 /// Thread: concurrent.
-/// Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that leaves the tile, or a capacity that
-/// is too small; WK_ERROR_WRONG_ORDER without soil.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that is empty, too large or leaves the
+/// tile, or a capacity that is too small; WK_ERROR_WRONG_ORDER without soil.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_soil_cells(
     context: *const wk_context,

@@ -71,7 +71,7 @@ pub struct wk_soil_kind {
     pub sinkage_kc: f64,
     /// Frictional modulus kphi, kN/m^(n + 2). Range [0.1, 1e8], default 1500.
     pub sinkage_kphi: f64,
-    /// Exponent n. Range [0.1, 3], default 1.
+    /// Exponent n of the sinkage in Bekker's law. Range [0.1, 3], default 1.
     pub sinkage_n: f64,
     /// Mean colour of the drawn surface when moist, linear Rec. 709 albedo. Range [0, 1], default that of loam.
     pub albedo: [f64; 3],
@@ -182,7 +182,7 @@ impl wk_soil_tool {
 }
 
 /// Pose of a tool at a time. Left and right are as seen by a viewer inside the tool who looks out of its opening. All
-/// points lie within 1e7 m of the world's origin.
+/// points lie within 1e7 m of wk_terrain.origin_m.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_soil_pose {
@@ -259,7 +259,7 @@ pub struct wk_soil_tool_report {
     /// 1 if the sinkage was limited to half a wheel's radius or half the shorter side of a track's contact, or if it
     /// comes from sinkage numbers that hold for a small range only; else 0.
     pub sinkage_is_beyond_range: u32,
-    /// 1 if the edge met frozen ground, which it cannot cut; else 0.
+    /// 1 if the edge met ground frozen deeper than 5 cm, which it cannot cut; else 0.
     pub is_stopped_by_frost: u32,
     /// Always 0.
     pub reserved0: u32,
@@ -354,7 +354,7 @@ pub struct wk_cutting_force {
     pub force_n: f64,
     /// Component of the total force against the motion, N.
     pub horizontal_n: f64,
-    /// Component of the total force that pulls the blade down, N; negative where soil lifts it.
+    /// Component of the total force that pulls the blade down, N; negative where the soil lifts the blade.
     pub vertical_n: f64,
     /// Angle of the plane of failure to the horizontal, degrees.
     pub failure_deg: f64,
@@ -438,9 +438,10 @@ pub struct wk_soil_point {
     pub loose_m: f64,
     /// Density of the loose soil, kg/m^3; 0 without any.
     pub loose_kg_m3: f64,
-    /// Revision of the terrain at the last change by soil near this place; 0 where nothing was dug.
+    /// Revision of the terrain at the last change by soil in the cell's rectangle of wk_context_get_soil_changes; 0
+    /// where nothing was dug.
     pub revision: u64,
-    /// Kind of soil on the surface.
+    /// Kind of soil on the surface: that of most of the loose soil, or of the bank where no loose soil lies.
     pub kind: wk_soil_kind_id,
     /// 1 if the cell has ground; all other fields are 0 otherwise.
     pub has_ground: u32,

@@ -70,8 +70,10 @@ impl wk_stars {
     };
 }
 
+/// Reads and checks the settings of a night sky.
+///
 /// # Safety
-/// `p` is a `wk_stars` whose list is as long as it says.
+/// `p` is NULL or points to a `wk_stars` whose list has `star_count` stars.
 unsafe fn settings(p: *const wk_stars) -> Result<StarSettings> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"stars", p)? };

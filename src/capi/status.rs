@@ -30,7 +30,7 @@ pub extern "C" fn wk_last_error_message() -> *const c_char {
 /// Returns the parameter or field that the calling thread's last failed call was about, as a path of names in this
 /// header that begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
 /// `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
-/// WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
+/// WK_ERROR_INVALID_ARGUMENT always has a field. Empty where a failure is about no field, and before the first failure.
 /// Never NULL; valid until the next failing call of this thread.
 /// Thread: any; each thread has its own field.
 #[unsafe(no_mangle)]
@@ -39,7 +39,8 @@ pub extern "C" fn wk_last_error_field() -> *const c_char {
 }
 
 /// Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
-/// major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
+/// major versions are equal and the library's minor version is at least the header's. Each of the three pointers may be
+/// NULL.
 /// Thread: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_version(major: *mut u32, minor: *mut u32, patch: *mut u32) -> wk_status {
@@ -79,7 +80,7 @@ pub unsafe extern "C" fn wk_set_log_callback(
     })
 }
 
-/// Names by number; a test compares them with the constants above.
+/// Names of the statuses by number.
 static NAMES: &[(wk_status, &CStr)] = &[
     (WK_OK, c"WK_OK"),
     (WK_PENDING, c"WK_PENDING"),

@@ -163,7 +163,8 @@ fn in_window(e: Error) -> Error {
 /// Creates an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
 /// WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
 /// Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
-/// Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming a missing handle; WK_ERROR_SURFACE_OUTDATED if the window does not exist;
+/// WK_ERROR_NO_ADAPTER or WK_ERROR_UNSUPPORTED if no driver can present to the window; else as wk_device_create.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_for_window(
     desc: *const wk_device_desc,
@@ -178,7 +179,7 @@ pub unsafe extern "C" fn wk_device_create_for_window(
         unsafe { layout::check_chain(&"desc", desc.next, &[])? };
         // SAFETY: the caller's promise about `window`.
         let window = unsafe { native(window)? };
-        // SAFETY: as above; the header demands that its connection outlives the device.
+        // SAFETY: as above; the header demands that the window's connection outlives the device.
         let gpu = unsafe { device_for_window(&window, &device::options(&desc)) }.map_err(in_window)?;
         let handle = device::issue(gpu, Host::Own)?;
         // SAFETY: `place` was checked and is the caller's.
@@ -190,7 +191,8 @@ pub unsafe extern "C" fn wk_device_create_for_window(
 /// Creates a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
 /// `wk_surface_destroy`.
 /// Thread: exclusive on the device; on macOS the main one.
-/// Errors: WK_ERROR_UNSUPPORTED if the device cannot present to this window.
+/// Errors: WK_ERROR_INVALID_ARGUMENT naming a missing handle; WK_ERROR_SURFACE_OUTDATED if the window does not exist;
+/// WK_ERROR_UNSUPPORTED if the device cannot present to this window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_create(
     device: *mut wk_device,
@@ -231,7 +233,7 @@ pub unsafe extern "C" fn wk_surface_destroy(surface: *mut wk_surface) -> wk_stat
 /// WK_ERROR_SURFACE_OUTDATED until the surface is configured with an area.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the window has no format
-/// for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone.
+/// for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone or refuses the configuration.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_surface_configure(surface: *mut wk_surface, config: *const wk_surface_config) -> wk_status {
     guard("wk_surface_configure", |call| {

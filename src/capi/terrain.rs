@@ -199,9 +199,9 @@ impl wk_terrain_point {
     }
 }
 
-/// Sets the lattice of a terrain in tiles, at first without tiles. The lattice replaces all tiles or the wk_ground_grid
-/// set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles. Unchanged
-/// after an error.
+/// Sets the lattice of a terrain in tiles, which has no tiles at first. The lattice replaces all tiles or the
+/// wk_ground_grid set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles.
+/// Unchanged after an error.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
 #[unsafe(no_mangle)]
@@ -363,7 +363,7 @@ pub unsafe extern "C" fn wk_context_set_terrain_drawing(
     })
 }
 
-/// Gets a number that grows whenever the tiles change; 0 without a terrain.
+/// Gets a number that grows whenever the host changes the tiles or soil changes their heights; 0 without a terrain.
 /// Thread: concurrent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_get_terrain_revision(

@@ -97,7 +97,7 @@ fn format(format: wk_format) -> wgpu::TextureFormat {
 /// Creates a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
 /// Thread: any.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the device cannot make the
-/// format; WK_ERROR_OUT_OF_MEMORY.
+/// format, or cannot draw into a format of colour; WK_ERROR_OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_texture_create(
     device: *mut wk_device,
@@ -171,8 +171,9 @@ pub unsafe extern "C" fn wk_texture_destroy(texture: *mut wk_texture) -> wk_stat
     })
 }
 
-/// Fills a texture from memory: `height` rows of `bytes_per_row` bytes, from the top of the picture down. `data_size`
-/// is the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
+/// Fills a texture from memory: all rows of the texture, `bytes_per_row` bytes each, from the top of the picture down.
+/// `data_size` is the number of bytes at `data`: at least `bytes_per_row` times the texture's height. Copied during the
+/// call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]
@@ -201,9 +202,9 @@ pub unsafe extern "C" fn wk_texture_write(
     })
 }
 
-/// Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, from the top of the
-/// picture down. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
-/// Slow: do not call it in every frame.
+/// Waits for the GPU and copies a texture to memory: all rows of the texture, `bytes_per_row` bytes each, from the top
+/// of the picture down. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the
+/// texture's height. Slow: do not call it in every frame.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
 #[unsafe(no_mangle)]

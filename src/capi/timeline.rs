@@ -60,7 +60,7 @@ impl wk_given_direction {
 /// changes at once). `weather` may have a wk_weather_overrides in its chain. Copied during the call.
 /// Thread: exclusive.
 /// Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER if the change begins before the last update
-/// or before a change that was given earlier. After an error the weather stays as it was.
+/// or before the start of a change that was given earlier. After an error the weather stays as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_context_set_weather(
     context: *mut wk_context,
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn wk_context_set_weather(
 /// returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
 /// later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
 /// After a leap of more than a day, the water is simulated for the last day only. The ground starts that day as wet as
-/// the weather of that time reports.
+/// the weather of that time reports. Snow then takes steps of ten minutes, for the last 30 days at most.
 /// Thread: exclusive.
 /// Returns WK_PENDING, which is no error, while steps remain.
 /// Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.

@@ -1,8 +1,9 @@
 //! Textures for the host's transparent things
 //!
-//! Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them. Their shaders
-//! sample the frame's veil: the light that air, fog and rain add on the way to a point, and the transmittance up to it.
-//! The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
+//! Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them as the objects
+//! that the stage has covered. Their shaders sample the frame's veil: the light that air, fog and rain add on the way
+//! to a point, and the transmittance up to it. The published sampling functions, GLSL and WGSL, map clip coordinates
+//! and distance to texels.
 
 use std::{
     ffi::{CString, c_char, c_void},
@@ -102,6 +103,7 @@ pub unsafe extern "C" fn wk_view_get_frame_textures(
 
 /// Gets the text of the sampling functions: NUL-terminated UTF-8 that lives as long as the process.
 /// Thread: any.
+/// Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_get_veil_snippet(language: wk_shading_language, out_text: *mut *const c_char) -> wk_status {
     static TEXTS: OnceLock<[CString; 2]> = OnceLock::new();

@@ -49,7 +49,7 @@ include!(concat!(env!("OUT_DIR"), "/init_view.rs"));
 pub type wk_stage_flags = u32;
 /// Tables and simulation textures; needs no target.
 pub const WK_STAGE_PREPARE: wk_stage_flags = 1;
-/// Sky behind everything: pixels at the far depth, or all pixels without depth.
+/// Sky behind everything: on the pixels at the far depth, or on all pixels if the target has no depth.
 pub const WK_STAGE_BACKGROUND: wk_stage_flags = 2;
 /// Water and snow on surfaces, shadows of clouds, and the sea and terrain that Welkin draws; after the host's opaque
 /// objects.
@@ -130,7 +130,7 @@ pub struct wk_report {
     /// Time that the host reported for this frame, ms.
     pub reported_ms: f64,
     /// Estimated error due to the parts that this frame left out, except those that were still fading: 95th percentile
-    /// over the gauged pixels.
+    /// over the gauged pixels. All errors of this struct are in the measure of wk_budget.tolerance.
     pub predicted_error: f64,
     /// Upper bound, with 95 % confidence, of the error's 95th percentile over all pixels.
     pub predicted_error_bound: f64,

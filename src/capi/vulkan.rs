@@ -2,8 +2,8 @@
 //!
 //! Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
 //! wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. Either keep other
-//! threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
-//! calls around every submission. Call no Welkin function inside these two.
+//! threads away from the queue during calls on its wk_device, or pass lock_queue and unlock_queue, which Welkin calls
+//! around every submission. Call no Welkin function inside these two.
 //!
 //! Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
 //! On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
@@ -48,7 +48,8 @@ include!(concat!(env!("OUT_DIR"), "/init_vulkan.rs"));
 /// you destroy your device. Welkin never destroys the host's objects.
 /// Thread: any that may use the queue.
 /// Errors: WK_ERROR_INVALID_ARGUMENT names a NULL or foreign handle, or all missing extensions, features and fields;
-/// WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+/// WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device;
+/// WK_ERROR_NO_ADAPTER if the instance cannot list its physical devices.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn wk_device_create_vulkan(
     desc: *const wk_vulkan_host_desc,

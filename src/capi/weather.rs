@@ -1,9 +1,9 @@
 //! Weather
 //!
 //! A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
-//! clear standard day), a METAR report or a preset, and change the fields that you know better. Zero is a value
-//! everywhere (0 degrees, north, calm, 0 %). A field that may be unknown has a bit in `has`: where the bit is clear,
-//! Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
+//! clear standard day), a METAR report or a preset, and change the fields that you know better. In a wk_weather zero is
+//! a value (0 degrees, north, calm, 0 %) and never means unknown. A field that may be unknown has a bit in `has`: where
+//! the bit is clear, Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -144,7 +144,7 @@ pub struct wk_weather {
     pub struct_size: u32,
     /// WK_STRUCT_TYPE_WEATHER.
     pub struct_type: wk_struct_type,
-    /// No extensions in this version: NULL.
+    /// NULL (the default), or a wk_weather_overrides.
     pub next: *const c_void,
     /// Flags of the optional fields that are set. Default 0.
     pub has: wk_weather_has_flags,
@@ -186,8 +186,9 @@ pub struct wk_weather {
     pub fog_top_m: f64,
     /// Optional: fraction of the ground under fog. Range [0, 1]; else by kind.
     pub fog_coverage: f64,
-    /// Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog,
-    /// where the observer reports the visibility over or past the fog.
+    /// Optional: visibility inside the fog, m. Range [1, 10000]; else 200 m in shallow fog, and in patches of fog and
+    /// partial fog if visibility_m is 1000 or more, because an observer reports the visibility over or past such fog;
+    /// 500 m in drifting snow or dust without fog. Other layers ignore the field: visibility_m holds inside them.
     pub fog_visibility_inside_m: f64,
 
     /// Kind of precipitation. Default WK_PRECIPITATION_NONE.
@@ -340,10 +341,10 @@ pub struct wk_weather_overrides {
     pub set: wk_override_flags,
     /// Must be 0.
     pub reserved0: u32,
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of that which follows from the visibility. Range
-    /// [0, 10].
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the value that follows from the visibility.
+    /// Range [0, 10].
     pub aerosol_extinction_per_m: f64,
-    /// Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of that which follows
+    /// Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of the value that follows
     /// from the visibility. Range [0, 10].
     pub fog_extinction_per_m: f64,
     /// Extinction of precipitation, 1/m, in place of that from the spectra of drops and flakes. Range [0, 10].

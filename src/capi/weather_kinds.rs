@@ -27,7 +27,9 @@ pub const WK_AEROSOL_ARCTIC: wk_aerosol_kind = 9;
 
 /// Fog and mist: suspended droplets at the ground.
 pub type wk_fog_kind = u32;
-/// No fog: if the reported visibility requires more extinction than clean air has, all of the difference is aerosol.
+/// No fog is reported. The extinction that visibility_m requires beyond that of clean air and precipitation is aerosol.
+/// Haze, dust, sand, smoke and ash may take all of it. Other aerosols take at most that of a visibility of 5 km
+/// (wk_weather_overrides.visibility_above_fog_m), and the rest is mist or fog all the same.
 pub const WK_FOG_NONE: wk_fog_kind = 0;
 /// Mist (METAR BR): droplets, visibility 1 to 5 km.
 pub const WK_FOG_MIST: wk_fog_kind = 1;

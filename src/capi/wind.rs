@@ -86,7 +86,7 @@ pub struct wk_rainfall {
     /// Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
     /// less. Render occluder maps along this velocity. The drop falls at the speed of Gunn and Kinzer (1949). It moves
     /// with the wind at 10 m, gusts included, or with the wind grid or wind field there (wk_context_set_wind_grid,
-    /// wk_context_set_wind_field).
+    /// wk_context_set_wind_field). 0 if neither rain nor drizzle falls.
     pub fall_velocity_m_s: [f64; 3],
     /// Hail, small hail and ice pellets on level ground, mm/h of melted water.
     pub ice_mm_h: f64,
@@ -160,7 +160,7 @@ pub struct wk_rain_surface {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_rain_on {
-    /// Rate of water, mm/h: litres per square metre and hour.
+    /// Rate of rain and drizzle, mm/h: litres per square metre and hour.
     pub rate_mm_h: f64,
     /// Number of drops of 0.1 to 6 mm that land on the whole surface, 1/s.
     pub drops_per_s: f64,
@@ -232,8 +232,9 @@ pub unsafe extern "C" fn wk_context_get_rainfall_at(
 /// Gets the rain on at most wk_caps.max_batch surfaces at a simulation time. Drops of each size arrive in their own
 /// direction: it follows from their fall speed, the wind with its gusts, and the velocity of the surface. A windscreen
 /// at 25 m/s meets far more drops than the ground does. Boxes (wk_context_set_shelters) keep rain off where they
-/// shelter a point 5 cm in front of the surface; occluder maps have no effect here. `surface_size` and `on_size` are
-/// sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
+/// shelter a point 5 cm in front of the surface, each box at the place to which its velocity has carried it by that
+/// time. Occluder maps have no effect here. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+/// sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
 /// Thread: concurrent.
 /// Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
 #[unsafe(no_mangle)]

@@ -3,8 +3,8 @@
 //! A context can solve for the wind in a box of air about a place. The weather's wind enters the box, flows round the
 //! terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of wk_context_set_shelters,
 //! including moving ones, and leaves on the downwind side. As a wind grid of your own does (wk_context_set_wind_grid),
-//! the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and
-//! on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
+//! the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on drifting snow, on patches of
+//! fog and dust, and on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
 
 use std::{ffi::c_void, ptr::null};
 
@@ -70,7 +70,8 @@ pub struct wk_wind_field {
     /// No extensions in this version: NULL.
     pub next: *const c_void,
     /// Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
-    /// ground that matters. When this point moves, the field follows by whole cells. Default 0, 0, 0.
+    /// ground that matters. If you set the field again with another point, the field moves by whole cells. Default 0,
+    /// 0, 0.
     pub floor_center_m: [f64; 3],
     /// Size of a cell east, north and up, m, the longest at most 8 times the shortest. Range [0.05, 1000], default 4,
     /// 4, 4.

@@ -1,9 +1,9 @@
 //! Wind that varies in space
 //!
 //! If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
-//! They act in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and on
-//! drops and flakes near a camera. They replace the velocities of a wind field (wk_context_set_wind_field). Everything
-//! else follows the weather's wind.
+//! The grid acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on drifting snow, on patches of
+//! fog and dust, and on drops and flakes near a camera. It takes the place of a wind field (wk_context_set_wind_field).
+//! Everything else follows the weather's wind.
 
 use std::{ffi::c_void, ptr::null};
 

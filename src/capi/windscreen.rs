@@ -96,9 +96,9 @@ pub struct wk_windscreen {
     pub pane: wk_windscreen_pane,
     /// Number of wipers in `arms`, at most 2. Default 0.
     pub arm_count: u32,
-    /// Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
-    /// left, lower right, upper right, upper left as seen from the camera. The window is flat within 2 % of its
-    /// diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
+    /// Corners of a QUAD: lower left, lower right, upper right and upper left as seen from the camera. Each is three
+    /// numbers in the camera's axes (x right, y up, z backwards), m from the camera. The window is flat within 2 % of
+    /// its diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
     /// relative to gravity follows from the frame's view matrix. Default 1 m x 0.6 m across the view, 0.7 m away.
     pub corners_m: [f64; 12],
     /// Distance of the glass of a WHOLE_VIEW, m. Range [0.1, 3], default 0.6.
@@ -110,8 +110,8 @@ pub struct wk_windscreen {
     /// About 0.7 of the vehicle's speed on a car's windscreen, 0 on upright glass. Range [-100, 100], default 0.
     pub airflow_m_s: f64,
     /// Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
-    /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box keeps
-    /// no rain off: that is a box that contains the camera and ends within 3 m in front of the glass. Range [0, 1],
+    /// shelter. Shelters and occluder maps keep rain off each part of the pane separately. A box that contains the
+    /// camera and ends within 3 m in front of the glass is the vehicle's own, and keeps no rain off. Range [0, 1],
     /// default 1.
     pub exposed: f64,
     /// Amount of mist on the inside. Range [0, 1], default 0.
@@ -189,7 +189,7 @@ impl wk_windscreen_report {
 }
 
 /// # Safety
-/// `p` is a `wk_windscreen` whose list of arms is as long as it says.
+/// `p` is NULL or points to a `wk_windscreen` whose list of arms has `arm_count` elements.
 unsafe fn windscreen(p: *const wk_windscreen) -> Result<Windscreen> {
     // SAFETY: the caller's promise.
     let c = unsafe { layout::read(&"windscreen", p)? };

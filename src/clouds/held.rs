@@ -43,9 +43,9 @@ impl HeldClouds {
     }
 
     /// Returns the share of the direct light that clouds let through to a scene's place, 0 to 1. The light is that of
-    /// the sun or the moon, whichever is brighter. With a volume it is the share along the ray from the place to the
-    /// light, with a deck the mean over all places. `eye` is the place in the host's world, m; `time_s` is the
-    /// simulation time, s.
+    /// the sun or the moon, whichever is brighter. With [`CloudModel::Volume`] it is the share along the ray from the
+    /// place to the light, with [`CloudModel::Deck`] the mean over all places. `eye` is the place in the host's world,
+    /// m; `time_s` is the simulation time, s.
     ///
     /// # Errors
     /// [`crate::Status::OutOfMemory`] if there is no memory for the noise; [`WeatherOver::check_time`] refuses times
@@ -65,7 +65,7 @@ impl HeldClouds {
         Ok(sun_share((0..overhead.all().len()).map(|i| grown.field(&overhead, i)), scene))
     }
 
-    /// Finds the layers of cloud over a scene's place; `None` without clouds or volumes.
+    /// Finds the layers of cloud over a scene's place; `None` without clouds, or if the model draws no volume.
     fn overhead(&self, grown: &CloudNoise, query: &LayersQuery<'_>) -> Result<Option<CloudLayers>> {
         let mut maps = grown.maps.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         let overhead = query.layers(self.model, &mut maps, Shape::of)?;

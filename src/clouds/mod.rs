@@ -8,13 +8,14 @@
 //!   phase function. Light scattered more than once is computed as if the place stood in a box of uniform cloud with
 //!   the same optical depths up, down and to the sides. Ice cloud makes a [`halo`]. Two references check this light:
 //!   [`mod@reference`] traces photons through boxes, [`traced`] through the field itself.
-//! * A picture marches the ray of one pixel in sixteen in each frame and reprojects the other pixels from the previous
-//!   frame.
+//! * A frame marches the ray of one pixel in sixteen by default ([`CloudSettings::square_side`]) and reprojects the
+//!   other pixels from the previous frame.
 //! * Mirrors and cube maps show clouds from `maps::panorama`, a small map of all directions.
-//! * A host's map of cover and the cloud over rain areas: `field::placed`, `field::layer_map`, `field::cells`.
-//! * Lamps and lightning flashes light clouds by [`lamp_light`], in a small picture of its own (`light::lamps`).
-//! * [`shadow`]: the light that clouds let through to a place. Pictures and a host's own materials read it from a map
-//!   (`maps::handed`).
+//! * A host's map of cover and the cloud over rain areas are in `field::placed`, `field::layer_map` and `field::cells`.
+//! * The light of lamps and lightning flashes in clouds follows [`lamp_light`]. It is drawn in a small picture of its
+//!   own (`light::lamps`).
+//! * [`shadow`] computes the light that clouds let through to a place. Pictures and a host's own materials read this
+//!   light from a map (`maps::handed`).
 //!
 //! The deck is drawn with the sky (`shaders/between/sky.wgsl`).
 //!
@@ -26,8 +27,8 @@
 //!
 //! # Error
 //! Drawn light of uniform slabs: within 5 % or 0.01 of discrete ordinates, whichever is more. Drawn light that leaves
-//! each face of a cube: within 15 % or 0.03 of the light that falls on the cube
-//! (`cargo test --lib clouds::drawn::probe -- --nocapture`). `lab photons` compares rays through the field with
+//! each face of a cube: within 15 % of that of photons, or within 0.03 of the light that falls on the cube, whichever
+//! is more (`cargo test --lib clouds::drawn::probe -- --nocapture`). `lab photons` compares rays through the field with
 //! photons; the error is largest under a low sun. Cover as seen from the ground: within 3 percentage points
 //! ([`cover`]).
 

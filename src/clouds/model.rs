@@ -9,7 +9,8 @@ pub enum CloudModel {
     /// A grey deck, computed in closed form, if more than half of the sky is covered. Broken clouds only dim the light.
     /// The cheapest model.
     Deck,
-    /// Layers drawn as volumes, marched ray by ray. A closed layer seen from below is drawn as a deck. The default.
+    /// Layers drawn as volumes, marched ray by ray. A closed layer 400 m or more above the camera is drawn as a deck if
+    /// the sun's disc does not show through it. The default.
     #[default]
     Volume,
 }

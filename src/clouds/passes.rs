@@ -142,8 +142,8 @@ impl CloudPasses {
         })
     }
 
-    /// Writes the hosts' cover maps into the tables. Drops the bindings and pipelines that depend on local cover, if
-    /// the maps' texture was created again or local cover has begun or ended.
+    /// Writes the hosts' cover maps into the tables. If the maps' texture was created again, or local cover has begun
+    /// or ended, drops the bindings and the panorama and creates the shadow map again in its texture.
     pub fn place(&mut self, device: &Device, overhead: &CloudLayers) -> Result<()> {
         let is_other = self.tables.place(device, overhead.maps.iter().flatten());
         if !is_other && self.is_placed == overhead.is_placed() {
@@ -162,8 +162,8 @@ impl CloudPasses {
         ShadowMap::new((device, &self.pages), &self.tables, (&self.block, self.is_placed), texture)
     }
 
-    /// Creates textures for a picture of `size` pixels, in squares of `side` x `side` pixels. Returns whether the
-    /// earlier textures are kept.
+    /// Creates textures for a picture of `size` pixels, in squares of `side` x `side` pixels, unless the earlier ones
+    /// have this size. Returns whether the earlier ones are kept.
     pub fn hold(&mut self, device: &Device, size: (u32, u32), side: u32) -> bool {
         if self.picture.as_ref().is_some_and(|p| p.of == (size, side)) {
             return true;
@@ -323,7 +323,8 @@ impl CloudPasses {
         self.shadows.as_ref().map(|map| map.view.texture())
     }
 
-    /// Updates the shadow map for a frame, in a texture that a host's own materials read.
+    /// Updates the shadow map for a frame in which a host's own materials read it. `texture` becomes the map's texture
+    /// if there is no map yet.
     pub fn draw_shadows(
         &mut self,
         device: &Device,

@@ -9,7 +9,8 @@ pub struct CloudSettings {
     /// At half the default the error is more than twice as large and the cost hardly lower (`lab chart clouds`).
     pub fineness: f64,
     /// Side of a square of pixels. Each frame marches one pixel of every square and reprojects the others from earlier
-    /// frames. 1, 2 or 4, default 4. Frames without history march all pixels.
+    /// frames. 1, 2 or 4, default 4. Frames with [`crate::frame::FrameFlags::NO_HISTORY`] march all pixels; a view's
+    /// first frame, and one after a cut, has squares of at most 2.
     pub square_side: u32,
     /// Whether shafts of light are drawn: the air between clouds and ground is brighter where the sun shines through,
     /// and darker in the clouds' shadows. Default false: the air has the mean light of all places. Shafts take 24

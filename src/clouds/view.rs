@@ -44,7 +44,7 @@ struct Before {
     eye: DVec3,
     /// Displacements of the layers by the wind.
     drifts: LayerDrifts,
-    /// Factor from radiance to display values.
+    /// Exposure, display units per cd/m^2.
     exposure: f64,
 }
 
@@ -57,7 +57,7 @@ struct FrameProgress {
     is_marched: bool,
     /// Whether shadows have been applied to the picture.
     is_shaded: bool,
-    /// Whether the panorama is up to date.
+    /// Whether the panorama has been refreshed.
     is_round: bool,
     /// Reprojection from the last frame to this frame's picture.
     picture: PictureUniform,
@@ -76,7 +76,8 @@ pub(crate) struct CloudsView {
     maps: LayerMaps,
     /// Passes, created when clouds are first drawn.
     passes: Option<Box<CloudPasses>>,
-    /// Camera and clouds of the last frame; `None` if there were none.
+    /// Camera and clouds of the last frame whose clouds were marched; `None` if there is none, or if a later frame drew
+    /// no clouds.
     before: Option<Before>,
     /// Progress of the last frame that drew clouds.
     made: Option<FrameProgress>,
@@ -86,7 +87,7 @@ pub(crate) struct CloudsView {
     lamps: Option<LampsUniform>,
     /// Whether the picture's textures hold the last frame's clouds.
     kept: bool,
-    /// Shadow map that a host's own materials read, from their first request on.
+    /// Shadow map that a host's own materials read, from the host's first request on.
     handed: Option<HostShadowTexture>,
     /// Layer of stars, which stands behind the clouds.
     behind: Option<wgpu::Texture>,

@@ -11,8 +11,8 @@ use crate::{
 /// Duration of the change to each weather, s, and shares of the change at which a picture is drawn.
 const CHANGE_S: f64 = 60.0;
 const SHARES: [f64; 12] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98];
-/// Times after the change at which a picture is drawn, s: at once, and when the ground is as wet or white as in a
-/// shower.
+/// Times after the end of the change at which a picture is drawn, s: shortly after it, and when the ground is as wet or
+/// white as in a shower.
 const SETTLED_S: [f64; 2] = [1.0, 180.0];
 /// Time for which each weather lasts before the next one comes, s.
 const LASTS_S: f64 = 120.0;
@@ -46,10 +46,12 @@ impl Rehearsal {
         MOMENTS * self.weathers.len()
     }
 
-    /// Brings the context to one of the moments.
+    /// Brings the context from its state before the rehearsal to one of the moments. Call [`Self::leave`] before the
+    /// next moment.
     ///
     /// # Errors
-    /// As [`Context::update`]; call [`Self::leave`] then too.
+    /// As [`Context::update`], and [`crate::Status::InvalidArgument`] for a moment that the rehearsal does not have;
+    /// call [`Self::leave`] then too.
     pub fn enter(&self, context: &mut Context, moment: usize) -> Result<()> {
         let (i, moment) = (moment / MOMENTS, moment % MOMENTS);
         // The earlier weathers come first, so that their water and snow lie on the ground.

@@ -17,7 +17,7 @@ use crate::{
     world::{GivenDirection, KeptScene, Settings, World, WorldDesc},
 };
 
-/// Light of the sun, the moon and the sky at a place.
+/// Sun and moon as seen from a place, and the light that arrives there from both and from the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightAt {
     /// Sun, with directions in (east, north, up) of the place.
@@ -149,7 +149,7 @@ impl Context {
 
     /// Sets the occluder maps, in place of those before: depth textures of the host with the surfaces that keep rain
     /// off. An empty list removes them. Their content is copied in a submission of its own, after everything that is
-    /// submitted already; the host may then draw into the textures again. At most
+    /// submitted already; the host may then draw into the textures again. There may be at most
     /// [`MAX_OCCLUDER_MAPS`](crate::surroundings::MAX_OCCLUDER_MAPS). Maps work best if drawn along
     /// [`RainAt::fall_velocity_m_s`](crate::rain::RainAt::fall_velocity_m_s). They are not part of a saved state: each
     /// channel may have its own.
@@ -312,8 +312,8 @@ impl Context {
         self.world.scene_named("position", position, time_s)
     }
 
-    /// Returns the sun, the moon and the sky's light at `position` and simulation time `time_s`, dimmed by clouds and
-    /// air.
+    /// Returns the sun and the moon above the air, and the light of sun, moon and sky that arrives at `position` at
+    /// simulation time `time_s`, after air, clouds and fog.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].

@@ -30,7 +30,7 @@ fn sealed(body: &str) -> String {
     format!("{MAGIC}{FORMAT} {:016x}\n{body}", checksum(body))
 }
 
-/// Returns the text below the first line, if the checksum in the first line is right.
+/// Returns the text below the first line, if the format and the checksum in the first line are right.
 fn unsealed(bytes: &[u8]) -> Result<&str> {
     let text = std::str::from_utf8(bytes).map_err(|_| parse_error("the bytes are no UTF-8 text"))?;
     let (head, body) = text.split_once('\n').ok_or_else(|| parse_error("the first line is missing"))?;
@@ -78,10 +78,11 @@ impl Context {
     }
 
     /// Saves everything that decides what this context shows from now on, as UTF-8 text: weather, time, clock, lights,
-    /// exposure, tone curve, planet, shelters, lamps, rain areas, maps, wind, fog law, the settings of single effects,
-    /// and the simulated water, snow and wind. The text also contains the place, seed and ground model for which it is
-    /// valid. Not saved are settings of drawing (sky settings, views), the list of stars, heights of terrain tiles, and
-    /// the images of [`Context::set_occluder_maps`], because each channel may have its own images.
+    /// exposure, tone curve, planet, shelters, lamps, rain areas, weather regions, the cloud map, the wind grid, the
+    /// fog law, the settings of single effects, and the simulated water, snow, soil and wind. The text also contains
+    /// the place, seed and ground model for which it is valid. Not saved are settings of drawing (sky settings, views),
+    /// the list of stars, heights of terrain tiles, and the images of [`Context::set_occluder_maps`], because each
+    /// channel may have its own images.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] while [`Context::update_within`] has steps to do; [`Status::Internal`] if a number cannot

@@ -12,7 +12,7 @@ use crate::{
     world::UpdateBudget,
 };
 
-/// Time limit of each call of [`Context::update_within`] by [`Context::update`], which repeats it until no steps
+/// Time limit of each call of [`Context::update_within`] by [`Context::update`], which repeats the call until no steps
 /// remain.
 pub(crate) const UPDATE_TIME: Duration = Duration::from_millis(50);
 

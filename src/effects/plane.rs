@@ -1,4 +1,4 @@
-//! An opaque effect for tests: a level checkerboard of two luminances, at a height of the host's flat world.
+//! An opaque effect for tests: a level checkerboard of two luminances, at a given height in the host's flat world.
 
 use std::sync::Arc;
 

@@ -184,7 +184,7 @@ fn turns_once(corners: &[[f64; 2]]) -> bool {
     turned.abs() < 1.5 * std::f64::consts::TAU
 }
 
-/// Returns the radius of the largest circle inside a convex polygon, which touches three of its sides.
+/// Returns the radius of the largest circle inside a convex polygon. This circle touches three of the polygon's sides.
 fn inner_radius(edges: &[Edge]) -> f64 {
     let mut most = 0.0f64;
     for (i, a) in edges.iter().enumerate() {

@@ -11,16 +11,17 @@ use crate::{numerics::smoothstep, weather::Falling};
 pub(crate) const WAVES: usize = 12;
 /// Height after which the pattern repeats, m.
 pub(crate) const PERIOD_M: f64 = 4096.0;
-/// Amplitude of each wave of columns.
+/// Amplitude of each wave of columns, as a share of the column's mean rain.
 pub(crate) const AMOUNT: f64 = 0.2;
-/// Distances between which the pattern of columns fades in, m. Single drops around the camera do not have it.
+/// Distances from the eye between which the pattern of columns fades in, m. Single drops around the camera do not have
+/// it.
 pub(crate) const PATTERN_M: [f64; 2] = [30.0, 300.0];
 /// Shortest and longest wave of columns, m.
 pub(crate) const COLUMN_LENGTHS_M: [f64; 2] = [130.0, 900.0];
 /// Shortest and longest wave of the weather's own rain, m. This rain is seen from nearer than columns.
 pub(crate) const OWN_LENGTHS_M: [f64; 2] = [50.0, 600.0];
-/// Fall speed of the curtains of the weather's own rain, m/s, at any rate. If it followed the rate, a change of weather
-/// late in a run would shift the pattern abruptly. At 3 mm/h half of the water falls faster.
+/// Fall speed of the curtains of the weather's own rain, m/s, the same for all rain rates. If it followed the rate, a
+/// change of weather late in a run would shift the pattern abruptly. At 3 mm/h half of the water falls faster.
 const FALL_M_S: f64 = 6.0;
 /// Ratio of the standard deviation of the rain rate to its mean, at scales of 100 m to 1 km, for drizzle, steady rain
 /// and convective rain. Clustering in space dominates convective rain and is weak in stratiform rain (Jameson, Larsen

@@ -12,7 +12,7 @@ use super::drops::GRAVITY_M_S2;
 
 /// Returns the velocity (m/s) and the displacement (m) of a particle after `dt_s`. The particle has `velocity_m_s` at
 /// first, the air has the velocity `air_m_s`, and the terminal speed in still air is `terminal_m_s`. Vectors are (east,
-/// north, up). Twin of `stepped` in `shaders/falling/step.wgsl`.
+/// north, up). The loop of `stepped` in `shaders/falling/step.wgsl` has the same formulas.
 pub fn step(velocity_m_s: DVec3, air_m_s: DVec3, terminal_m_s: f64, dt_s: f64) -> (DVec3, DVec3) {
     let terminal = terminal_m_s.max(1e-3);
     let at_rest = GRAVITY_M_S2 / terminal;

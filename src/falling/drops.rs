@@ -43,7 +43,7 @@ pub fn terminal_speed_m_s(diameter_mm: f64) -> f64 {
 
 /// Returns the slope of the interpolant at entry `i` of the table, m/s per mm: the weighted harmonic mean of the slopes
 /// of the two neighbouring intervals (Fritsch and Butland 1984). With it the interpolant never overshoots. At the ends
-/// of the table it is the slope of the only interval.
+/// of the table it is the slope of the only neighbouring interval.
 fn slope(i: usize) -> f64 {
     let secant = |i: usize| {
         let ((a, va), (b, vb)) = (GUNN_KINZER[i], GUNN_KINZER[i + 1]);
@@ -65,9 +65,9 @@ fn slope(i: usize) -> f64 {
 pub const CLOSED_FORM: [f64; 5] = [9.198_902, 0.053_827_5, 0.572_275_3, 0.008_907_134, 0.012_283_48];
 
 /// Returns the terminal speed at sea level, m/s, in a closed form for shaders: c0 (1 - exp(-(D - c1) (c2 + c3 D + c4
-/// D^2))), never negative, with D = `diameter_mm` and c = [`CLOSED_FORM`]. Its RMS error over the table is 0.031 m/s,
-/// at most 0.078 m/s; at 0.6 mm and more the error is within 2 % (tested). It is monotone and at most 9.2 m/s for any
-/// size.
+/// D^2))), never negative, with D = `diameter_mm` and c = [`CLOSED_FORM`]. Over the table its RMS error is 0.031 m/s,
+/// and its largest error is below 0.078 m/s; at 0.6 mm and more the error is within 2 % (tested). It is monotone and at
+/// most 9.2 m/s for any size.
 pub fn closed_form_speed_m_s(diameter_mm: f64) -> f64 {
     let [c0, c1, c2, c3, c4] = CLOSED_FORM;
     let d = (diameter_mm - c1).max(0.0);

@@ -8,10 +8,10 @@
 //! water. The area that flakes hide is therefore a gamma distribution of order 4 over Dm, and the area-weighted mean of
 //! Dm is 4 / lambda. Flakes larger than [`LARGEST_MM`] break up.
 //!
-//! *Number*. The flakes have the extinction of the weather's snow (`weather::hydrometeors`). Half of it is the area of
-//! their discs, of which [`AREA_RATIO`] is ice; the other half is diffraction. At their fall speeds the flakes must
-//! also give the rate, and c is solved from that ([`FlakeSizes::density_mm_g_cm3`]). It stays near Holroyd's value
-//! unless a reported visibility sets the extinction.
+//! *Number*. The flakes have the extinction of the weather's snow (`weather::hydrometeors`). Half of it is the area
+//! that their ice hides, which is the share [`AREA_RATIO`] of the area of their discs; the other half is diffraction.
+//! At their fall speeds the flakes must also give the rate, and c is solved from that
+//! ([`FlakeSizes::density_mm_g_cm3`]). It stays near Holroyd's value unless a reported visibility sets the extinction.
 //!
 //! *Speeds*. The terminal speed is a D^b m/s, D in mm: unrimed aggregates 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed
 //! 0.79 D^0.27, graupel 1.3 D^0.66 (Locatelli and Hobbs 1974, table 1). Plane crystals of any size fall at 0.31 m/s
@@ -147,7 +147,7 @@ struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
     /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. If
-    /// the slope is 0, equal ratios of diameters hide equal areas.
+    /// the slope is 0, flakes in ranges of diameters with equal ratios of their ends hide equal areas.
     lambda: f64,
     /// Smallest and largest diameter, mm.
     range_mm: (f64, f64),
@@ -185,7 +185,7 @@ pub struct FlakeSizes {
     factor: f64,
 }
 
-/// Number of parts in [`FlakeSizes`]: 0 is aggregates, 1 grains, 2 crystals.
+/// Number of parts in [`FlakeSizes`]. Part 0 is aggregates, part 1 grains, part 2 crystals.
 pub const PARTS: usize = 3;
 
 impl FlakeSizes {

@@ -52,8 +52,8 @@ impl Stone {
         }
     }
 
-    /// Returns the terminal speed, m/s, for a diameter; `factor` is the ratio of the speed of raindrops here to that at
-    /// sea level.
+    /// Returns the terminal speed, m/s, of a stone of this kind. `factor` is the ratio of the speed of raindrops in the
+    /// same air to that at sea level.
     pub fn speed_m_s(self, diameter_mm: f64, factor: f64) -> f64 {
         // Computes the air's density from the speed of raindrops, which is proportional to density^-0.4 (Foote and du
         // Toit 1969).
@@ -145,7 +145,7 @@ impl StoneMode {
 pub struct StoneSizes {
     /// Distributions of pellets and of hail.
     parts: [StoneMode; 2],
-    /// Ratio of the speed of raindrops here to that at sea level.
+    /// Ratio of the speed of raindrops in the same air to that at sea level.
     factor: f64,
 }
 

@@ -1,5 +1,5 @@
 //! Positions in a cubic cell of air that repeats through all space, as 32-bit fractions of its side. Their addition
-//! wraps around like the cell, so positions are exact at any time and place.
+//! wraps around like the cell and does not round, so positions lose no accuracy at late times and far from the origin.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! Physics of precipitation: the sizes of drops, pellets and stones at a given rate, their fall speeds, their flux onto
-//! surfaces, and the areas that have rain of their own.
+//! Physics of precipitation: the sizes of drops, flakes, pellets and hailstones at a given rate, their fall speeds,
+//! their flux onto surfaces, and the areas that have rain of their own.
 //!
 //! Rain, wet ground and the windscreen all use this physics. Nothing is drawn here.
 

@@ -1,5 +1,6 @@
-//! Advection: how the air carries its own velocity. Three schemes, from Stam's simple one to one that keeps energy.
-//! `lanes.rs` has the paths and the interpolation.
+//! Advection: how the air carries its own velocity. There are three schemes, from Stam's simple one to one that keeps
+//! energy. Each follows the path of the air at a face back in time, and takes the velocity from the place where it
+//! began. `lanes.rs` has these paths and the interpolation.
 
 use super::{
     lanes::{Carrier, LANES},
@@ -7,14 +8,15 @@ use super::{
 };
 use crate::error::{Error, Result, shown};
 
-/// Scheme that carries velocity and splits a step.
+/// Scheme of advection. It also determines how a step is divided into advection and projections.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// Takes the value at the place from which the air came on a straight path, by linear interpolation (Stam 1999).
     /// This is the most diffusive scheme.
     SemiLagrangian,
-    /// Takes the value from a curved path, and corrects it by the error that appears when it is carried back. The
-    /// result is limited to the range of the values between which it was interpolated (Selle et al. 2008).
+    /// Takes the value from a curved path by linear interpolation, and corrects it by half of the error that appears
+    /// when the values are carried back. The result is limited to the range of the values between which it was
+    /// interpolated (Selle et al. 2008).
     MacCormack,
     /// Half a step of advection, a projection, a reflection (2 x projected - unprojected velocity), another half step
     /// of advection and a projection (Zehnder et al. 2018, eq. 6). Advection is cubic. The reflection gives back the
@@ -79,8 +81,8 @@ impl Carrier<'_> {
         }
     }
 
-    /// Applies MacCormack's correction to `predicted`, whose ghosts are filled: half of the error that appears when
-    /// `predicted` is carried back.
+    /// Sets `target` to `predicted` with MacCormack's correction, half of the error that appears when `predicted` is
+    /// carried back, and limits it to `bounds`. The ghosts of `predicted` must be filled.
     pub(super) fn correct(
         &self,
         source: &Faces,

@@ -8,9 +8,9 @@ use crate::error::{Error, Result, check_range};
 /// Mode in which a field advances through time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindFieldMode {
-    /// Mean wind around terrain and boxes. It is solved for after the wind or an obstacle has changed. Then the field
-    /// rests at no cost. Gusts at a place are those of the weather, times the ratio of the field's mean wind there to
-    /// the weather's mean wind.
+    /// Mean wind around terrain and boxes. It is solved for after the weather's mean wind or an obstacle has changed.
+    /// Then the field rests at no cost. Gusts at a place are those of the weather, times the ratio of the field's mean
+    /// wind there to the weather's mean wind.
     #[default]
     Steady,
     /// Wind with gusts, the eddies of the inflow, and those that obstacles shed. The field is stepped all the time.
@@ -28,7 +28,8 @@ pub enum WindWalls {
 }
 
 /// Wind field around a place, level and aligned to north: a box of cells in which air flows around the host's terrain
-/// ([`Context::set_ground_grid`](crate::context::Context::set_ground_grid)) and boxes
+/// ([`Context::set_ground_grid`](crate::context::Context::set_ground_grid), or without a grid the tiles of
+/// [`Context::set_terrain_tile`](crate::context::Context::set_terrain_tile)) and boxes
 /// ([`Context::set_shelters`](crate::context::Context::set_shelters)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindFieldDesc {
@@ -76,16 +77,16 @@ impl WindFieldDesc {
     /// Returns the memory that a field of this size needs at most, bytes: the sum of its arrays.
     pub fn bytes(&self) -> u64 {
         let product = |more: u64| self.cells.iter().map(|n| u64::from(*n) + more).product::<u64>();
-        // For each face with ghosts: five velocities; open shares and pushing velocities, twice; its layer, and its
-        // place in lists; MacCormack's bounds. For each cell: potentials, divergence, correction, and whether it has
-        // air. For each corner: the values that queries and shaders read.
+        // For each face with ghosts: five velocities; open shares and pushing velocities, twice; its layer inside
+        // obstacles, and its position in lists of faces; MacCormack's bounds. For each cell: potentials, divergence,
+        // correction, and whether it has air. For each corner: the values that queries and shaders read.
         let bounds = if self.scheme == Scheme::MacCormack { 8 } else { 0 };
         let faces = product(5) * 3 * (9 * 4 + 1 + 12 + bounds);
         let equation = 4 * multigrid::values(self.cells, self.cell_m.as_vec3());
         faces + product(0) * (4 * 4 + 1) + equation + product(1) * 24
     }
 
-    /// Checks the description; the error names the field at fault.
+    /// Checks the description; the error names the parameter at fault.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`]. For a field that is too large, the error says how much memory it needs and
@@ -127,8 +128,9 @@ pub struct WindFieldReport {
     /// Simulation time of the field, s: the present, or up to one step before it.
     pub time_s: f64,
     /// Simulation time of the last start, s. A start sets the whole field to the steady flow of the mean wind. The
-    /// field starts when it is first set, after a leap of time of more than a minute, and after a move too far to
-    /// follow.
+    /// field starts when it is set, after a change of its description other than of its place and memory limit, after a
+    /// leap of time of more than a minute, and after a move of half its size or more along an axis (in a curved world
+    /// also of about 10 km).
     pub begun_s: f64,
     /// Length of the field's steps, s.
     pub step_s: f64,

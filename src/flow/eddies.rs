@@ -126,7 +126,7 @@ impl Mixing<'_> {
         });
     }
 
-    /// Returns the change of four values with cells all round them, m/s2.
+    /// Returns the rate of change of four values whose neighbours all lie inside the grid, m/s2.
     #[inline]
     fn inner_change(&self, i: [usize; 3], first: usize) -> Vec4 {
         let (lattice, c) = (self.lattice, self.component);
@@ -154,7 +154,7 @@ impl Mixing<'_> {
         sum
     }
 
-    /// Returns the change of a value, m/s2.
+    /// Returns the rate of change of a value, m/s2.
     fn change(&self, i: [usize; 3], place: usize) -> f32 {
         let Self { lattice, cells, even, component: c, old, .. } = *self;
         let n = lattice.n;

@@ -27,7 +27,7 @@ pub struct FlowField {
     pub(super) roles: Roles,
     /// Outer wind on and beyond the sides, m/s.
     pub(super) outer: Faces,
-    /// Open shares of the faces, and what follows from them.
+    /// Open shares of the faces, bodies of air, and layers of closed faces.
     pub(super) openings: Openings,
     /// Values beside rough walls.
     pub(super) walls: Walls,
@@ -105,7 +105,7 @@ impl FlowField {
         self.velocity = v;
     }
 
-    /// Fills the values beyond the sides and inside obstacles of `v`.
+    /// Fills the values of `v` beyond the sides and inside obstacles.
     pub(super) fn fill_all(&self, v: &mut Faces) {
         for c in self.lattice.axes() {
             self.openings.fill_inside(&self.lattice, self.settings.is_slip, c, &mut v[c]);
@@ -123,7 +123,8 @@ impl FlowField {
         Ok(())
     }
 
-    /// Replaces the open shares of the faces, and all that follows from them.
+    /// Replaces the open shares of the faces, and renews the pressure equation and the rough walls, which follow from
+    /// them.
     pub(super) fn take_shares(&mut self, shares: Shares) {
         self.openings = Openings::new(&self.lattice, &self.roles, shares);
         self.pressure = Pressure::new(self.openings.level(&self.lattice, &self.roles));
@@ -136,8 +137,8 @@ impl FlowField {
         self.walls.find(&self.lattice, &self.openings, self.settings.roughness_m, floor);
     }
 
-    /// Returns the largest divergence of a cell with air, times the shortest cell size, divided by the largest speed; 0
-    /// in still air.
+    /// Returns the largest divergence of a cell with air, times the shortest cell size, divided by the largest
+    /// component of the velocity; 0 in still air.
     pub fn largest_divergence(&mut self) -> f64 {
         let v = std::mem::take(&mut self.velocity);
         self.find_divergence(&v);
@@ -175,7 +176,8 @@ impl FlowField {
     }
 
     /// Returns the velocity, m/s (east, north, up), at a place, m from the box's lowest corner. It is linear between
-    /// faces. Outside the box it is the velocity at the nearest place of the box.
+    /// faces. Outside the box it is the velocity at the nearest place of the box. Along a periodic axis places wrap
+    /// instead.
     pub fn velocity_at(&self, place_m: DVec3) -> DVec3 {
         let carrier = Carrier::new(&self.lattice, &self.velocity, self.range());
         carrier.velocity_near((place_m / self.settings.cell_m).as_vec3().to_array()).as_dvec3()

@@ -1,5 +1,5 @@
 //! Order of a grid's values for sweeps over one colour of a chessboard: each row has its even cells first, then its odd
-//! ones. All cells of one colour in a row, and each of their neighbours, thus lie side by side.
+//! ones. All cells of one colour in a row thus lie side by side, and so do their neighbours in each direction.
 //!
 //! The first and the last cell of a row are neighbours. A copy of each lies next to the other, beyond the end of the
 //! row, so sweeps need no special case at the ends. The room that is left in a row holds zeros.
@@ -25,7 +25,7 @@ pub(super) struct Halves {
     pub row: usize,
 }
 
-/// Starts of a row of cells and of the four rows beside it.
+/// Starts of a row of cells and of the four rows beside it: south, north, below, above.
 pub(super) struct RowNeighbours {
     pub own: usize,
     pub beside: [usize; 4],
@@ -128,7 +128,8 @@ impl Halves {
         }
     }
 
-    /// Returns the starts of a row and of those beside it, by its indices north and up.
+    /// Returns the starts of a row and of those beside it, by its indices north and up. The last row along an axis is
+    /// beside the first.
     #[inline]
     pub(super) fn neighbours(&self, j: usize, k: usize) -> RowNeighbours {
         let [_, ny, nz] = self.n;

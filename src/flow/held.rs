@@ -1,5 +1,5 @@
-//! Wind field of a context: it is set for a simulation time, stepped on the step grid, published to all readers of the
-//! wind, saved and loaded.
+//! Wind field of a context: it is set for a simulation time, stepped to multiples of its step's length, published to
+//! all readers of the wind, saved and loaded.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use crate::{
     world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
-/// Largest number of changes of the field that may lie in the future.
+/// Largest number of entries of [`HeldFlow::changes`]: the change in force and those to come.
 const MAX_CHANGES: usize = 64;
 /// Key of the field in a saved state.
 const KEY: &str = "wind_field";
@@ -25,7 +25,7 @@ const KEY: &str = "wind_field";
 pub(crate) struct HeldFlow {
     /// Changes in order of time. The first one is in force once its time has come.
     pub(super) changes: Vec<FieldChange>,
-    /// Present field; `None` until the first change has come.
+    /// Present field; `None` if there is none at this time.
     pub(super) live: Option<Box<Live>>,
     /// Whether the wind that the world reads is the field's present wind.
     is_shown: bool,
@@ -70,7 +70,7 @@ impl HeldFlow {
         Ok(())
     }
 
-    /// Returns the state of the field, if there is one.
+    /// Returns the state of the field; `None` without a field and until the field's start is complete.
     pub fn report(&self) -> Option<WindFieldReport> {
         self.live.as_ref().filter(|live| live.start.is_none()).map(|live| live.report())
     }
@@ -92,7 +92,7 @@ impl HeldFlow {
         }
     }
 
-    /// Begins a field if one is due by now. Returns whether there is one.
+    /// Begins a field if one is due by now. Returns whether it has begun one.
     fn begin_field(&mut self, world: &World) -> Result<bool> {
         let now = world.time_s;
         let come = self.changes.iter().filter(|c| c.start_s <= now);
@@ -238,7 +238,7 @@ impl HeldEffect for HeldFlow {
                 world.solved_wind = Some(volume);
                 self.is_shown = true;
             }
-            // Until a start is complete, the previous field stays published.
+            // Until a start or a step is complete, the wind that was published before stays.
             Some(_) => {}
             None => {
                 world.solved_wind = None;

@@ -1,4 +1,5 @@
-//! Paths of the air and interpolation, for four neighbouring faces at once: a lane of a vector for each.
+//! Paths along which advection follows the air back in time, and interpolation, for four neighbouring faces at once.
+//! Each face has one lane of a vector.
 //!
 //! The air of neighbouring faces mostly comes from neighbouring places, so the values of all lanes lie side by side in
 //! memory. If the places are apart, each lane's values are looked up singly, with the same result.
@@ -28,25 +29,25 @@ pub(super) struct Carrier<'a> {
 /// Places of four lanes among the values along one axis.
 #[derive(Clone, Copy)]
 struct AxisPlaces {
-    /// Index of the value before each place.
+    /// Index of the last value at or below each place along the axis, counted from the first ghost.
     low: Vec4,
     /// Fraction of a cell from that value to the place.
     part: Vec4,
-    /// Whether each lane has the index of a place side by side with that of the first lane in a row. Along the first
-    /// axis this is the first lane's index plus the number of the lane. Along the other axes it is the first lane's
-    /// index.
+    /// Whether the value of each lane lies in one row with that of the first lane, as many values farther along as the
+    /// number of the lane. Along the first axis the index is then that of the first lane plus this number. Along the
+    /// other axes it is that of the first lane.
     follows: BVec4A,
 }
 
-/// Position in the list, for each of four places, of the lowest value around the place.
+/// Position in the list, for each of four places, of that value around the place which has the lowest indices.
 enum Lowest {
     /// The lanes' values follow each other, from this position.
     Row(usize),
     Apart([usize; LANES]),
 }
 
-/// Four places among values: the lowest value around each place, and the fraction of a cell from this value to the
-/// place along each axis.
+/// Four places among values: the value with the lowest indices around each place, and the fraction of a cell from this
+/// value to the place along each axis.
 pub(super) struct Taps {
     lowest: Lowest,
     part: [Vec4; 3],
@@ -93,7 +94,8 @@ impl<'a> Carrier<'a> {
         });
     }
 
-    /// Returns `places` moved by `far` times `way`, m, and clamped to the range of places.
+    /// Returns `places` moved by `far` times `way`, m, and clamped to the range of places. Along a periodic axis they
+    /// wrap.
     #[inline]
     pub(super) fn moved(&self, mut places: FacePlaces, way: [Vec4; 3], far: f32) -> FacePlaces {
         for (a, along) in places.iter_mut().enumerate() {
@@ -140,7 +142,7 @@ impl<'a> Carrier<'a> {
         Taps { lowest, part: [x.part, y.part, z.part] }
     }
 
-    /// Returns the values of four lanes at an offset from their lowest ones.
+    /// Returns the values of four lanes at an offset from the position `lowest` of each lane.
     #[inline]
     fn gathered(values: &[f32], lowest: &[usize; LANES], offset: usize) -> Vec4 {
         let of = |lane: usize| values[lowest[lane] + offset];
@@ -161,7 +163,8 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Interpolates linearly between the two values of each of four rows, which `pair` returns.
+    /// Interpolates linearly between two values in each of four rows. `pair` returns these two for the row at an
+    /// offset.
     #[inline]
     fn linear_of(&self, [fx, fy, fz]: [Vec4; 3], pair: impl Fn(usize) -> [Vec4; 2]) -> Vec4 {
         let [_, dy, dz] = self.next;
@@ -213,7 +216,7 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Interpolates between the four values of each of sixteen rows, which `row` returns.
+    /// Interpolates between four values in each of sixteen rows. `row` returns these four for the row at an offset.
     #[inline]
     fn limited_cubic_of(&self, part: [Vec4; 3], row: impl Fn(usize) -> [Vec4; 4]) -> Vec4 {
         let [dx, dy, dz] = self.next;
@@ -236,7 +239,8 @@ impl<'a> Carrier<'a> {
         lesser(larger(cubic, least), most)
     }
 
-    /// Returns the wind at a place in cells, m/s. Outside the range it is the wind at the nearest place in the range.
+    /// Returns the wind at a place in cells, m/s. Outside the range it is the wind at the nearest place in the range;
+    /// along a periodic axis the place wraps.
     pub(super) fn velocity_near(&self, place: [f32; 3]) -> Vec3 {
         let [x, y, z] = place;
         let places = self.moved([Vec4::splat(x), Vec4::splat(y), Vec4::splat(z)], [Vec4::ZERO; 3], 0.0);
@@ -259,8 +263,8 @@ impl<'a> Carrier<'a> {
         ]
     }
 
-    /// Returns the wind at four faces of a component, the first at a position in the list. Each other component there
-    /// is the mean of its four faces around.
+    /// Returns the wind at four faces of a component, of which the first has the position `first` in the list. Each
+    /// other component is the mean of its values on the four faces around.
     #[inline]
     pub(super) fn velocity_on_faces(&self, component: usize, first: usize) -> [Vec4; 3] {
         let half = Vec4::splat(0.5);

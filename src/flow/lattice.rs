@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, check_range};
 
-/// Layers of ghost values on each side of an axis, as cubic interpolation needs.
+/// Number of layers of ghost values at each end of an axis, as cubic interpolation needs.
 pub(super) const GHOSTS: usize = 2;
 /// Largest number of cells of a grid: about 6 GB.
 const MAX_CELLS: u64 = 1 << 25;
@@ -209,7 +209,7 @@ impl Lattice {
     }
 
     /// Shifts the values of a component by whole cells: each place gets the value from `cells` farther along each axis.
-    /// Values from outside, and ghosts, come from `new` for their indices.
+    /// A place whose value would come from a ghost or from beyond the ghosts gets `new` of its own indices.
     pub(super) fn shift(&self, component: usize, values: &mut [f32], cells: [i64; 3], new: impl Fn([i64; 3]) -> f32) {
         let before = values.to_vec();
         let has = |i: [i64; 3]| (0..3).all(|a| (0..self.count(component, a) as i64).contains(&i[a]));

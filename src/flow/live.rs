@@ -19,7 +19,7 @@ use crate::{
     world::World,
 };
 
-/// Length of a step with gusts ([`WindFieldMode::Running`]), s. Steps lie on a grid that is anchored at time 0.
+/// Length of a step with gusts ([`WindFieldMode::Running`]), s. Steps end at multiples of their length from time 0.
 const RUNNING_STEP_S: f64 = 0.5;
 /// Length of a step of the mean wind ([`WindFieldMode::Steady`]), s.
 const STEADY_STEP_S: f64 = 2.0;
@@ -37,9 +37,9 @@ const MOST_CROSSINGS: f64 = 6.0;
 const WAKES: f64 = 0.02;
 /// Largest number of parts (single solver steps) of a start at each level after the first, coarsest one.
 const FINER_PARTS: u32 = 6;
-/// Duration of a start at the first level, in crossings of the field.
+/// Longest duration of a start at the first, coarsest level, in crossing times.
 const FIRST_CROSSINGS: f64 = 4.0;
-/// Least number of cells along each axis down to which a grid is halved for the start.
+/// Least number of cells along each axis of the coarsest grid of a start.
 const FEWEST_CELLS: u32 = 8;
 /// Distance of a place from the field's anchor, m, beyond which the anchor is renewed in a curved world.
 const ANCHORED_M: f64 = 10_000.0;
@@ -308,7 +308,7 @@ fn settings(desc: &WindFieldDesc, roughness_m: f64, level: u32) -> FlowSettings 
 }
 
 impl Live {
-    /// Creates a field at the beginning of its start, at a time of its step grid.
+    /// Creates a field at the beginning of its start, at a time that is a multiple of its step's length.
     pub fn new(world: &World, desc: WindFieldDesc, time_s: f64) -> Result<Self> {
         let anchor = Anchor::new(world, desc.floor_center);
         // The smallest possible field: the start replaces it.
@@ -452,7 +452,7 @@ impl Live {
         Ok(false)
     }
 
-    /// Prepares the field for its next step. Returns whether there is anything to do in it.
+    /// Prepares the field for its next step. Returns `false` if the field rests: the step is then already over.
     pub fn begin_step(&mut self, world: &World) -> Result<bool> {
         let end_s = self.next_s();
         let inflow = Inflow::new(world, end_s, self.desc.mode);

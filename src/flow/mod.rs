@@ -5,10 +5,10 @@
 //! [`FlowField::settle`] advances it until it is steady, and [`FlowField::velocity_at`] returns the wind at any place.
 //!
 //! A context has a field if its host asks for one ([`WindFieldDesc`],
-//! [`Context::set_wind_field`](crate::context::Context::set_wind_field)). `live.rs` keeps the field around its place:
-//! the inflow comes from the weather's profile and gusts, the obstacles from the host's terrain and boxes. `held.rs`
-//! advances it in steps on a grid anchored at time 0, saves it, and publishes its wind to the world. Effects read the
-//! wind from the world ([`crate::wind`]); none calls this room.
+//! [`Context::set_wind_field`](crate::context::Context::set_wind_field)). `live.rs` moves the field with its place, and
+//! sets the inflow by the weather's profile and gusts, and the obstacles by the host's terrain and boxes. `held.rs`
+//! advances the field in steps that end at multiples of their length from time 0, saves it, and publishes its wind to
+//! the world. Effects read the wind from the world ([`crate::wind`]); none calls this room.
 //!
 //! # Model
 //!
@@ -61,13 +61,13 @@
 //! default scheme takes two projections. Advection, sweeps and eddies compute four neighbouring values at a time
 //! (`lanes.rs`, `halves.rs`), each by the same operations in the same order as a single value, so the bits do not
 //! depend on this grouping. The cost grows only with the number of cells: twice the cells take 1.8 to 2 times as long
-//! (`cargo bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. Runs on one thread
-//! and without the GPU; every run gives the same bits.
+//! (`cargo bench --bench speed -- wind`). Memory: [`WindFieldDesc::bytes`], about 300 bytes a cell. The field runs on
+//! one thread and without the GPU; every run gives the same bits.
 //!
 //! # Limits
 //!
-//! The field is stepped only on the CPU. Inside obstacles the wind is that of the air beside them. Heat is not
-//! modelled.
+//! The field is stepped only on the CPU. Inside obstacles the wind is that of the air beside them down to a depth of
+//! four cells, and 0 farther inside. Heat is not modelled.
 
 mod advect;
 mod desc;

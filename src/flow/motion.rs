@@ -115,8 +115,8 @@ impl FlowField {
         self.fill_all(mirrored);
     }
 
-    /// Sets `target` to `source` carried by `wind` for `dt` seconds, and fills its ghosts. `other` is scratch memory of
-    /// MacCormack's scheme.
+    /// Sets `target` to `source` carried by `wind` for `dt` seconds, and fills its ghosts and closed faces. `other` is
+    /// scratch memory of MacCormack's scheme.
     fn carry(&mut self, source: &Faces, wind: &Faces, dt: f64, other: &mut Faces, target: &mut Faces) {
         let mut bounds = std::mem::take(&mut self.bounds);
         let carrier = Carrier::new(&self.lattice, wind, self.range());
@@ -144,8 +144,9 @@ impl FlowField {
         })
     }
 
-    /// Mixes by viscosity and by eddies smaller than a cell, in as many explicit steps as stability needs, and applies
-    /// the friction of walls. `spare` is scratch memory.
+    /// Mixes `v` by viscosity and by eddies smaller than a cell, and applies the friction of walls. The mixing takes as
+    /// many explicit steps as the viscosity and the mixing over the ground need to be stable. Vreman's eddy viscosity
+    /// is limited to what is stable in these steps. `spare` is scratch memory.
     fn mix(&mut self, wind: &Faces, dt: f64, spare: &mut Faces, v: &mut Faces) {
         let even = self.settings.viscosity_m2_s;
         let ground = self.mixing.most_m2_s();

@@ -27,7 +27,8 @@ impl FlowField {
     /// [`crate::Status::InvalidArgument`] for a wind that is not finite or over [`super::MAX_SPEED_M_S`]; the field
     /// then stays unchanged.
     pub fn set_wind(&mut self, wind: impl Fn(DVec3) -> DVec3) -> Result<()> {
-        // Checks all winds on the sides before it sets any. The strongest winds of a profile are on the sides.
+        // Checks all winds on the sides before it sets any. `shift` uses the wind inside the box too, without a check:
+        // the strongest winds of a profile are on the sides.
         for is_checked in [false, true] {
             for c in self.lattice.axes() {
                 let (lattice, outer) = (&self.lattice, &mut self.outer[c]);
@@ -75,7 +76,7 @@ impl FlowField {
         Ok(())
     }
 
-    /// Fills the values beyond the sides and inside obstacles from the air beside them.
+    /// Fills the present velocity beyond the sides and inside obstacles.
     pub(super) fn fill_ghosts(&mut self) {
         let mut v = std::mem::take(&mut self.velocity);
         self.fill_all(&mut v);

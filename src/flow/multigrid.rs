@@ -2,8 +2,8 @@
 //!
 //! A coarse cell joins two cells along each axis on which cells are not much longer than on the other axes. Elongated
 //! cells thus become cubic first, and then all axes are halved together. The opening of a coarse face is the mean of
-//! its fine faces. An odd number of cells leaves a coarse cell that is half closed. Residuals are restricted as means;
-//! corrections are interpolated linearly between coarse cells.
+//! its fine faces. With an odd number of cells, the last coarse cell has only one fine cell, and its other half counts
+//! as closed. Residuals are restricted as means; corrections are interpolated linearly between coarse cells.
 
 use std::mem::{swap, take};
 
@@ -84,7 +84,7 @@ struct RowSweep<'a> {
 }
 
 impl RowSweep<'_> {
-    /// Returns the new values of some cells. Cells without air keep their values.
+    /// Returns the new values of the group `i` of four cells. Cells without air keep their values.
     #[inline(always)]
     fn relaxed(&self, i: usize) -> Vec4 {
         let (x, sum) = (vector(self.x[i]), vector(self.sums[i]));
@@ -285,7 +285,7 @@ impl GridLevel {
         (self.line, coarse.cells) = (line, cells);
     }
 
-    /// Prepares the solution for the correction of the finer level `fine`.
+    /// Copies the solution, and at the first call `sum`, into `plain` for the correction of the finer level `fine`.
     fn lay_out(&mut self, fine: &Self) {
         let room = fine.halves.room() + 2;
         let [nx, ny, nz] = self.halves.n;
@@ -300,8 +300,9 @@ impl GridLevel {
         }
     }
 
-    /// Adds the coarse correction, interpolated linearly: on each axis 3/4 of the own coarse cell and 1/4 of its
-    /// nearest neighbour. Where there is no neighbour, the own cell replaces it.
+    /// Adds the coarse correction, interpolated linearly: on each axis whose cells are joined, 3/4 of the fine cell's
+    /// own coarse cell and 1/4 of the next coarse cell on the fine cell's side. Where that next cell lies outside the
+    /// grid or has no air, the own one replaces it.
     fn add_correction(&self, x: &mut [f32], coarse: &mut Self) {
         let (halves, join) = (&self.halves, self.join);
         if join[0] == 2 {

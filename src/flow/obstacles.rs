@@ -1,7 +1,7 @@
 //! Obstacles: terrain and solid objects in the air, as the open share of each face, which is the part of its area that
 //! they leave free.
 //!
-//! Along the vertical of a face, heights are exact; along its horizontal sides, [`SAMPLES`] places are evaluated. So
+//! The share is exact in the vertical. Along each horizontal side of a face, [`SAMPLES`] places are evaluated. So
 //! terrain slopes through cells instead of forming stairs, and a box may end anywhere within a cell. A box thinner than
 //! a cell is made one cell thick, so that no air passes through it between two faces.
 
@@ -18,7 +18,7 @@ const SAMPLES: usize = 8;
 /// Distance from a face, as a share of a cell, within which an object counts as lying on the face.
 const NEAR: f64 = 1e-6;
 
-/// Box in the air with any orientation, cut by planes. Lengths are measured from the lowest corner of the field.
+/// Box in the air with any orientation, cut by planes. Places are measured from the lowest corner of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowBox<'a> {
     /// Centre, m.
@@ -58,7 +58,7 @@ pub type Heights<'a> = &'a dyn Fn(DVec2) -> f64;
 /// Obstacles that stand or move in the air.
 #[derive(Clone, Copy, Default)]
 pub struct FlowObstacles<'a> {
-    /// Heights of the ground; `None` puts the ground at the field's lowest side.
+    /// Heights of the ground; `None` if only the low side of the field bounds the air from below.
     pub terrain: Option<Heights<'a>>,
     /// Boxes.
     pub boxes: &'a [FlowBox<'a>],
@@ -69,8 +69,8 @@ pub struct FlowObstacles<'a> {
 pub(super) struct Shares {
     /// Open share of each face, \[0, 1\].
     pub open: Faces,
-    /// Velocity along the face's axis times the share of the face that a moving obstacle closes, m/s; empty where
-    /// nothing moves.
+    /// Velocity along the face's axis times the share of the face that a moving obstacle closes, m/s; empty if no
+    /// obstacle moves.
     pub pushed: Faces,
 }
 
@@ -133,7 +133,7 @@ impl SolidBox {
         (low < high).then_some([low, high])
     }
 
-    /// Returns the columns of cells whose faces the box may close; `None` outside the field.
+    /// Returns the columns of cells whose faces the box may close; `None` if the box lies beside the field.
     fn columns(&self, lattice: &Lattice) -> Option<ColumnRange> {
         let along = |a: usize| {
             let h = f64::from(lattice.h[a]);
@@ -145,14 +145,14 @@ impl SolidBox {
     }
 }
 
-/// Returns the columns whose faces the boxes may close.
+/// Returns the columns whose faces the boxes may close; `None` if there are none.
 pub(super) fn columns_of(lattice: &Lattice, boxes: &[FlowBox]) -> Option<ColumnRange> {
     let all = boxes.iter().filter_map(|b| SolidBox::new(lattice, b).columns(lattice));
     all.reduce(|a, b| [0, 1].map(|i| [a[i][0].min(b[i][0]), a[i][1].max(b[i][1])]))
 }
 
 impl FlowObstacles<'_> {
-    /// Checks the boxes; the error names the field at fault.
+    /// Checks the boxes; the error names the box and its value at fault.
     fn check(&self, lattice: &Lattice) -> Result<()> {
         let size = DVec3::from([0, 1, 2].map(|a| lattice.n[a] as f64 * f64::from(lattice.h[a])));
         for (i, b) in self.boxes.iter().enumerate() {

@@ -1,5 +1,7 @@
-//! Open shares of faces, and the data that follow from them: the coefficients of the pressure equation, separate bodies
-//! of air, and those faces inside obstacles to which paths of air lead, so that they need a velocity.
+//! Open shares of faces, and the data that follow from them: the coefficients of the pressure equation, the separate
+//! bodies of air, and the layers of closed faces inside obstacles. Closed faces near the air need a velocity: the paths
+//! that advection traces back in time may begin beside or inside an obstacle, and the interpolation there reads closed
+//! faces.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -8,13 +10,14 @@ use super::{
     sides::{Role, Roles},
 };
 
-/// Open share below which a face is closed: cells behind such slits would need very many iterations.
+/// Open share below which a face is closed altogether: the pressure in cells behind such slits would need very many
+/// iterations.
 const LEAST_OPEN: f32 = 0.03;
 /// Number of layers of faces inside obstacles that get the velocity of the air beside them.
 const LAYERS: u8 = 4;
 /// Layer number of a face that no layer has reached, and of a ghost.
 const NO_LAYER: u8 = u8::MAX;
-/// Body number of a cell without air.
+/// Body number of a cell that the flood fill has not visited yet.
 const NO_BODY: u32 = u32::MAX;
 
 /// Open faces of a grid.
@@ -22,18 +25,18 @@ const NO_BODY: u32 = u32::MAX;
 pub(super) struct Openings {
     /// Open share of each face, [0, 1].
     pub open: Faces,
-    /// Velocity of moving obstacles times the share of the face that they close, m/s; empty where nothing moves.
+    /// Velocity of moving obstacles times the share of the face that they close, m/s; empty if no obstacle moves.
     pub pushed: Faces,
     /// Faces of open sides that were closed because the air behind them could not leave: component, position in the
     /// list, open share.
     dead: Vec<(usize, usize, f32)>,
     /// Body of air to which each cell belongs.
     bodies: Vec<u32>,
-    /// Number of bodies of air.
+    /// Number of bodies. A cell without an open face is a body of its own.
     body_count: usize,
-    /// Closed faces of each component by layer, from the air inwards.
+    /// Closed faces of each component by layer, from the air into the obstacles. The last entry has all deeper faces.
     inside: [Vec<Vec<usize>>; 3],
-    /// Layer number of each face of each component; 0 for a face with air.
+    /// Layer number of each face of each component; 0 for an open face.
     layers: [Vec<u8>; 3],
     /// Scratch space of [`Openings::balance`].
     passing: Vec<Passing>,
@@ -111,7 +114,7 @@ impl Openings {
         GridLevel::new(lattice.n, lattice.h, lower)
     }
 
-    /// Numbers the bodies of air by flood fill.
+    /// Numbers the bodies of air by flood fill. A cell without an open face gets a number of its own.
     fn find_bodies(&mut self, lattice: &Lattice, roles: &Roles) {
         let [nx, ny, _] = lattice.n;
         let steps = [1, nx, nx * ny];
@@ -226,7 +229,7 @@ impl Openings {
         }
     }
 
-    /// Finds the layers of closed faces, from the air inwards.
+    /// Finds the layers of closed faces, from the air into the obstacles.
     fn find_layers(&mut self, lattice: &Lattice) {
         self.inside = Default::default();
         for c in lattice.axes() {
@@ -256,8 +259,8 @@ impl Openings {
         }
     }
 
-    /// Gives closed faces a velocity: that of the air beside them, layer by layer, if air slides along obstacles;
-    /// otherwise 0.
+    /// Gives closed faces a velocity. If air slides along obstacles, the velocity is the mean of the neighbours in
+    /// layers nearer to the air, down to [`LAYERS`] layers. Otherwise and deeper it is 0.
     pub(super) fn fill_inside(&self, lattice: &Lattice, slides: bool, component: usize, values: &mut [f32]) {
         let layers = &self.layers[component];
         for (depth, faces) in (1..).zip(&self.inside[component]) {

@@ -1,11 +1,11 @@
 //! Pressure that makes the velocity u free of divergence: the potential phi solves laplace(phi) = div u, and u - grad
 //! phi is the new velocity (Chorin 1968).
 //!
-//! There are two methods. Successive over-relaxation (Young 1954) in two colours, as on a chessboard, moves each cell's
-//! value towards that which its neighbours require, and beyond it by the relaxation factor. With a factor of 2 or more
-//! it diverges, so such factors are refused. Multigrid preconditions each step of conjugate gradients with a V-cycle
-//! (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not symmetric). Coarse grids
-//! blur thin walls and small openings, which costs more cycles, but the method still converges.
+//! There are two methods. Successive over-relaxation (Young 1954) in two colours, as on a chessboard, changes each
+//! cell's value by the relaxation factor times its difference from the value that the neighbours require. With a factor
+//! of 2 or more it diverges, so such factors are refused. Multigrid preconditions each step of conjugate gradients with
+//! a V-cycle (Hestenes and Stiefel 1952, with the update of Polak and Ribiere, since a V-cycle is not symmetric).
+//! Coarse grids blur thin walls and small openings, which costs more cycles, but the method still converges.
 //!
 //! The residual of the equation is the remaining divergence. Both methods stop once it is within the tolerance.
 
@@ -204,7 +204,7 @@ impl Pressure {
     }
 }
 
-/// Returns the sums of the products of pairs of lists, each in the order of cells.
+/// Returns the sums of the products of pairs of lists. Each sum adds its products in the order of cells.
 fn products<const N: usize>(halves: &Halves, lists: [(&Vec<f32>, &Vec<f32>); N]) -> [f64; N] {
     let mut sums = [-0.0; N];
     for row in (0..halves.len()).step_by(halves.row) {

@@ -17,7 +17,8 @@ const MOST_TIMES: u32 = 500;
 /// `re`.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] for `re` not in \[1, 10,000\] and `n` not in \[8, 1024\].
+/// [`Status::InvalidArgument`] for `re` not in \[1, 10,000\] and `n` not in \[8, 1024\]; [`Status::Unsupported`] if the
+/// flow does not become steady.
 pub fn cavity(re: f64, n: u32) -> Result<FlowField> {
     check_range("re", re, 1.0, 1e4, "")?;
     check_range("n", f64::from(n), 8.0, 1024.0, "")?;

@@ -70,7 +70,8 @@ impl FlowField {
         }
     }
 
-    /// Finds the divergence of each cell: the air that leaves through its open faces, divided by the cell's volume.
+    /// Finds the divergence of each cell: the net flux out of it, with the flux that moving obstacles push, divided by
+    /// the cell's volume.
     pub(super) fn find_divergence(&mut self, v: &Faces) {
         let (lattice, openings) = (&self.lattice, &self.openings);
         let out = &mut self.divergence;
@@ -103,8 +104,8 @@ impl FlowField {
     /// last step. It includes only the obstacles in the box between the places `low_m` and `high_m`, m from the field's
     /// lowest corner.
     ///
-    /// The pressure of a step is the sum of the potentials of its projections. In the reflection scheme it is twice the
-    /// first plus the second.
+    /// The pressure times the length of the step is the sum of the potentials of the step's projections. In the
+    /// reflection scheme it is twice the first plus the second.
     pub fn pressure_force(&self, low_m: DVec3, high_m: DVec3) -> DVec3 {
         let (lattice, open) = (&self.lattice, &self.openings.open);
         let steps = [1, lattice.n[0], lattice.n[0] * lattice.n[1]];

@@ -52,10 +52,10 @@ pub(super) struct SavedDesc {
     running: bool,
     /// Whether the walls are [`WindWalls::Smooth`].
     smooth: bool,
-    /// Absent for the default, as in states saved before this field existed.
+    /// Absent for the default, as in states saved before schemes could be chosen.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     scheme: Option<SavedScheme>,
-    /// Absent for the default, as in states saved before this field existed.
+    /// Absent for the default, as in states saved before methods could be chosen.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pressure: Option<SavedPressure>,
     most_bytes: u64,
@@ -137,8 +137,8 @@ pub(super) struct SavedField {
     last_dt_s: f64,
     /// Largest change of a velocity in the last step, m/s.
     last_change_m_s: f32,
-    /// Profile as in [`Live::shown_over`]. States of older versions lack it; their fields are compared with the present
-    /// wind.
+    /// Profile as in [`Live::shown_over`]. States of older versions lack it; their fields are compared with the wind at
+    /// `time_s`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shown_over: Option<WindProfile>,
     /// Description of the field.

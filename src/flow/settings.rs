@@ -12,7 +12,7 @@ pub const MAX_SPEED_M_S: f64 = 300.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowSettings {
     /// Numbers of cells east, north and up, 1 to 4096 each, at most 33,554,432 in all. An axis of one cell is flat:
-    /// nothing changes along it.
+    /// nothing changes along it. At most one axis may be flat.
     pub cells: [u32; 3],
     /// Size of a cell, m, \[1e-6, 10,000\].
     pub cell_m: DVec3,
@@ -25,7 +25,8 @@ pub struct FlowSettings {
     /// Largest divergence times cell size that the pressure may leave in any cell, as a share of the largest speed,
     /// \[1e-7, 1\].
     pub tolerance: f64,
-    /// Kinematic viscosity, m2/s, \[0, 1e6\]. It is 0 for weather, where it would not slow air at walls; tests set it.
+    /// Kinematic viscosity, m2/s, \[0, 1e6\]. In weather it is 0, since it would not slow air that slides along walls.
+    /// Tests set it.
     pub viscosity_m2_s: f64,
     /// Whether air slides along terrain and boxes; otherwise it sticks to them.
     pub is_slip: bool,

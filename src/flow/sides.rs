@@ -6,8 +6,9 @@ use super::lattice::{Faces, Lattice};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Side {
     /// Open side. If the outer wind blows in over the side as a whole, air comes in with this wind. If it blows out,
-    /// air leaves with the velocity that advection gives it, and only the flux is balanced, so pressure reflects
-    /// nothing. If it does neither, the side is a slip wall.
+    /// air leaves with the velocity that advection gives it. The pressure does not change this velocity. To balance the
+    /// flux, the same change of speed is added at all outflow faces. If the wind blows neither in nor out, the side is
+    /// a slip wall.
     #[default]
     Open,
     /// Wall along which air slides without friction.

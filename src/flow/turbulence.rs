@@ -52,8 +52,8 @@ fn share_between(low: f64, high: f64) -> f64 {
 }
 
 impl Turbulence {
-    /// Creates the turbulence of an integral length, m, in a box with cells of `cell_m`, whose shorter horizontal side
-    /// is `side_m`. `None` if the box is too small for any wave.
+    /// Creates the turbulence of an integral length, m, in a box whose shorter horizontal side is `side_m`, with cells
+    /// of `cell_m`. `None` if the box is too small for any wave.
     pub fn new(seed: u64, integral_m: f64, cell_m: f64, side_m: f64) -> Option<Self> {
         let (longest, shortest) = (side_m / 2.0, FEWEST_CELLS * cell_m);
         if longest <= shortest {
@@ -109,8 +109,8 @@ pub(super) struct Whirls {
 }
 
 impl Whirls {
-    /// Creates the eddies of a mean wind (east, north) with a friction velocity, m/s; without eddies if the friction
-    /// velocity is 0.
+    /// Creates the eddies of a mean wind (east, north) with a friction velocity, m/s. There are none if the friction
+    /// velocity is 0 or the field is too small.
     pub fn new(seed: u64, desc: &WindFieldDesc, mean_m_s: DVec2, friction_velocity_m_s: f64) -> Self {
         let along = mean_m_s.try_normalize().unwrap_or(DVec2::X).extend(0.0);
         let side_m = |i: usize| f64::from(desc.cells[i]) * desc.cell_m[i];

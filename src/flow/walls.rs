@@ -1,10 +1,11 @@
 //! Friction of the air at rough walls.
 //!
-//! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0). Let the
-//! air have the speed u at the distance y from a wall of roughness length z0. Each square metre of the wall then takes
-//! momentum from the air at the rate u*^2 = (kappa / ln(y/z0))^2 u^2, divided by the air's density (Schumann 1975, for
-//! grids too coarse to resolve the layer at a wall). y is the distance to the middle of the open part of the cell at
-//! the wall. The logarithm takes y + z0 in place of y, so that it does not fall below zero in thin cells.
+//! Along a wall the mean wind grows with the logarithm of the distance y (Prandtl 1925): u = u*/kappa ln(y/z0), with
+//! the friction velocity u* and von Karman's constant kappa. Let the air have the speed u at the distance y from a wall
+//! of roughness length z0. Each square metre of the wall then takes momentum from the air at the rate u*^2 = (kappa /
+//! ln(y/z0))^2 u^2 times the air's density (Schumann 1975, for grids too coarse to resolve the layer at a wall). y is
+//! the distance to the middle of the open part of the cell at the wall. The logarithm takes y + z0 in place of y, so
+//! that it does not fall below zero in thin cells.
 
 use super::{
     lattice::{Faces, Lattice},
@@ -61,7 +62,8 @@ impl Walls {
                     };
                     let above = if i[a] + 1 < lattice.n[a] { open[at + s] } else { 1.0 };
                     for beside in [below, above] {
-                        // Part of the side towards the neighbour that has a wall behind it.
+                        // Open share of this face that the neighbouring face does not have: there the air touches a
+                        // wall.
                         let wall = f64::from((own - beside).max(0.0));
                         if wall > 0.0 {
                             per_m += friction(f64::from(own) * h, roughness_m) * wall / (f64::from(own) * h);

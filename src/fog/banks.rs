@@ -45,7 +45,7 @@ use crate::{
 /// All shapes of banks, as bits: bit k is kind k of the shaders' `FogBank`.
 const ALL_SHAPES: u32 = 15;
 
-/// Sine of elevation above which a camera is taken to see all around.
+/// Sine of an elevation, up or down. A camera that shows steeper directions is taken to see all around.
 const STEEP: f64 = 0.8;
 /// Angle beyond a picture's left and right edges up to which banks are still drawn, rad: for filters and mirrors.
 const MARGIN: f64 = 0.05;
@@ -284,7 +284,8 @@ impl SeenBearings {
     /// Bearings of everything around.
     const ALL: Self = Self { middle: 0.0, half: PI };
 
-    /// Returns the bearings of a camera's picture, with those of mirrors: a steep camera sees all around.
+    /// Returns the bearings of a camera's picture. An orthographic camera is taken to see all around, and so is one
+    /// that shows directions steeper than [`STEEP`] or 90 degrees or more from its axis.
     fn new(camera: &Camera, world_to_enu: &DMat3) -> Self {
         let bearing = |d: DVec3| d.x.atan2(d.y);
         let to_enu = *world_to_enu * camera.rotation().transpose();
@@ -387,7 +388,7 @@ impl<'a> SkyBanks<'a> {
         Ok(Self { camera, outer, banks })
     }
 
-    /// Returns the unit vector towards the light of the fog.
+    /// Returns the unit vector towards the sun or moon that lights the fog.
     pub fn to_sun(&self) -> DVec3 {
         self.outer.to_sun
     }

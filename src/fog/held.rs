@@ -21,7 +21,8 @@ impl HeldFog {
     /// Removes the law from a saved state and returns it.
     ///
     /// # Errors
-    /// [`Status::Parse`] for an entry that is not a law.
+    /// [`Status::Parse`] for an entry that is not a law; [`Status::InvalidArgument`] for a law with a value outside its
+    /// range.
     pub fn read(state: &mut toml::Table) -> Result<Self> {
         let settings = state.get_mut(TABLE).and_then(toml::Value::as_table_mut);
         let Some(value) = settings.and_then(|s| s.remove(KEY)) else { return Ok(Self::default()) };

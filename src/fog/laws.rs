@@ -107,7 +107,7 @@ impl CompatibilityLaw {
 /// Largest contrast that is invisible in an 8-bit picture: 1/255.
 pub const CULL_THRESHOLD: f64 = 1.0 / 255.0;
 
-/// Returns the distance, m, beyond which a host may cull in a homogeneous extinction (for a visibility see
+/// Returns the distance, m, beyond which a host may cull in air of this uniform extinction (for a visibility see
 /// [`super::koschmieder_extinction_per_m`]): less than 1/255 of an object's contrast is left there. Infinite in clear
 /// air. The picture without the culled objects is the same only if the background is fogged as well, as Welkin's sky
 /// is.

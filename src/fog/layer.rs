@@ -21,7 +21,8 @@ pub enum Profile {
         top_m: f64,
         /// Vertical extent of the lower flank, m, \[0, 1e5\].
         base_softness_m: f64,
-        /// Vertical extent of the upper flank, m, \[0, 1e5\]. For dust it is twice the scale height, at most 40 km.
+        /// Vertical extent of the upper flank, m, \[0, 1e5\]. The layer of dust that Welkin derives from a weather is
+        /// all flank: by default it is as deep as twice the scale height of the dust, at most 40 km.
         top_softness_m: f64,
     },
     /// Proportional to exp(-(h - reference)/scale) at every altitude h; not cut off above or below.

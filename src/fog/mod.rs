@@ -3,11 +3,11 @@
 //! # Model
 //! A reported visibility V is the meteorological optical range: the distance at which a black target keeps 5 % of its
 //! contrast at 550 nm. The **total** extinction at the station is therefore -ln(0.05)/V = 2.996/V (Koschmieder 1924;
-//! WMO-No. 8, 2018, chapter 9). A part of it is that of air and tall haze, which another room draws. This room draws
-//! the rest, on a flat or a curved planet, as two media:
+//! WMO-No. 8, 2018, chapter 9). A part of it is that of air and tall haze, which `src/sky` draws. This room draws the
+//! rest, on a flat or a curved planet, as two media:
 //!
-//! * a **layer** near the ground: fog or mist between a base and a soft top ([`Profile::Slab`]), or a layer that thins
-//!   exponentially ([`Profile::Exponential`]);
+//! * a **layer** near the ground: fog, mist or dust between a base and a soft top ([`Profile::Slab`]), or a layer that
+//!   thins exponentially ([`Profile::Exponential`]);
 //! * **precipitation** ([`FallingLayer`]), which falls from the clouds through the layer.
 //!
 //! Methods:
@@ -15,8 +15,8 @@
 //! * The transmittance along a ray is a closed form: path lengths between the layer's altitudes on a sphere
 //!   ([`reference::layer_path`]), exact to f32.
 //! * The layer and the precipitation each have their own heights and optical depth. Near the camera a share of the
-//!   precipitation is drawn as drops, flakes or stones; that share is subtracted from its optical depth
-//!   ([`reference::fog_beside_drops`]).
+//!   precipitation is drawn as drops, flakes or stones; that share is subtracted from the optical depth of the
+//!   precipitation ([`reference::fog_beside_drops`]).
 //! * The direct sun, the sky above and the ground below light the layer. Multiple scattering is the delta-Eddington
 //!   solution (Joseph, Wiscombe and Weinman 1976) of the layer, solved per channel in f64 once a frame ([`light`]). The
 //!   first scattering keeps its true phase function (Nakajima and Tanaka 1988). Both are integrated along the pixel's
@@ -50,7 +50,8 @@
 //! # Inputs
 //! * [`FogLight`]: direct sun at the layer's top, sky irradiance, ground albedo.
 //! * [`Viewpoint`]: altitude of the camera, planet and ground.
-//! * Extinctions, at the station, of air, of haze, and of each kind of precipitation.
+//! * [`FogLayer`] and [`FallingLayer`]: extinction and heights of both media. The extinction of air and haze is in
+//!   neither.
 //!
 //! # What is not here
 //! There is no `passes.rs`: the composition draws the layer, which has no pass of its own.

@@ -1,4 +1,4 @@
-//! Model of a frame's fog, prepared in f64. Shaders, their twin and queries read it.
+//! Model of a frame's fog, prepared in f64. Shaders, their f64 reference and queries read it.
 
 use glam::DVec3;
 
@@ -54,7 +54,7 @@ pub struct FogModel {
     pub altitude: f64,
     /// 1/(planet radius + altitude), 1/m; 0 for a flat world.
     pub curvature: f64,
-    /// Altitude, m, at which rays without an object end at the ground.
+    /// Altitude of the ground, m, at which descending rays without an object end.
     pub ground: f64,
     /// For a slab: altitudes where the flanks begin and end (base 0, base 1, top 0, top 1), m. For an exponential
     /// layer: reference altitude and scale height.
@@ -71,7 +71,7 @@ pub struct FogModel {
     pub ratio: DVec3,
     /// Ratio of each channel's delta-scaled optical depth to the depth at 550 nm.
     pub scaling: DVec3,
-    /// Optical depth at 550 nm from the layer's top to the ground.
+    /// Optical depth at 550 nm of the layer and the precipitation together, from the top to the ground.
     pub depth_total: f64,
     /// Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     pub to_sun: DVec3,
@@ -83,9 +83,9 @@ pub struct FogModel {
     pub forward: f64,
     /// Asymmetry of the rest of the scattering.
     pub smooth: f64,
-    /// Whether the layer absorbs. Only then are `rise` and `fall` used.
+    /// Whether a channel absorbs so much that `rise` and `fall` are used.
     pub absorbing: bool,
-    /// Diffusion exponent per channel.
+    /// Diffusion exponent per channel; 0 for a channel without `rise` and `fall`.
     pub k: DVec3,
     /// Constant source term.
     pub constant: Term,

@@ -23,7 +23,7 @@ use crate::{
     wind::Detour,
 };
 
-/// Smallest change of the optical depth of the longest curtain that is visible.
+/// Smallest visible change of the optical depth by the longest curtain.
 const LEAST_SHOWN: f64 = 1e-3;
 
 /// Media of a weather in the air near the ground: its low layer of fog, mist or dust, and the precipitation outside
@@ -179,7 +179,7 @@ fn viewpoint(place: &Place, c: &Conditions, map_m: [f64; 2], planet_radius_m: f6
     Viewpoint { altitude_m: place.altitude_m, map_m, planet_radius_m, ground_m }
 }
 
-/// Attenuates the light of a scene by the weather's low layer.
+/// Attenuates the light of a scene by the weather's low layer and precipitation.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -191,8 +191,9 @@ pub(crate) fn dim(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns the light below the weather's low layer, where `lux` is the light above the layer. Both have three
-/// illuminances, lux: that of the sun, that of the moon, and that of all other light on level ground.
+/// Returns the light that the weather's low layer and precipitation leave at a place. `lux` is the light above both.
+/// Either light has three illuminances, lux: that of the sun, that of the moon, and that of all other light on level
+/// ground.
 fn through_fog(
     c: &Conditions,
     place: &Place,

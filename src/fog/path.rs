@@ -1,22 +1,24 @@
-//! Path of a ray through a layer of fog, and its optical depth, in f64: the geometric part of the twin of
+//! Path of a ray through a layer of fog, and its optical depth, in f64: the geometric part of the reference of
 //! `shaders/fog/lookup.wgsl` (`reference.rs`).
 //!
 //! Let r0 be the distance of the ray's start from the planet's centre, mu the cosine of its angle with the vertical,
 //! and k = 1/r0. After t metres its altitude is exactly
 //!
 //! ```text
-//! h(t) = h0 + q / (1 + sqrt(1 + k q)),  q = t (2 mu + k t),
+//! h(t) = h0 + q / (1 + sqrt(1 + k q)),  q = t (2 mu + k t).
 //! ```
 //!
-//! a form without the cancellation in r - R. From its lowest point (its start, its end, or where it is level) a ray
-//! only rises. It reaches the altitude h0 + d at the distance
+//! This form does not subtract two distances from the planet's centre, which would cancel. From its lowest point (its
+//! start, its end, or where it is level) a ray only rises. If mu is the cosine there, the ray is d higher after the
+//! distance
 //!
 //! ```text
 //! t = c / (mu + sqrt(mu^2 + k c)),  c = d (2 + k d),
 //! ```
 //!
-//! which has only additions. The path through a slab with linear flanks therefore has three parts. Each flank
-//! contributes with its mean density along the path. This mean includes the path's curvature.
+//! in which nothing cancels either. The path through a slab has three parts: the lower flank, the space of full
+//! density, and the upper flank. Each flank contributes with its mean density along the path. This mean includes the
+//! path's curvature.
 
 use super::model::{FogKind, FogModel};
 

@@ -1,13 +1,14 @@
-//! Phase function of a layer whose light is solved without its forward peak. Twin of `fog_phase_after` in
+//! Phase function of a layer whose light is solved without its forward peak: the f64 reference of `fog_phase_after` in
 //! `shaders/fog/lookup.wgsl`.
 
 use std::f64::consts::PI;
 
 use crate::light::phase::{PhaseLobes, lobes_phase};
 
-/// Returns the share of the delta-scaled beam that is really unscattered after the optical path s = `slant`: (1 - e^(-f
-/// s)) / (f s). f = `forward` is the share of scattering that the delta scaling treats as unscattered. The rest of the
-/// scaled beam has been scattered forward. `fog_phase_after` has the derivation.
+/// Returns the share of the delta-scaled beam that is really unscattered: e^(-f x) after the optical path x, with the
+/// mean (1 - e^(-f s)) / (f s) from 0 to s = `slant`. f = `forward` is the share of scattering that the delta scaling
+/// treats as unscattered. The rest of the scaled beam has been scattered forward. The doc of [`fog_phase_after`] uses
+/// this mean.
 pub fn share_unscattered(forward: f64, slant: f64) -> f64 {
     let fs = (forward * slant).min(1e4);
     if fs < 1e-3 { 1.0 - 0.5 * fs } else { (1.0 - (-fs).exp()) / fs }

@@ -258,7 +258,7 @@ impl FogModel {
 
     /// Returns the light at an altitude below or in the layer, per channel. The first is the sun's light on a surface
     /// facing the sun, including the aureole (the forward peak of the scattering). The second is all other light on
-    /// level ground.
+    /// level ground. `None` if there is neither a layer nor precipitation.
     pub fn light_at(&self, altitude_m: f64) -> Option<[[f64; 3]; 2]> {
         let solutions = self.solutions?;
         let depth = layer_depth_above(self, altitude_m).min(self.depth_total);

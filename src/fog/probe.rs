@@ -44,7 +44,7 @@ pub fn probe(device: &Device, visibility_m: f64, distances_m: &[f64]) -> Result<
         return Ok(Vec::new());
     };
     let height = height.get();
-    // The field of view is so flat that no ray leaves the layer before the contrast is 0.
+    // The vertical field of view is so small that no ray leaves the layer before the contrast is 0.
     let mut camera = Camera::look_to(DVec3::ZERO, DVec3::Y, DVec3::Z, 0.02, 60.0, NEAR_M);
     // Hosts pass f32 matrices.
     camera.projection = camera.projection.as_mat4().as_dmat4();

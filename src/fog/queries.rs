@@ -67,7 +67,7 @@ impl LowAir {
 
 /// Returns the visibility along the line from the viewpoint to the point `offset`, m (east, north, up): the
 /// meteorological optical range of a homogeneous medium with the same mean extinction. `background_per_m` is the
-/// extinction of air, haze and precipitation there at 550 nm. Infinite without extinction.
+/// extinction of air, haze and precipitation along the line at 550 nm. Infinite without extinction.
 ///
 /// # Errors
 /// [`crate::Status::InvalidArgument`] naming the parameter.
@@ -109,8 +109,8 @@ pub fn vertical_visibility_m(layer: &FogLayer, altitude_m: f64, background_per_m
 
 /// Returns the smallest illuminance at which a pilot sees a light, lx, against a background of `background_cd_m2`:
 /// log10 E = 0.05 (log10 B)^2 + 0.573 log10 B - 6.667. It is at least 8e-7 lx, the value by night. The curve runs
-/// midway through the steps of ICAO's table (8e-7, 1e-5, 1e-4, 1e-3 lx; night, 50, 1000, 12000 cd/m2) (ICAO Doc 9328;
-/// WMO-No. 8).
+/// midway through the steps of ICAO's table: 8e-7 lx by night, 1e-5 lx from 50 cd/m2, 1e-4 lx from 1000 cd/m2, 1e-3 lx
+/// from 12000 cd/m2 (ICAO Doc 9328; WMO-No. 8).
 pub fn light_threshold_lx(background_cd_m2: f64) -> f64 {
     let b = background_cd_m2.max(1.0).log10();
     10f64.powf(0.05 * b * b + 0.573 * b - 6.667).max(8e-7)

@@ -1,5 +1,5 @@
-//! Fog along one ray in f64, for tests and queries. This file is the twin of `shaders/fog/lookup.wgsl`, with the same
-//! names and the same order of parameters. `path.rs` has the ray's path through the layer.
+//! Fog along one ray in f64, for tests and queries. This file is the reference of `shaders/fog/lookup.wgsl`, with the
+//! same names and the same order of parameters. `path.rs` has the ray's path through the layer.
 //!
 //! # Light along the ray
 //! The source J of scattered light (see [`super::light`]) depends only on the optical depth below the layer's top.
@@ -13,7 +13,7 @@
 //!
 //! * **Steep rays**: the lobe is narrow compared with the ray's angle to the horizon, so K is the radiance in the ray's
 //!   own direction. The solution is the delta-scaled one, L = integral of J e^(-t') dt' + I_behind (e^(-t') - e^-t),
-//!   with the scaled depth t'.
+//!   with the scaled depth t' and the radiance I_behind that arrives from behind the object.
 //! * **Rays near the level**: the lobe sees the bright fog above and the dark ground below. Let s be the ray's cosine
 //!   with the vertical, w the lobe's spread and r = sqrt(s^2 + w^2). The share (1 + s/r)/2 of the lobe looks up, with
 //!   the mean cosine r, because a distribution of cosines x about s with this spread has E max(x, 0) = (s + r)/2. Each
@@ -274,7 +274,8 @@ pub(super) fn fog_reach(m: &FogModel, origin: DVec3, direction: DVec3, range: f6
 }
 
 /// Returns the effect of the layer and the precipitation. Each has its own optical depth; both are lit as one medium.
-/// Fog banks replace the optical depth `replaced` of the layer.
+/// Single drops have the optical depth `hidden` of the precipitation, and fog banks replace the optical depth
+/// `replaced` of the layer: both are subtracted.
 fn fog_layer(m: &FogModel, origin: DVec3, direction: DVec3, range: f64, [hidden, replaced]: [f64; 2]) -> FogSample {
     let mu = direction.z.clamp(-1.0, 1.0);
     let [h0, t] = fog_reach(m, origin, direction, range);

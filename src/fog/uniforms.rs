@@ -13,8 +13,8 @@ use crate::{regions::MAX_REGION_CORNERS, wind::DETOUR_SIDE};
 /// Largest number of banks in a picture: `MOST_BANKS` of `shaders/fog/uniform.wgsl`.
 pub(super) const MOST_BANKS: usize = 8;
 
-/// Depth under the ground, m, below which a slab's lower edge is left out. The margin covers valleys and pits that
-/// hosts draw.
+/// Depth, m, below which a slab's lower edge is left out: depth under the ground or the camera, whichever is lower. The
+/// margin covers valleys and pits that hosts draw.
 const MARGIN_M: f64 = 2000.0;
 
 impl FogModel {
@@ -86,7 +86,7 @@ impl FogModel {
 }
 
 /// Features of a pipeline with `fog/lookup.wgsl`. A GPU skips branches that the uniform does not select, so one
-/// pipeline for [`FogVariant::ALL`] serves it and never needs to be exchanged. Software drivers execute every branch.
+/// pipeline for [`FogVariant::ALL`] serves every fog without detours and banks. Software drivers execute every branch.
 /// They are three times as fast with only the features that a model needs ([`FogModel::variant`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FogVariant {
@@ -147,13 +147,14 @@ impl FogVariant {
         ]
     }
 
-    /// Returns the values of the `override` constants of `fog/banks.wgsl` without `BY_PLACE`.
+    /// Returns the values of the `override` constants of `fog/banks.wgsl`, except `BY_PLACE` and those of
+    /// `fog/lookup.wgsl`.
     pub(super) fn bank_constants(&self) -> [(&'static str, f64); 2] {
         [("BANK_SHAPES", f64::from(self.bank_shapes)), ("BANKS_OVERLAP", f64::from(u8::from(self.banks_overlap)))]
     }
 }
 
-/// Returns a wave as shaders read it: wave vector, 1/m, and phase, rad.
+/// Returns a wave as shaders read it: wave vector, rad/m, and phase, rad.
 fn wave((k, phase): (DVec3, f64)) -> [f32; 4] {
     [k.x as f32, k.y as f32, k.z as f32, phase as f32]
 }
@@ -188,7 +189,7 @@ pub struct FogUniform {
     pub sky_band: f32,
     /// 1 if the compatibility laws measure from the camera's plane, otherwise 0.
     pub plane_distance: u32,
-    /// Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
+    /// Phase function: ln of Henyey-Greenstein |g|, ln of Draine |g|, Draine alpha, weight of Draine.
     pub lobes: [f32; 4],
     /// Distance of the camera from the planet's centre, m; 1e30 for a flat world.
     pub radius: f32,
@@ -248,7 +249,7 @@ pub struct FogUniform {
 pub struct FogBankUniform {
     /// Layer, and its light.
     pub fog: FogUniform,
-    /// Right and ahead on the plan, (east, north) each.
+    /// Unit vectors to the right and ahead on the plan, each (east, north).
     pub axes: [f32; 4],
     /// Position of the camera on the plan, m (right, ahead).
     pub camera: [f32; 2],
@@ -274,14 +275,15 @@ pub struct FogBankUniform {
     pub corners: [[f32; 4]; MAX_REGION_CORNERS / 2],
 }
 
-/// `LowAir` of `shaders/fog/uniform.wgsl`: the fog of a frame, its banks and the detours of its patches.
+/// `LowAir` of `shaders/fog/uniform.wgsl`: the fog of a frame, its banks, and the detours of its patches round
+/// obstacles to the wind.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
 pub struct LowAirUniform {
-    /// Fog of the frame.
+    /// Fog of the frame outside all banks.
     pub fog: FogUniform,
-    /// Nodes of the map of detours per metre, east and north, 1/m.
+    /// Number of nodes in a metre of the map of detours, east and north, 1/m.
     pub detour_scale: [f32; 2],
     /// Position of the camera in the map, in nodes from its south-west corner, east and north.
     pub detour_camera: [f32; 2],
@@ -291,8 +293,8 @@ pub struct LowAirUniform {
     pub detour_fade: f32,
     /// Numbers of all banks, and of those that the camera may see.
     pub bank_count: [u32; 2],
-    /// Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south
-    /// to north.
+    /// Lags of the air behind free air at the nodes, m east and north. Each vector has two nodes; nodes are in order
+    /// from west to east, then south to north.
     pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
     /// Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
     /// lowest bits.

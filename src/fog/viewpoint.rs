@@ -1,4 +1,4 @@
-//! Viewpoint of the camera, and the light on the layer: a frame's inputs apart from the law.
+//! Viewpoint of the camera, and the light on the layer of fog: the inputs of a frame's fog model besides the law.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ pub(super) const NO_LIGHT: FogLight =
 /// Light that falls on the layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogLight {
-    /// Unit vector towards the sun, or at night the moon, (east, north, up).
+    /// Unit vector towards the sun, or the moon if it is brighter (east, north, up); its length within 0.001 of 1.
     pub to_sun: DVec3,
     /// Direct irradiance of the sun or moon at the layer's top, on a surface facing it, per channel, each \[0, 1e12\].
     /// The unit is free; radiances are in this unit per steradian.

@@ -76,7 +76,7 @@ impl DrawCache {
         })
     }
 
-    /// Drops everything of the picture's size.
+    /// Drops everything of the picture's size, and makes the next frame draw all faces of the cube map.
     pub fn forget_images(&mut self) {
         (self.bound, self.copy, self.opaque) = (None, None, None);
         self.target = KeptView::default();

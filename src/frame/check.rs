@@ -68,7 +68,10 @@ impl View {
         self.effects.all().iter().try_for_each(|effect| effect.check(frame, stages))
     }
 
-    /// Returns the texture from which `color` is read if wgpu cannot copy it.
+    /// Returns the texture from which Welkin reads a `color` that wgpu cannot copy.
+    ///
+    /// # Errors
+    /// [`Status::InvalidArgument`] naming `color.usage` if the device has no such texture.
     pub(super) fn reading(&self, color: &wgpu::Texture) -> Result<wgpu::Texture> {
         self.device.reading(color).ok_or_else(|| {
             Error::range("color.usage", "one with RENDER_ATTACHMENT | COPY_SRC", format!("{:?}", color.usage()))

@@ -1,5 +1,5 @@
 //! Diagnostic picture in place of a frame's picture: it uses the composition's bindings and constants with another
-//! shader.
+//! shader. The picture of the wind has a bind group of its own in place of the composition's tables and surroundings.
 
 use super::{draw::frame_block, view::View};
 use crate::{

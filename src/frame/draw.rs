@@ -127,8 +127,8 @@ impl View {
         context
     }
 
-    /// Returns the variant that the composition needs, and sets the frame's own constants in the composition. Updates
-    /// the block of the host's surroundings.
+    /// Returns the variant that the composition needs, and sets the frame's own constants in the composition. If
+    /// surfaces or particles are drawn, updates the block of the host's surroundings.
     pub(super) fn variant(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
         let (frame, color) = (context.frame, context.picture());
         let stages = composition.stages();
@@ -162,7 +162,8 @@ impl View {
         })
     }
 
-    /// Draws the composition over the picture, and then the gauge of the whole picture, if one is due.
+    /// Draws the composition over the picture. Then draws the gauge, with every part of the weather, if one is due and
+    /// the stages include MEDIUM. A rehearsal has no gauge.
     fn compose(
         &mut self,
         context: &DrawContext<'_>,
@@ -178,7 +179,8 @@ impl View {
         let splits = self.device.caps().software;
         let constants = if splits { composition.least() } else { composition.whole() };
         let has_grid = self.cache.even.is_some();
-        // A picture without history must not depend on the number of frames drawn before it.
+        // A picture without history compiles all its pipelines at once, so that it does not depend on the number of
+        // frames drawn before it.
         let how = (splits, splits || context.frame.is_pure());
         let make = || {
             let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };

@@ -21,9 +21,10 @@ pub struct Environment {
 }
 
 impl View {
-    /// Returns a cube map of the surroundings of the camera, for reflections in the host's own objects. From this
-    /// function's first call on, the first call of every frame with [`Stages::BACKGROUND`] or [`Stages::MEDIUM`] draws
-    /// one face of the map. That call draws all six faces after a jump of light or weather, and with CUT or NO_HISTORY.
+    /// Returns a cube map of the surroundings of the camera, for reflections in the host's own objects. Once this
+    /// function has been called, each frame draws one face of the map, in the first [`View::record`] of the frame that
+    /// draws [`Stages::BACKGROUND`] or [`Stages::MEDIUM`]. All six faces are drawn after a jump of light, weather or
+    /// place, and with CUT or NO_HISTORY.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

@@ -1,8 +1,8 @@
 //! Cube map of the surroundings of the camera, prefiltered by roughness, for reflections in the host's own objects.
 //!
 //! Created when the host first calls `View::environment`. Each frame draws one face, but all six if nothing of earlier
-//! frames may show, or if light or weather jump. `shaders/frame/environment.wgsl` uses the composition's own functions;
-//! `environment_filter.wgsl` makes the levels.
+//! frames may show, or if light, weather or place jump. `shaders/frame/environment.wgsl` uses the composition's own
+//! functions; `environment_filter.wgsl` makes the levels.
 
 use glam::{DMat3, DVec3};
 
@@ -74,7 +74,7 @@ fn apart(blocks: impl Iterator<Item = FaceUniform>) -> Vec<u8> {
     bytes
 }
 
-/// Light and weather at the camera, compared from frame to frame to find jumps.
+/// Light, weather and place at the camera, compared from frame to frame to find jumps.
 #[derive(Clone, Copy, PartialEq)]
 struct EnvironmentInputs {
     /// Logarithms of quantities that change by factors (illuminances, luminance, visibility); altitude, km; cover of
@@ -105,7 +105,7 @@ impl EnvironmentInputs {
         }
     }
 
-    /// Whether light or weather have jumped since `earlier`.
+    /// Whether light, weather or place have jumped since `earlier`.
     fn leaps_from(&self, earlier: &Self) -> bool {
         let turned = (0..3).any(|i| (self.world_to_enu.col(i) - earlier.world_to_enu.col(i)).length() > LEAP_RAD);
         self.sizes.iter().zip(earlier.sizes).any(|(now, earlier)| (now - earlier).abs() > LEAP)
@@ -136,7 +136,7 @@ pub(super) struct EnvironmentMap {
     group: wgpu::BindGroup,
     pipelines: LruCache<PipelineKind, wgpu::RenderPipeline, MOST_PIPELINES>,
     filter: Filter,
-    /// Light and weather when the last face was drawn; `None` makes the next frame draw all faces.
+    /// Light, weather and place when the last face was drawn; `None` makes the next frame draw all faces.
     drawn: Option<EnvironmentInputs>,
     /// Face that the next frame draws.
     next: u32,
@@ -239,7 +239,8 @@ impl Filter {
         Ok(Self { pipeline, groups })
     }
 
-    /// Draws a level of a face from the source in `group`; level 0 halves the source's resolution.
+    /// Draws a level of a face into `target`, from the source in `group`. Level 0 only halves the source's resolution,
+    /// for the next level of the unfiltered map.
     fn draw(&self, recording: &mut Recording<'_>, target: &wgpu::TextureView, group: usize, face: u32, level: u32) {
         let mut pass = begin(recording.encoder, "environment filter", &[target]);
         pass.set_pipeline(&self.pipeline);

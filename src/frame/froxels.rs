@@ -30,9 +30,9 @@ pub struct FrameTextures {
     pub light_scale: f32,
 }
 
-/// WGSL source of the sampling functions; see [`FrameTextures`].
+/// WGSL source of the functions that sample [`FrameTextures`].
 pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_veil.wgsl");
-/// GLSL 3.30 source of the sampling functions.
+/// GLSL 3.30 source of the functions that sample [`FrameTextures`].
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_veil.glsl");
 
 /// Properties for which a froxel pipeline is compiled.
@@ -82,7 +82,7 @@ impl Froxels {
     /// Shader that fills the textures if no effect has its own.
     pub const SHADER: &'static str = "frame/froxels.wgsl";
 
-    /// Fills the textures by the shader, sampling and constants of `kind`.
+    /// Fills the textures with the shader, sampling and constants of `kind`.
     pub fn draw(
         &mut self,
         recording: &mut Recording<'_>,

@@ -21,8 +21,8 @@ use crate::{context::Context, error::Result, light::tone::srgb_encode};
 /// Albedo of a photographer's grey card.
 const GREY: f64 = 0.18;
 
-/// Light for the host's own shading of one frame. A surface of colour c (in the frame's units) and normal n shows c *
-/// (ambient + direct * max(n . direction, 0)).
+/// Light for the host's own shading of one frame. A surface of albedo c and normal n shows c * (ambient + direct *
+/// max(n . direction, 0)). For [`ColorSpace::DisplaySrgb`], c is encoded in sRGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameLight {
     /// Unit vector in the host's world towards the brighter one of sun and moon.

@@ -29,8 +29,8 @@ impl View {
         }
     }
 
-    /// Checks that the depth to be written is the host's own texture, not a copy of it. Where the host submits, Welkin
-    /// cannot copy the depth back between submissions.
+    /// Checks that shaders read the written depth itself, not a copy of it. Such a copy is refreshed between two
+    /// submissions, which Welkin cannot do where the host submits.
     pub(super) fn check_depth_is_one(&self, frame: &Frame<'_>) -> Result<()> {
         let written = frame.depth.filter(|_| frame.depth_access == DepthAccess::ReadWrite);
         if written.is_some_and(|depth| self.device.attached_depth(depth).is_copied) {
@@ -47,8 +47,8 @@ impl View {
         drawn.try_for_each(|effect| effect.prepare_opaque(context, recording))
     }
 
-    /// Draws the opaque geometry of the effects. If the host's depth is read-only, draws nothing and counts the effects
-    /// with opaque geometry.
+    /// Draws the opaque geometry of the effects. If the host's depth is read-only or absent, draws nothing and reports
+    /// the number of effects with opaque geometry.
     pub(super) fn draw_opaque<'a>(
         &mut self,
         frame_context: &FrameContext<'a>,

@@ -19,7 +19,7 @@ pub(super) struct OpaqueStep {
     bound: Option<OpaqueImages>,
 }
 
-/// Depth and bind group of a frame's images, created anew only when the host hands over other images.
+/// Depth and bind group of a frame's images, created anew only when the host hands over another depth or mask.
 pub(super) struct OpaqueImages {
     depth: KeptLayer,
     mask: Option<KeptLayer>,

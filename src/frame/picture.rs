@@ -31,7 +31,8 @@ impl View {
             + effects
     }
 
-    /// Creates the colour copy anew if it does not fit the host's colour. Returns whether it created one.
+    /// Replaces the colour copy if it does not fit the host's colour: by a new one, or, for a colour that wgpu cannot
+    /// copy, by the texture from which the device reads that colour. Returns whether the copy was replaced.
     pub(super) fn hold_copy(&mut self, color: &wgpu::Texture) -> Result<bool> {
         let reading = if can_copy(color) { None } else { Some(self.reading(color)?) };
         let fits = self.cache.copy.as_ref().is_some_and(|c| match &reading {
@@ -47,7 +48,9 @@ impl View {
         Ok(!fits)
     }
 
-    /// Creates the attachment for kinds of pixels, and the coarse grid, anew if they do not fit the picture.
+    /// Makes the attachment for kinds of pixels (`kinds`) and the coarse grid (`even`) fit the picture. If they have
+    /// another size, both are dropped and created again together. A picture with a side below 64 pixels has no grid.
+    /// For a multisampled picture both are dropped, and none is created.
     pub(super) fn hold_kinds(&mut self, color: &wgpu::Texture) -> Result<()> {
         let apart = color.sample_count() == 1;
         if self.cache.kinds.as_ref().is_some_and(|kinds| !apart || !kinds.fits(color)) {
@@ -76,7 +79,10 @@ impl View {
         Ok(())
     }
 
-    /// Creates the bind group anew if the host's textures have changed.
+    /// Brings the bind group up to date. If a texture of the host has changed, creates the group anew. If only textures
+    /// of the effects have changed, swaps the group with the previous one if that one has the new textures, because
+    /// effects may draw into two textures alternately. Otherwise creates a group, and keeps the last one for such a
+    /// swap.
     pub(super) fn bind(&mut self, context: &DrawContext<'_>, composition: &Composition) -> Result<()> {
         let (frame, own) = (context.frame, composition.textures());
         let of_host = |b: &Bound| {

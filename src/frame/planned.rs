@@ -11,7 +11,8 @@ use crate::{
     stage::{DrawContext, Frame, Stages},
 };
 
-/// Returns the parts that a picture of these stages has, and the cost of each.
+/// Returns the parts that a picture of these stages has, with the work of the steps of each part and the extra work of
+/// two parts drawn together.
 pub(super) fn present(effects: &mut Effects, context: &DrawContext<'_>, stages: Stages) -> Presence {
     let place = |part: &Part| PARTS.iter().position(|p| p.name == part.name);
     let (pair, work) = together(&context.now.scene);
@@ -62,8 +63,8 @@ impl View {
         Ok(())
     }
 
-    /// Returns the plan as text, for [`View::load_plan`] on other channels or another day: the parts that are drawn,
-    /// and the sky's settings.
+    /// Returns the plan as text, for [`View::load_plan`] on other channels or another day: the rung of each part, and
+    /// the sky's settings.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] while the view has a budget but has not yet gauged its picture. Gauging takes some frames
@@ -80,8 +81,8 @@ impl View {
     /// that the plan breaks are reported.
     ///
     /// # Errors
-    /// [`Status::Parse`] for text that is not such a plan or has another version; the message names line and column, or
-    /// the field; [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After
+    /// [`Status::Parse`] for text that is not such a plan or has another version. Its message names line and column, or
+    /// the field. [`Status::InvalidArgument`], which names the sky setting that differs in the view's context. After
     /// either of these two errors the budget is unchanged. [`Status::DeviceLost`], or a GPU fault.
     pub fn load_plan(&mut self, plan: &[u8]) -> Result<()> {
         let rungs = plan::read(plan, PARTS, &self.effects.saved_with())?;

@@ -140,7 +140,8 @@ impl View {
         self.device.counts.total(DeviceWork::Pipelines) > pipelines_before
     }
 
-    /// Ends a moment of a rehearsal. The view then has neither history nor images, as before its first frame.
+    /// Ends a moment of a rehearsal. The view then has neither history nor images, as before its first frame. If
+    /// `drawn` is an error, the moment is due again.
     pub(crate) fn end_moment(&mut self, drawn: &Result<()>) {
         self.history = FrameHistory::default();
         self.cache.forget_images();

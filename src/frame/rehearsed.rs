@@ -2,7 +2,8 @@
 
 use crate::{stage::Frame, weather::Conditions};
 
-/// Side of the rehearsed pictures, pixels: the smallest side for which the coarse grid is used, as in larger pictures.
+/// Largest side of the rehearsed pictures, pixels. Smaller pictures have no coarse grid, so its pipelines would not be
+/// compiled.
 const SIDE: u32 = 64;
 /// State of a view's rehearsal.
 #[derive(Default)]
@@ -19,7 +20,8 @@ pub(super) struct RehearsedView {
 }
 
 impl RehearsedView {
-    /// Creates the images in place of those of `frame`, with their formats, numbers of samples and usages.
+    /// Creates the images in place of those of `frame`, with their formats, numbers of samples and usages. Images that
+    /// already have these are kept.
     pub fn hold(&mut self, device: &wgpu::Device, frame: &Frame<'_>) {
         let given = [frame.color, frame.depth, frame.mask, frame.surface_classes, frame.normals];
         for (own, given) in self.images.iter_mut().zip(given) {

@@ -1,9 +1,10 @@
 //! Warning for a scene-linear host whose `cd_m2_per_unit` is implausible. Example: in a scene that is lit without
 //! units, white is 1. With 1 cd/m^2 per unit that white is black in daylight, and only this warning says why.
 //!
-//! In formats whose values end at 1 the largest value is known. From float formats a few rows of the host's picture are
-//! read back without waiting, in a view's third frame and in every 1024th frame after it. An implausible unit is logged
-//! as a warning, and again only after it was plausible in between.
+//! The check is due in a view's third frame and in every 1024th frame after it. In formats whose values end at 1 the
+//! largest value is known. From RGBA formats with half or single floats a few rows of the host's picture are read back
+//! without waiting. Multisampled float pictures and `Rg11b10Ufloat` are not checked. An implausible unit is logged as
+//! a warning, and again only after it was plausible in between.
 
 use std::sync::{
     Arc,
@@ -20,11 +21,11 @@ const ROWS: u32 = 8;
 /// First frame of a view that is checked, and number of frames between two checks.
 const FIRST: u64 = 3;
 const EVERY: u64 = 1024;
-/// Largest plausible ratio of two luminances: white in the weather's light, and the picture's brightest pixels. With a
-/// larger ratio the unit counts as wrong. A room with its lamps off has a smaller ratio.
+/// Largest plausible ratio of the luminance of white in the weather's light to that of the picture's brightest pixels.
+/// With a larger ratio the unit counts as wrong. A room with its lamps off has a smaller ratio.
 const DARKER: f64 = 2000.0;
-/// Largest plausible ratio of two luminances by day: the picture's brightest pixels, and white in the weather's light.
-/// With a larger ratio the unit counts as wrong. It is day if that white has more than `DAY_CD_M2`.
+/// Largest plausible ratio, by day, of the luminance of the picture's brightest pixels to that of white in the
+/// weather's light. With a larger ratio the unit counts as wrong. It is day if that white has more than `DAY_CD_M2`.
 const BRIGHTER: f64 = 2000.0;
 const DAY_CD_M2: f64 = 100.0;
 
@@ -62,8 +63,9 @@ pub(super) struct LuminanceUnitCheck {
 }
 
 impl LuminanceUnitCheck {
-    /// Continues a pending readback, and starts one of this frame's picture if it is due. `white_cd_m2` is the
-    /// luminance of white on level ground; `with_background` says whether BACKGROUND may already be in the picture.
+    /// Continues a pending readback. If a check is due, starts a readback of this frame's picture, or judges at once by
+    /// the largest value of the picture's format. `white_cd_m2` is the luminance of white on level ground;
+    /// `with_background` says whether BACKGROUND may already be in the picture.
     pub fn watch(
         &mut self,
         device: &Device,

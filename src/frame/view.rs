@@ -289,7 +289,8 @@ impl View {
         Ok(())
     }
 
-    /// Draws the stages of a call in as few draws as possible.
+    /// Draws the stages of a call in as few draws as possible. A measured call draws each stage alone where the picture
+    /// stays the same, so that each has its own cost.
     fn draw_all<'a>(
         &mut self,
         context: &FrameContext<'a>,
@@ -298,7 +299,7 @@ impl View {
         recording: &mut Recording<'_>,
     ) -> Result<()> {
         let frame = context.frame;
-        // The lens comes before the tone curve if the target can hold the picture between them.
+        // The lens comes before the tone curve if the target can hold the scene-linear picture.
         let mut lens = stages.has(Stages::LENS) && self.effects.all().iter().any(|effect| effect.has_lens());
         let two = |[a, b]: [Stages; 2]| [a, b, Stages(0), Stages(0), Stages(0)];
         let draws = match can_be_apart(frame, stages) {

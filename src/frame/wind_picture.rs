@@ -1,4 +1,4 @@
-//! Wind for its diagnostic picture: group 1 of the picture's pipeline (`shaders/frame/wind_picture.wgsl`).
+//! Diagnostic picture of the wind: the bind group 1 of its pipeline (`shaders/frame/wind_picture.wgsl`).
 
 use bytemuck::{Pod, Zeroable};
 

@@ -1,7 +1,7 @@
 //! Air, sky and fog: transmittance between two places, the sky's light and its tables, and fog laws.
 //!
-//! Queries are closed forms in f64 that need no device and no frame, except [`Context::ambient_at`], which reads the
-//! sky's tables. Positions are in the host's world.
+//! Queries are computed in f64 for any place and time. They need no device and no frame, except
+//! [`Context::ambient_at`], which reads the sky's tables. Positions are in the host's world.
 
 use std::sync::MutexGuard;
 
@@ -20,8 +20,9 @@ use crate::{
 };
 
 impl Context {
-    /// Returns the share of light that passes from `from` to `to` at simulation time `time_s` through air, fog, rain,
-    /// snow, and clouds if they are drawn as a volume. For rain areas it is the mean over their curtains.
+    /// Returns the share of light, per channel, that passes from `from` to `to` at simulation time `time_s`, and the
+    /// visibility that this share gives. Air, fog, rain and snow take light away, and so do clouds that are drawn as a
+    /// volume. For rain areas the share is the mean over their curtains.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if a position is invalid, or the two are less than a millimetre apart; for
@@ -155,6 +156,7 @@ impl Context {
     }
 
     /// Draws one of the older simulators' fog laws in place of the weather's fog; `None` returns to the weather's fog.
+    /// While a law is set, no fog dims the light of sun, moon and sky.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.

@@ -11,7 +11,8 @@ use crate::{
 
 impl Context {
     /// Sets how clouds are drawn; part of the saved state. Default [`CloudModel::Volume`]. The mean light, the
-    /// conditions and the precipitation do not depend on it; [`Context::sun_share`] does.
+    /// conditions and the precipitation do not depend on it. [`Context::sun_share`], [`Context::sky_radiance`],
+    /// [`Context::between`] and [`Context::visibility_toward`] do.
     pub fn set_cloud_model(&mut self, model: CloudModel) {
         self.held.clouds.model = model;
     }
@@ -48,7 +49,8 @@ impl Context {
     /// The first call builds the noise field from which clouds are cut, which takes some tenths of a second.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`].
+    /// [`crate::Status::InvalidArgument`] if the position is invalid; for times as [`Context::conditions_at`];
+    /// [`crate::Status::OutOfMemory`] if there is no memory for the noise field.
     pub fn sun_share(&self, position: DVec3, time_s: f64) -> Result<f64> {
         let scene = self.scene_at(position, time_s)?;
         self.held.clouds.sun_share(self.world.seed, (&scene, position), (&self.world.over(), time_s))

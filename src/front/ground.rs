@@ -9,8 +9,9 @@ use crate::{
 };
 
 impl Context {
-    /// Sets the host's terrain as one grid, on which wetness and puddles are computed cell by cell, in place of tiles;
-    /// `None` leaves level ground everywhere. If the heights are those of the present grid, it keeps its water. With
+    /// Sets the host's terrain as one grid, on which wetness and puddles are computed cell by cell, in place of tiles.
+    /// `None` removes the grid, but no tiles; without either the ground is level everywhere. If the heights are those
+    /// of the present grid, it keeps its water. With
     /// [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has a state, which starts as wet as
     /// the level ground, and which [`Context::save`] keeps together with the heights. Otherwise the weather's wetness
     /// is spread over the terrain's hollows. Takes some tenths of a second for the largest grids.
@@ -45,14 +46,14 @@ impl Context {
         self.held.ground.revision
     }
 
-    /// Sets the material of ground that has none from the host's grid or image: [`SurfaceClass::Unspecified`], the
-    /// default, is natural ground. Part of the saved state.
+    /// Sets the material of ground that has none from the host's grid, tiles or image: [`SurfaceClass::Unspecified`],
+    /// the default, is natural ground. Part of the saved state.
     pub fn set_default_surface_class(&mut self, class: SurfaceClass) {
         self.held.ground.surface_class = class;
         self.held.land.surface_class = class;
     }
 
-    /// Returns the material of ground that has none from the host's grid or image.
+    /// Returns the material of ground that has none from the host's grid, tiles or image.
     pub fn default_surface_class(&self) -> SurfaceClass {
         self.held.ground.surface_class
     }
@@ -63,9 +64,9 @@ impl Context {
         self.held.ground.water(&self.world)
     }
 
-    /// Returns the water on the ground at `position` as of [`Context::state_time_s`]. On the host's terrain
-    /// ([`Context::set_ground_grid`]) and up to 3 m above it, this is the water of its cells. Elsewhere it follows the
-    /// hollows that Welkin draws; the host's own ground may have others.
+    /// Returns the water on the ground at `position` as of [`Context::state_time_s`]. On the host's terrain, a grid
+    /// ([`Context::set_ground_grid`]) or tiles ([`Context::set_terrain`]), and up to 3 m above the terrain, this is the
+    /// water of its cells. Elsewhere it follows the hollows that Welkin draws; the host's own ground may have others.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is invalid.
@@ -73,13 +74,13 @@ impl Context {
         self.held.ground.at(&self.world, position)
     }
 
-    /// Returns the water on the host's terrain as a texture for the host's own materials, up to date. Changes since the
+    /// Returns the water on the host's grid as a texture for the host's own materials, up to date. Changes since the
     /// last call, which come at most every 10 s of simulation time, are uploaded and submitted. The texture stays the
     /// same object until another grid is set or loaded; it is then released at the next call of this function or of a
     /// view.
     ///
     /// # Errors
-    /// [`crate::Status::WrongOrder`] without a terrain, [`crate::Status::DeviceLost`], or a GPU fault.
+    /// [`crate::Status::WrongOrder`] without a grid, [`crate::Status::DeviceLost`], or a GPU fault.
     pub fn ground_texture(&mut self) -> Result<GroundTexture> {
         let device = self.device().clone();
         self.held.ground.texture(&device, self.world.snow.as_deref())

@@ -97,7 +97,8 @@ impl Context {
         let air = &media[0];
         let [gas_m, _, ozone_m] = air.ray.columns(&air.air, 0.0, range_m);
         let mut depths = air.air.optical_depth(&[gas_m, 0.0, ozone_m]);
-        // Depths up to the end of the last piece of the way on which each medium of each weather was present.
+        // For each medium of each weather: the end, m, of the last piece of the way on which the medium was present,
+        // and the depths up to there.
         let mut before = vec![[(0.0, [0.0; 3]); ATTENUATING.len()]; media.len()];
         way.pieces(|[from_m, to_m], here| {
             for (medium, part) in ATTENUATING.into_iter().enumerate() {

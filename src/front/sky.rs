@@ -27,9 +27,9 @@ const UNDER_DECK: f64 = 7.0 / 9.0;
 impl Context {
     /// Returns the radiance of the sky at `position` towards `directions`, unit vectors (east, north, up) there, at
     /// simulation time `time_s`: cd/m^2 per channel of linear Rec. 709, as a picture shows it where the host drew
-    /// nothing. It includes clear air, clouds, fog, precipitation in the weather's fog layer, the night's glow and,
-    /// below the horizon, the planet's ground. It leaves out the discs of the sun and the moon, stars and planets, rain
-    /// areas, and the host's objects.
+    /// nothing. It includes clear air, clouds, fog, the weather's precipitation, bows, the night's glow and, below the
+    /// horizon, the planet's ground. It leaves out the discs of the sun and the moon, stars and planets, rain areas,
+    /// and the host's objects.
     ///
     /// Clear air comes from its f64 reference, at three wavelengths. The first call in a new state of the air solves
     /// it; that takes a second or two, during which other threads that call this function wait. The last four solutions
@@ -206,13 +206,14 @@ impl DirectionLight<'_> {
     }
 }
 
-/// Light towards the eye, and what it lets through from behind.
+/// Light that some media on a ray send towards the eye, and the transmittance of these media.
 struct FarLight {
     light: DVec3,
     through: DVec3,
 }
 
-/// Lays a layer of fog that scatters `radiance` over the light `back` behind it; `veil` is in front of it.
+/// Lays a layer of fog over the light `back` behind the layer. The layer itself scatters `radiance`. The air in front
+/// of the layer is `veil`.
 fn with_layer(fog: &FogSample, radiance: DVec3, veil: &FarLight, back: &FarLight) -> FarLight {
     let beyond = back.light * fog.shade - veil.light;
     FarLight {

@@ -58,7 +58,8 @@ impl Context {
         self.held.soil.site().ok().map(|site| &site.desc().settings)
     }
 
-    /// Adds a tool at its first pose, in the host's world, at most [`MAX_SOIL_TOOLS`](crate::soil::MAX_SOIL_TOOLS).
+    /// Adds a tool at its first pose, which is in the host's world. There are at most
+    /// [`MAX_SOIL_TOOLS`](crate::soil::MAX_SOIL_TOOLS) tools at a time.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without soil, while steps of an update remain, or for a pose before the present;
@@ -135,7 +136,8 @@ impl Context {
         Ok(lands)
     }
 
-    /// Returns the ground at a place; `None` where there is none. Its revision is that of the terrain.
+    /// Returns the ground at a place; `None` where there is none. [`SoilPoint::revision`] is the value of
+    /// [`Context::terrain_revision`] at the last change near the place.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without soil, [`Status::InvalidArgument`] for an invalid place.

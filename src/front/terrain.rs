@@ -11,8 +11,8 @@ use crate::{
 };
 
 impl Context {
-    /// Replaces the host's terrain, tiles or grid, by one in tiles on this lattice, at first without any tile; `None`
-    /// removes the terrain. If the lattice is the present one, it keeps its tiles.
+    /// Replaces the host's terrain, tiles or grid, by one in tiles on this lattice, at first without any tile. `None`
+    /// removes the lattice with its tiles, but no grid. If the lattice is the present one, it keeps its tiles.
     ///
     /// With [`GroundModel::Simulated`](crate::ground::GroundModel::Simulated) each cell has water of its own, which
     /// [`Context::save`] keeps. Heights are not saved: set the same tiles before [`Context::load`]. Soil
@@ -104,7 +104,7 @@ impl Context {
         self.world.set.tiles.iter().flat_map(|terrain| terrain.all().map(|(_, tile)| tile.key))
     }
 
-    /// Returns a number that grows whenever the host or the soil changes the tiles; 0 without a terrain.
+    /// Returns a number that grows whenever the host or the soil changes the tiles; 0 without a lattice.
     pub fn terrain_revision(&self) -> u64 {
         self.world.set.tiles.as_ref().map_or(0, |terrain| terrain.revision)
     }

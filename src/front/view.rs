@@ -33,10 +33,11 @@ impl View {
         Ok(())
     }
 
-    /// Returns the map of the clouds' shadows, for a host that lights its own materials. From the first call on, the
-    /// first call of each frame updates the map, and [`Stages::SURFACE`](crate::frame::Stages::SURFACE) no longer draws
-    /// cloud shadows: the host does. Call this function after each frame for the map's placement. A host that draws
-    /// before Welkin uses the placement of the last frame: clouds have moved by centimetres since then.
+    /// Returns the map of the clouds' shadows, for a host that lights its own materials. Once this function has been
+    /// called, the first [`View::record`] of each frame updates the map, and
+    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE) no longer draws cloud shadows: the host does. Call this
+    /// function after each frame for the map's placement. A host that draws before Welkin uses the placement of the
+    /// last frame: clouds have moved by centimetres since then.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -63,7 +64,7 @@ impl View {
     /// keeps its size. After an error the windscreen is unchanged.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field and its range.
+    /// [`crate::Status::InvalidArgument`] naming the field and its range; with `None`, [`crate::Status::DeviceLost`].
     pub fn set_windscreen(&mut self, screen: Option<&Windscreen>) -> Result<()> {
         let device = self.device.clone();
         // The windscreen's GPU objects are released in the host's context.
@@ -81,7 +82,8 @@ impl View {
         self.effects.glass.water(&self.device)
     }
 
-    /// Returns the snow on the windscreen, or `None` if there is none; for tests and tools. Waits for the GPU.
+    /// Returns the snow on the windscreen, or `None` without snow or windscreen; for tests and tools. Waits for the
+    /// GPU.
     ///
     /// # Errors
     /// As [`View::windscreen_report`].
@@ -90,7 +92,8 @@ impl View {
         self.effects.glass.snow(&self.device)
     }
 
-    /// Returns the cells of the windscreen's water, or `None` if it is dry; for tests and tools. Waits for the GPU.
+    /// Returns the cells of the windscreen's water, or `None` without water or windscreen; for tests and tools. Waits
+    /// for the GPU.
     ///
     /// # Errors
     /// As [`View::windscreen_report`].

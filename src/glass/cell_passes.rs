@@ -8,7 +8,7 @@ use crate::{
     },
 };
 
-/// Format of the water in the cells.
+/// Format of the water in the cells, and of the moves of their beads.
 pub(super) const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Format of the shares of the rain that occluder maps let through, and of snow.
 pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
@@ -59,7 +59,7 @@ pub(super) fn tex(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
 /// Shader of the snow: its steps, and its declared state.
 const SETTLE: &str = "glass/settle.wgsl";
 
-/// Creates the two pipelines of snow.
+/// Creates the pipelines of snow: that of a step, then that of the declared state.
 pub(super) fn settle_pipelines(
     device: &Device,
     layout: &wgpu::BindGroupLayout,
@@ -69,7 +69,7 @@ pub(super) fn settle_pipelines(
     Ok([one("settle")?, one("declare_snow")?])
 }
 
-/// Creates a pipeline over the cells.
+/// Creates the pipeline of a pass that draws one texel for each cell.
 pub(super) fn cells_pipeline(
     device: &Device,
     (shader, entry): (&str, &str),

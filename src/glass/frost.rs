@@ -44,8 +44,8 @@ impl Snowing {
     /// Returns the rate at which snow stays on a surface, as water, m/s. `normal_up` is the upward component of the
     /// surface's outward normal, and `approach_m_s` its speed outwards against the air. The air that flows around the
     /// glass takes light flakes with it. Of the flakes blown towards the glass the share S^3 / (S^3 + 0.77 S^2 + 0.22)
-    /// arrives, where S is their Stokes number (Landahl & Herrmann 1949). Of flakes that arrive at a speed v above 1
-    /// m/s, the share (1 m/s) / v stays (ISO 12494:2001, wet snow).
+    /// arrives (Landahl & Herrmann 1949), where S is their Stokes number, (fall speed / g) x approach / 1 m. Of flakes
+    /// that arrive at a speed v above 1 m/s, the share (1 m/s) / v stays (ISO 12494:2001, wet snow).
     pub fn stays_m_s(&self, normal_up: f64, approach_m_s: f64) -> f64 {
         if self.water_m_s <= 0.0 {
             return 0.0;

@@ -44,8 +44,8 @@ impl Plane {
     /// which is at the origin.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the corners are out of range, not in one plane, not convex or not in that
-    /// order.
+    /// [`crate::Status::InvalidArgument`] if the corners are out of range, not in one plane, not convex, not in that
+    /// order, or in a plane less than 1 mm from the camera.
     pub fn of(corners: &[DVec3; 4]) -> Result<Self> {
         const NAME: &str = "windscreen.corners_m";
         let listed = || format!("{corners:?}");
@@ -65,7 +65,7 @@ impl Plane {
             let accepted = "lower left, lower right, upper right, upper left as seen from a camera at least 1 mm away";
             return Err(Error::range(NAME, accepted, listed()));
         }
-        // The lower edge lies in this plane, apart from the corners' errors.
+        // `towards` is at right angles to u only within the corners' errors, `out` exactly.
         let v = towards.cross(u).normalize();
         let (out, flat) = (v.cross(u), |c: DVec3| DVec2::new(u.dot(c - corners[0]), v.dot(c - corners[0])));
         let off = corners.map(|c| out.dot(c - corners[0]).abs()).into_iter().fold(0.0, f64::max);

@@ -12,12 +12,13 @@
 //! meltwater forms beads ([`frost`], `shaders/glass/settle.wgsl`).
 //!
 //! **Time.** Steps lie on a grid of 60 Hz anchored at simulation time 0, so the frame rate does not matter. After a
-//! cut, at the first frame, and if more than [`MAX_STEPS`] would be due, the glass takes the declared state of that
-//! time. This state is a pure function of (seed, time, rain), and its beads are too small to run. A frame with
-//! `NO_HISTORY` always shows the declared state.
+//! cut, at the first frame, after a step back in time, and if more than [`MAX_STEPS`] would be due, the glass takes the
+//! declared state of that time. This state is a pure function of the seed, the time and the conditions on the glass
+//! then, and its beads are too small to run. A frame with `NO_HISTORY` always shows the declared state.
 //!
 //! **Cost.** Each step takes two passes over the lattice, and a third with snow on the glass or falling. Each frame
-//! takes two small copies of the picture and one pass over it. There is no cost without a windscreen or on dry glass.
+//! takes two small copies of the picture and one pass over it. There is no cost without a windscreen, or on dry glass
+//! without mist.
 //! **Left out**: the splash of an impact, water pushed ahead of a blade, and refraction between drops more than a cell
 //! apart.
 //!

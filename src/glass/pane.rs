@@ -15,7 +15,7 @@ use crate::{
     surroundings::{MAX_SHELTERS, Shelter, shelter::sheltered},
 };
 
-/// Distance in front of the glass of the points for which shelter by boxes is tested, m.
+/// Distance in front of the glass of the points for which shelter by boxes and maps is tested, m.
 const BEFORE_M: f64 = 0.05;
 /// Largest distance that a vehicle extends in front of its windscreen, m.
 const VEHICLE_M: f64 = 3.0;

@@ -342,7 +342,7 @@ pub(super) struct LensDraw<'a> {
 }
 
 /// Lens over one picture, with its smaller copies and bind groups. It is created again when the host gives other
-/// textures.
+/// textures, or when the lattice has another size.
 pub(super) struct LensPass {
     picture: wgpu::Texture,
     mask: Option<KeptLayer>,
@@ -410,7 +410,8 @@ impl LensPass {
         self.bytes
     }
 
-    /// Draws the lens; `picture` already has the finished picture.
+    /// Draws the lens over the finished picture, which is in the texture given to [`LensPass::new`]. Returns the number
+    /// of passes.
     pub fn draw(
         &self,
         device: &Arc<Device>,

@@ -67,7 +67,8 @@ impl Reach {
         Self::from_nodes(&nodes)
     }
 
-    /// Returns the mean share over the pane's bounds. Nodes on an edge have half the weight.
+    /// Returns the mean share over the pane's bounds. Nodes on an edge have half the weight, and those at a corner a
+    /// quarter.
     pub fn mean(&self) -> f64 {
         let edge = |i: usize, n: usize| if i == 0 || i == n - 1 { 0.5 } else { 1.0 };
         let weighed = self.nodes().enumerate().map(|(i, share)| {

@@ -1,5 +1,6 @@
 //! Reference of the cells on the CPU: a twin of `shaders/glass/{cells,decide,gather,declare,settle}.wgsl` that gives
-//! the same bits. Its functions have the same names; the comments of the shaders describe them.
+//! the same bits for glass without occluder maps. Its functions have the same names; the comments of the shaders
+//! describe them.
 
 use glam::DVec2;
 
@@ -98,7 +99,7 @@ fn node(step: &StepUniform, index: [u32; 2]) -> u32 {
     (step.reach[i as usize / 16][(i as usize / 4) % 4] >> (8 * (i % 4))) & 255
 }
 
-/// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between its nodes.
+/// Returns the share of the rain that reaches a cell, in 1/65536, interpolated between the nodes around it.
 fn reached(step: &StepUniform, cell: [i32; 2]) -> u32 {
     let at: [u32; 2] =
         std::array::from_fn(|k| (cell[k] as u32 * 2 + 1) * (NODES[k] as u32 - 1) * 128 / step.key[2 + k]);

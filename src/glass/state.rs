@@ -40,7 +40,7 @@ pub(super) struct AtGlass<'a> {
     pub altitude_m: f64,
     /// Function that returns the weather at a time, s.
     pub weather: &'a dyn Fn(f64) -> Conditions,
-    /// Function that returns the share of the rain that reaches the glass now.
+    /// Function that returns the share of the rain that boxes now let through to the glass, and the occluder maps.
     pub reach: &'a dyn Fn(&Plane, &Windscreen) -> Result<Reached<'a>>,
     /// Whether the frame must not depend on earlier frames.
     pub cut: bool,

@@ -28,9 +28,9 @@ const BEAD_CLASSES: usize = 96;
 const LARGEST: f64 = 0.95;
 /// Longest distance that a bead moves in a step, 1/65536 cell.
 const FARTHEST: f64 = 58_000.0;
-/// Units per cell of an arm's positions.
+/// Number of units in the edge of a cell, for the positions of an arm.
 const ARM_UNIT: f64 = 16.0;
-/// Units per unit length of the direction vectors of an arm.
+/// Number of units in the length of an arm's direction vectors.
 const DIRECTION_UNIT: f64 = 4096.0;
 
 /// Uniform block `Step` of `shaders/glass/cells.wgsl`.
@@ -40,8 +40,8 @@ const DIRECTION_UNIT: f64 = 4096.0;
 pub struct StepUniform {
     /// Hash of (seed, step), hash of the seed, columns, rows.
     pub key: [u32; 4],
-    /// Limits of 32 random bits below which a cell gets at least 1, 2 or 3 drops; probability per step, in 1/65536,
-    /// that a fine bead dries.
+    /// Limits for a random number of 32 bits: below them a cell gets at least 1, 2 or 3 drops. Then the probability per
+    /// step, in 1/65536, that a fine bead dries.
     pub arrive: [u32; 4],
     /// Declared state: water per cell and step, in 1/256 unit; drops per cell and step, in 1/65536; index of the step;
     /// volume of the largest bead that rests, units.
@@ -57,8 +57,8 @@ pub struct StepUniform {
     /// Beads by class of volume: radius, in 1/256 cell, + 1024 x evaporation, in 1/4096 unit per step; motion x, y, in
     /// 1/65536 cell per step; 256 x driving force / retention.
     pub beads: [[i32; 4]; BEAD_CLASSES],
-    /// Snow: limit of 32 random bits below which a flake lands on a cell; then, in units of water, a flake, the melt
-    /// per step (in 1/4096), and the largest amount in a cell.
+    /// Snow: limit for a random number of 32 bits, below which a flake lands on a cell. Then, in units of water, a
+    /// flake, the melt per step (in 1/4096), and the largest amount in a cell.
     pub snow: [u32; 4],
     /// Shares of the rain that reach the nodes over the pane ([`Reach`]).
     pub reach: [[u32; 4]; 8],
@@ -71,7 +71,7 @@ pub struct StepConditions {
     pub cell_m: f64,
     /// Sizes of the raindrops.
     pub rain: DropSizes,
-    /// Share of the rain that reaches the glass.
+    /// Share of the weather's rain that reaches the glass, without the effect of boxes and maps.
     pub exposed: f64,
     /// Upward component of the glass's outward normal.
     pub up: f64,
@@ -261,7 +261,7 @@ fn bead(acting: &StepConditions, volume: f64, loss: f64) -> ([i32; 4], bool) {
 
 /// Fills in the mean volumes of the drop classes. The rarity R of a drop is the share of larger drops. Class 16 k + j
 /// has the drops with (31 - j) / 16 <= 2^(k + 1) R < (32 - j) / 16. Large drops, which are rare and heavy, therefore
-/// have classes of their own.
+/// have classes of their own. The last class also has all rarer drops.
 fn drop_classes(arrivals: &Arrivals, drops: &mut [[u32; 4]; DROP_CLASSES / 4]) {
     if arrivals.number_m2_s <= 0.0 {
         return;

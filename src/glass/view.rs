@@ -58,7 +58,7 @@ impl GlassView {
         self.glass.as_ref().map(|g| g.report(device)).transpose()
     }
 
-    /// Returns the cells of the water, or `None` if the glass is dry. Waits for the GPU.
+    /// Returns the cells of the water, or `None` on dry glass or without a windscreen. Waits for the GPU.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.
@@ -66,7 +66,7 @@ impl GlassView {
         self.glass.as_ref().map_or(Ok(None), |g| g.cells(device))
     }
 
-    /// Returns the snow, or `None` if there is none. Waits for the GPU.
+    /// Returns the snow, or `None` without snow or windscreen. Waits for the GPU.
     ///
     /// # Errors
     /// [`crate::Status::DeviceLost`], or a GPU fault.

@@ -11,7 +11,7 @@ pub const MAX_ARMS: usize = 2;
 /// Wiper: a blade on an arm that turns around a pivot in the plane of the glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiperArm {
-    /// Position of the pivot, m right of and above the pane's lower left corner along the glass, each [-4, 12].
+    /// Position of the pivot, m to the right and up the glass from the lower left of the pane's bounds, each [-4, 12].
     pub pivot_m: [f64; 2],
     /// Distance from the pivot to the blade's outer end, m, [0.01, 3].
     pub length_m: f64,

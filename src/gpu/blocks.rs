@@ -1,4 +1,5 @@
-//! Uniform blocks of a view, side by side in one buffer: one write uploads all blocks that a call has changed.
+//! Uniform blocks of a view, side by side in a few buffers, the pages. One write for each page uploads all blocks that
+//! a call has changed.
 //!
 //! wgpu creates a staging buffer for every write. Five writes take as much CPU time as two empty passes.
 

@@ -20,9 +20,9 @@ pub struct Caps {
     pub adapter_name: String,
     /// Name and version that the driver reports.
     pub driver: String,
-    /// Feature tier: 0 without compute (GL 3.3 to 4.2, macOS GL, or [`DeviceOptions::force_tier0`]), 1 with compute and
-    /// with indirect draws, whose counts stay on the GPU. Compute needs workgroups of 128 threads and 3 storage buffers
-    /// per stage.
+    /// Feature tier, 0 or 1. Tier 1 has compute and indirect draws, whose counts stay on the GPU, with workgroups of
+    /// 128 threads and 3 storage buffers per stage. Tier 0 lacks one of these (GL 3.3 to 4.2, macOS GL), or was asked
+    /// for by [`DeviceOptions::force_tier0`].
     pub tier: u32,
     /// Whether the driver computes on the CPU.
     pub software: bool,
@@ -54,7 +54,7 @@ impl Default for DeviceOptions {
 pub struct AttachedDepth {
     /// Texture to attach.
     pub texture: wgpu::Texture,
-    /// Whether the depth that shaders read is a copy of `texture`, which [`HostBinding::refresh_depth`] updates.
+    /// Whether shaders read a copy of `texture`. [`HostBinding::refresh_depth`] updates this copy.
     pub is_copied: bool,
 }
 
@@ -92,7 +92,7 @@ pub trait HostBinding: Send + Sync {
     fn refresh_depth(&self, _depth: &wgpu::Texture) -> Result<()> {
         Ok(())
     }
-    /// Returns the first error flag that OpenGL has raised since the last call. Must be called while entered.
+    /// Reads and clears OpenGL's error flags, and returns the first as an error. Must be called while entered.
     fn raised(&self) -> Option<Error> {
         None
     }
@@ -101,7 +101,8 @@ pub trait HostBinding: Send + Sync {
     fn closing(&self);
     /// Called once, still entered, after the device's own objects were released.
     fn closed(&self);
-    /// Called instead of `closing` and `closed` if the host's context, and with it all its objects, no longer exists.
+    /// Called instead of `closing` and `closed` if the host's context cannot be entered. The binding must then make no
+    /// GPU call, because the context, and with it all its objects, may no longer exist.
     fn forsaken(&self);
 }
 
@@ -192,7 +193,7 @@ pub struct Device {
     faults: Arc<Faults>,
     /// Lock that lets one thread submit at a time.
     submission: Mutex<()>,
-    /// Number of submissions so far.
+    /// Number of calls of [`Device::submit`] so far.
     submissions: AtomicU64,
     /// Counted work, for the benchmarks.
     pub(crate) counts: WorkTotals,
@@ -270,7 +271,7 @@ impl Device {
     /// [`HostBinding`].
     ///
     /// # Errors
-    /// Any reason for which the host's context cannot be entered, and [`Status::DeviceLost`].
+    /// [`Status::DeviceLost`] if the device is lost, and any reason for which the host's context cannot be entered.
     pub fn enter(&self) -> Result<Entered<'_>> {
         if self.is_lost() {
             return Err(Error::new(Status::DeviceLost, "the device is lost: destroy it and create a new one"));
@@ -349,7 +350,7 @@ impl Device {
     /// for an image. Called while entered, after images were created.
     ///
     /// # Errors
-    /// The fault.
+    /// The fault; [`Status::OutOfMemory`] or [`Status::Internal`] for OpenGL's flag.
     pub(crate) fn check_made(&self) -> Result<()> {
         self.check()?;
         match &self.binding {
@@ -424,7 +425,7 @@ impl Device {
         self.queue.submit([commands]);
     }
 
-    /// Number of submissions to this device so far.
+    /// Number of calls of [`Device::submit`] so far.
     pub fn submissions(&self) -> u64 {
         self.submissions.load(Ordering::Relaxed)
     }

@@ -1,18 +1,20 @@
-//! wgpu instances for Welkin's own devices: which drivers are tried, in which order, and which queries are avoided.
+//! wgpu instances for Welkin's own devices: which graphics APIs are tried, in which order, and how Vulkan is opened
+//! without Wayland.
 
 use crate::error::{Error, Result};
 
 /// Connection to the window system that an instance may hold.
 pub(super) type KeptDisplay = Box<dyn wgpu::wgt::WgpuHasDisplayHandle>;
 
-/// Yields the graphics APIs to try, one after the other. OpenGL comes alone and last, because merely opening it makes
-/// some drivers write to the host's terminal.
+/// Yields the sets of graphics APIs to try, in order: all native ones but OpenGL together, then OpenGL, then `NOOP`.
+/// OpenGL comes alone and after the other native ones, because merely opening it makes some drivers write to the host's
+/// terminal.
 pub(super) fn attempts(backends: wgpu::Backends) -> impl Iterator<Item = wgpu::Backends> {
     let (gl, noop) = (backends & wgpu::Backends::GL, backends & wgpu::Backends::NOOP);
     [backends - gl - noop, gl, noop].into_iter().filter(|backends| !backends.is_empty())
 }
 
-/// Error for a list without any graphics API.
+/// Returns the error for a set without any graphics API.
 pub(super) fn none_wanted(backends: wgpu::Backends) -> Error {
     Error::range("backends", "at least one native interface", format!("{backends:?}"))
 }
@@ -20,7 +22,7 @@ pub(super) fn none_wanted(backends: wgpu::Backends) -> Error {
 /// Opens an instance of `backends`, for windows of the connection `display` if there is one.
 ///
 /// # Errors
-/// [`crate::Status::NoAdapter`] if Vulkan cannot be opened.
+/// [`crate::Status::NoAdapter`] if Vulkan must be opened without Wayland and this fails.
 pub(super) fn open(backends: wgpu::Backends, display: Option<KeptDisplay>) -> Result<wgpu::Instance> {
     #[cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
     if backends.contains(wgpu::Backends::VULKAN) && !wayland_can_be_asked() {

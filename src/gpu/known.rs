@@ -2,9 +2,10 @@
 //! other work.
 //!
 //! With NVIDIA's driver 580.159 on OpenGL the first tables of the sky never finish, and the GPU hangs. Tables are built
-//! by loops whose bounds come from uniform blocks: if the block reads as zeros, a loop ends at once; if it reads as the
-//! bits of a float, it never ends in practice. So the test first draws the contents of each kind of block without a
-//! loop, and then one texel by a loop. A driver that fails gets no device. Shader: `shaders/common/known.wgsl`.
+//! by loops whose bounds come from uniform blocks: if a block reads as zeros, the loop ends at once; if it reads as the
+//! bits of a float, the loop never ends in practice. So the test first draws the contents of each kind of block without
+//! a loop, and then one texel by two nested loops. A driver that fails gets no device. Shader:
+//! `shaders/common/known.wgsl`.
 
 use std::{
     sync::Arc,
@@ -20,8 +21,8 @@ use super::{
 };
 use crate::error::{Error, Status};
 
-/// Time limit of the test. A driver that needs longer for a few texels never finishes; a device must open or fail in 10
-/// s.
+/// Time limit of the test. A driver that needs longer for a few texels is taken to hang. The limit is shorter than the
+/// 10 s in which a device must open or fail.
 pub(super) const LIMIT: Duration = Duration::from_secs(6);
 
 /// Fault that the test found in a driver.
@@ -29,7 +30,7 @@ pub(super) const LIMIT: Duration = Duration::from_secs(6);
 pub(super) enum Fault {
     /// Shaders read wrong bytes from a block.
     Blocks(String),
-    /// A loop has a wrong sum.
+    /// The loops give a wrong sum.
     Loop(String),
     /// Hang: the GPU does not finish. None of its objects may be waited for or released.
     Hang,
@@ -38,7 +39,8 @@ pub(super) enum Fault {
 }
 
 impl Fault {
-    /// Returns the error for the refused driver, with its name and what to use instead.
+    /// Returns the error for the refused driver, with its name and what to use instead. An error of the device is
+    /// returned as it is.
     pub fn refuse(self, driver: &str) -> Error {
         let what = match self {
             Self::Blocks(what) => format!("gives shaders other bytes than were written: {what}"),
@@ -64,7 +66,8 @@ impl From<Error> for Fault {
 const SIZES: [usize; 5] = [9, 5, 24, 1, 5];
 const NAMES: [&str; 5] = ["rows", "counts", "rule", "job", "written"];
 const TEXELS: usize = 44;
-/// Bounds of the two loops.
+/// Bounds in the block of counts: the outer loop makes twice the first number of turns, the inner loop the second
+/// number.
 const TURNS: (u32, u32) = (5, 7);
 
 /// Returns the contents of every vector. Rows and rule are floats, whose bits are large as integers, like the blocks of
@@ -170,7 +173,7 @@ impl BoundBlocks {
         Self { layout, group, job: step as u32 }
     }
 
-    /// Draws this many texels with an entry point, and reads them back.
+    /// Draws `width` texels with the entry point `entry`, and reads them back. [`LIMIT`] counts from `begun`.
     fn draw(
         &self,
         device: &Arc<Device>,
@@ -208,7 +211,7 @@ impl BoundBlocks {
         drop(drawn);
         device.submit(encoder);
         device.check()?;
-        // Must come before any read-back, which would wait without a limit.
+        // Must come before the read-back, which would wait for longer than `LIMIT`.
         let waited = device.wait_within(LIMIT.saturating_sub(begun.elapsed()));
         if device.is_hung() {
             return Err(Fault::Hang);

@@ -12,7 +12,7 @@ impl Device {
     /// Creates a device without a window.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] if `backends` is empty; [`Status::NoAdapter`] if no driver meets the request.
+    /// [`Status::InvalidArgument`] if `backends` is empty; the errors of [`Device::from_instance`].
     pub fn headless(options: &DeviceOptions) -> Result<Arc<Self>> {
         let mut answer = Err(instance::none_wanted(options.backends));
         for backends in instance::attempts(options.backends) {
@@ -27,7 +27,7 @@ impl Device {
     /// Creates a device on `instance`. It can present to `surface`, if one is given.
     ///
     /// # Errors
-    /// [`Status::NoAdapter`] if no driver meets the request.
+    /// [`Status::NoAdapter`] if no driver meets the request; the errors of [`Device::adopt`].
     pub fn from_instance(
         instance: wgpu::Instance,
         options: &DeviceOptions,
@@ -46,8 +46,9 @@ impl Device {
         Self::adopt(instance, adapter, device, queue, options.force_tier0, None)
     }
 
-    /// Takes over existing wgpu objects: a Rust host's own, or those created on a GL or Vulkan host's handles. An
-    /// OpenGL driver must first pass the test of known answers (`src/gpu/known.rs`).
+    /// Takes over existing wgpu objects: a Rust host's own, or those created on a GL or Vulkan host's handles. Without
+    /// a `binding`, an OpenGL driver must first pass the test of known answers (`src/gpu/known.rs`); with one, it was
+    /// tested when the host's context was opened.
     ///
     /// # Errors
     /// [`Status::NoAdapter`] if an OpenGL driver fails that test or does not finish it.
@@ -59,7 +60,7 @@ impl Device {
         force_tier0: bool,
         binding: Option<Arc<dyn HostBinding>>,
     ) -> Result<Arc<Self>> {
-        // A host's context was tested when it was opened.
+        // With a binding, the driver was tested when the host's context was opened.
         let is_unknown = binding.is_none() && adapter.get_info().backend == wgpu::Backend::Gl;
         let own = Self::around(instance, adapter, device, queue, force_tier0, binding);
         if is_unknown {
@@ -71,6 +72,7 @@ impl Device {
 }
 
 /// Returns the features and limits that Welkin requests. The limits are the adapter's own, so that large targets fit.
+/// For a forced tier 0 they are those of WebGL 2, with the adapter's largest texture sizes.
 fn device_descriptor(adapter: &wgpu::Adapter, options: &DeviceOptions) -> wgpu::DeviceDescriptor<'static> {
     let mut limits = adapter.limits();
     if options.force_tier0 {

@@ -60,13 +60,13 @@ pub struct FullscreenDesc<'a> {
 /// Creates a full-screen pipeline.
 ///
 /// # Errors
-/// A missing shader file; GPU faults come through [`Device::check`].
+/// [`crate::Status::Internal`] for a missing shader file. GPU faults come through [`Device::check`].
 pub fn fullscreen(device: &Device, desc: &FullscreenDesc<'_>) -> Result<wgpu::RenderPipeline> {
     fullscreen_at(device, desc, None)
 }
 
-/// Creates a pipeline as [`fullscreen`] does, with the triangle at a depth in [0, 1], tested against a depth
-/// attachment.
+/// Creates a pipeline as [`fullscreen`] does. With `tested`, the triangle lies at that depth in [0, 1] and is tested
+/// against a depth attachment.
 ///
 /// # Errors
 /// The errors of [`fullscreen`].
@@ -133,7 +133,8 @@ pub(crate) fn depth_test(
 
 /// Returns a target whose pipeline llvmpipe compiles once instead of twice. Unless the target blends, llvmpipe compiles
 /// a second version of the shader for blocks of pixels that a triangle covers wholly. A blend that replaces the
-/// target's values draws the same picture.
+/// target's values draws the same picture. For other drivers, and for a format that cannot blend, `target` is returned
+/// as it is.
 pub(crate) fn compiled_once(device: &Device, target: wgpu::ColorTargetState) -> wgpu::ColorTargetState {
     let features = target.format.guaranteed_format_features(device.device.features()).flags;
     let can = device.caps().software && features.contains(wgpu::TextureFormatFeatureFlags::BLENDABLE);

@@ -1,12 +1,12 @@
-//! Reading textures back to the CPU, for queries, probes, tests and pictures. It waits for the GPU, so no frame uses
-//! it.
+//! Reading of textures back to the CPU, for queries, probes, tests and pictures. Reading waits for the GPU. So no frame
+//! reads a texture, except for the first texel of the sky's tables on OpenGL (`src/sky/kit/first.rs`).
 
 use half::f16;
 
 use super::{counts::DeviceWork, device::Device};
 use crate::error::{Error, Result, Status};
 
-/// Returns the bytes of one texel, for the formats that can be read back.
+/// Returns the number of bytes of a texel, for the formats that can be read back.
 fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
     use wgpu::TextureFormat as F;
     match format {
@@ -23,7 +23,8 @@ fn texel_bytes(format: wgpu::TextureFormat) -> Result<u32> {
 /// Reads the bytes of mip 0 of a 2-D texture (or of `layer` of an array), with rows tightly packed.
 ///
 /// # Errors
-/// [`Status::Unsupported`] for a format that cannot be read back; [`Status::DeviceLost`] or a GPU fault.
+/// [`Status::Unsupported`] for a format that cannot be read back; [`Status::OutOfMemory`]; [`Status::DeviceLost`] or a
+/// GPU fault.
 pub fn bytes(device: &Device, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>> {
     let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
     let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
@@ -39,7 +40,7 @@ pub(crate) fn level(device: &Device, texture: &wgpu::Texture, level: u32) -> Res
     copied(device, wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() }, size)
 }
 
-/// Reads the bytes of a part of a texture, as wide as its mip level, with rows tightly packed.
+/// Reads the bytes of a region of a texture, which is as wide as the mip level, with rows tightly packed.
 fn copied(device: &Device, source: wgpu::TexelCopyTextureInfo<'_>, size: wgpu::Extent3d) -> Result<Vec<u8>> {
     let row = size.width * texel_bytes(source.texture.format())?;
     let rows = u64::from(size.height) * u64::from(size.depth_or_array_layers);

@@ -1,8 +1,8 @@
 //! Least-recently-used cache of objects that are created when first needed.
 //!
-//! Pipelines have many variants: one for each combination of the host's formats and the weather's parts. When the cache
-//! is full, a new object replaces the least recently used one, so that memory stays bounded however long a session
-//! changes between variants.
+//! Pipelines have many variants: one for each combination of the host's formats and the effects that are drawn. When
+//! the cache is full, a new object replaces the least recently used one, so that memory stays bounded however long a
+//! session changes between variants.
 
 /// Values found by their keys; at most `MOST` of them.
 pub(crate) struct LruCache<K, V, const MOST: usize> {
@@ -56,7 +56,7 @@ impl<K, V, const MOST: usize> LruCache<K, V, MOST> {
         self.all.iter().map(|held| &held.key)
     }
 
-    /// Returns a copy of the value as [`Self::get_or_make`] does, where `make` cannot fail.
+    /// Returns a copy of the value of `key`; `make` creates the value if there is none.
     pub fn get_or_put(&mut self, key: &K, make: impl FnOnce() -> V) -> V
     where
         K: Copy + PartialEq,

@@ -1,12 +1,13 @@
 //! Shader assembly: plain WGSL files, in which the line `//!include "common/x.wgsl"` includes another file, once in
 //! each shader.
 //!
-//! A variant of a shader has other `override` constants, another entry point, or other files in place of some:
-//! `rain/drops_view.wgsl:multi` includes `common/host_multi.wgsl` instead of `common/host.wgsl`, and so for every file
-//! that has a version for `multi`. A name may have several such words. In this way a host's textures may have other
-//! types, and code that a pipeline does not need is not compiled: a driver that finds dead code only after it has
-//! inlined everything takes several times as long. There is no preprocessor. A test validates every assembled shader
-//! with naga ([`names`] lists them), and compares every uniform's offsets with naga's ([`struct_layout`]).
+//! Pipelines of one shader differ by their `override` constants or their entry point. A variant of a shader also has
+//! other files in place of some: `rain/drops_view.wgsl:multi` includes `common/host_multi.wgsl` instead of
+//! `common/host.wgsl`. Every other file that has a version for the word `multi` is replaced in the same way. A name may
+//! have several such words. In this way a host's textures may have other types, and code that a pipeline does not need
+//! is not compiled: a driver that finds dead code only after it has inlined everything takes several times as long.
+//! There is no preprocessor. A test validates every assembled shader with naga ([`names`] lists them), and compares
+//! every uniform's offsets with naga's ([`struct_layout`]).
 
 use std::{cell::Cell, sync::Arc};
 
@@ -25,7 +26,7 @@ fn source(name: &str) -> Option<&'static str> {
     table::SHADERS.binary_search_by_key(&name, |(n, _)| n).ok().map(|i| table::SHADERS[i].1)
 }
 
-/// Words of variants, each with a shader file that has that variant.
+/// Words of variants, each with a file. A shader that contains this file has the variant.
 const VARIANTS: [(&str, &str); 7] = [
     ("multi", "common/host.wgsl"),
     ("resolved", "common/host.wgsl"),
@@ -36,8 +37,8 @@ const VARIANTS: [(&str, &str); 7] = [
     ("lamps", "clouds/glow_view.wgsl"),
 ];
 
-/// Returns the names of shader `name` and of its variants with one word. For the composition, also returns some
-/// variants with several words, as examples of the rest.
+/// Returns the names of shader `name` and of its variants with one word of [`VARIANTS`]. For the composition, also
+/// returns some of its other variants, as examples of the rest.
 ///
 /// # Errors
 /// The errors of [`assemble`].
@@ -55,7 +56,8 @@ pub fn with_variants(name: &str) -> Result<Vec<String>> {
 /// colons select a variant.
 ///
 /// # Errors
-/// [`Status::Internal`] if a file is missing or includes form a cycle; the message has the chain of includes.
+/// [`Status::Internal`] if a file is missing or includes form a cycle, with the chain of includes in the message; also
+/// if no file of the shader has a version for one of the words.
 pub fn assemble(name: &str) -> Result<String> {
     assemble_from(name, &|n| source(n).map(str::to_owned))
 }

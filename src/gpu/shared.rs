@@ -26,7 +26,8 @@ impl Shared {
     /// Returns the one object of type `T`; `make` creates it at the first call.
     ///
     /// # Errors
-    /// The errors of `make`; [`Status::Poisoned`] after a panic in it.
+    /// The errors of `make`; the next call then tries again. [`Status::Poisoned`] after a panic in any call's `make`,
+    /// whatever its type.
     pub(crate) fn get<T: Send + Sync + 'static>(&self, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
         let poisoned = || Error::new(Status::Poisoned, "an earlier call panicked while it made what views share");
         let mut kept = self.kept.lock().map_err(|_| poisoned())?;

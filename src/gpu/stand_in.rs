@@ -1,5 +1,5 @@
-//! Picture that stands in for a window's image that can only be drawn to (OpenGL). The effects read and copy what is
-//! drawn so far from the stand-in; only the finished picture goes to the window.
+//! Picture that stands in for a window's image that can only be drawn to (OpenGL). The effects draw into the stand-in,
+//! and read and copy from it what is drawn so far. Only the finished picture goes to the window.
 
 use super::{
     Device,
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::error::Result;
 
-/// Texture like the window's image, and the pipeline that copies it there.
+/// Texture of the window's size and format, and the pipeline that copies it to the window's image.
 pub(super) struct StandIn {
     pub(super) texture: wgpu::Texture,
     pipeline: wgpu::RenderPipeline,
@@ -19,7 +19,7 @@ impl StandIn {
     /// Creates a stand-in for images of this format and size.
     ///
     /// # Errors
-    /// GPU faults come through [`Device::check`].
+    /// The errors of [`pass::fullscreen`].
     pub(super) fn new(
         device: &Device,
         (width, height): (u32, u32),

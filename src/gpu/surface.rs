@@ -14,8 +14,8 @@ use raw_window_handle as rwh;
 use super::{Device, DeviceOptions, instance, stand_in::StandIn};
 use crate::error::{Error, Result, Status};
 
-/// Native window. The pointers and numbers are the host's; what they name must outlive the device and surface made from
-/// them.
+/// Native window. The pointers and numbers are the host's. The window must outlive its surface, and the connection
+/// (display) must outlive the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NativeWindow {
     /// X11 through Xlib: `Display*`, screen number, `Window`.
@@ -318,7 +318,7 @@ impl Surface {
         })
     }
 
-    /// Returns the format of the images, once configured.
+    /// Returns the format of the images; `None` until the surface is first configured with a size above 0.
     pub fn format(&self) -> Option<wgpu::TextureFormat> {
         self.format
     }
@@ -335,8 +335,8 @@ impl Surface {
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a size beyond the device's largest texture; [`Status::Unsupported`] if the
-    /// window has no format for the encoding; [`Status::SurfaceOutdated`] if the window is gone;
-    /// [`Status::DeviceLost`].
+    /// window has no format for the encoding; [`Status::SurfaceOutdated`] if the window is gone or refuses to be
+    /// configured; [`Status::OutOfMemory`]; [`Status::DeviceLost`].
     pub fn configure(&mut self, options: &SurfaceOptions) -> Result<()> {
         let max = self.device.caps().max_texture_size;
         for (name, value) in [("width", options.width), ("height", options.height)] {
@@ -401,7 +401,7 @@ impl Surface {
     /// # Errors
     /// [`Status::SurfaceOutdated`]: configure again, with the window's present size (also while it is minimised);
     /// [`Status::Pending`]: the window shows nothing now (it is hidden, or the screen is busy), skip this frame;
-    /// [`Status::WrongOrder`] before the first configure; [`Status::DeviceLost`].
+    /// [`Status::WrongOrder`] before the first configure; [`Status::DeviceLost`]; a GPU fault.
     pub fn acquire(&mut self) -> Result<wgpu::Texture> {
         let device = self.device.clone();
         let _entered = device.enter()?;

@@ -1,5 +1,5 @@
-//! Windows API queries about windows and modules. They come before calls to drivers, which mishandle a destroyed window
-//! in various ways.
+//! Two uses of the Windows API: a check whether a window exists, made before calls to drivers, which mishandle a
+//! destroyed window in various ways; and a pin that keeps Welkin's module loaded.
 #![cfg(windows)]
 
 use std::ffi::c_void;

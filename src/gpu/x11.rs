@@ -1,5 +1,5 @@
 //! Check whether an X11 window exists. Drivers do not check: Mesa's EGL dereferences NULL for a window that is gone,
-//! and an X error that reaches Xlib's default handler ends the process. XCB answers without either.
+//! and an X error that reaches Xlib's default handler ends the process. The same question through XCB does neither.
 #![cfg(all(unix, not(any(target_os = "macos", target_os = "ios"))))]
 
 use std::ffi::{c_uint, c_void};
@@ -21,7 +21,7 @@ struct Cookie {
 struct Xcb {
     get_geometry: GetGeometry,
     get_geometry_reply: GetGeometryReply,
-    /// Needed only for Xlib displays.
+    /// `XGetXCBConnection`, needed only for Xlib displays; `None` without `libX11-xcb`.
     get_xcb_connection: Option<GetXcbConnection>,
 }
 
@@ -50,7 +50,8 @@ fn xcb() -> Option<&'static Xcb> {
     .as_ref()
 }
 
-/// Whether `window` exists on the server behind an XCB connection; `None` if that cannot be found out.
+/// Whether `window` exists on the server behind an XCB connection: the server must give its geometry. `None` without
+/// `libxcb`.
 ///
 /// # Safety
 /// `connection` is a live `xcb_connection_t*`.
@@ -67,7 +68,7 @@ pub(super) unsafe fn exists_xcb(connection: NonNull<c_void>, window: u32) -> Opt
     }
 }
 
-/// Answers as [`exists_xcb`] does, for an Xlib display.
+/// Answers as [`exists_xcb`] does, for an Xlib display; `None` also without `libX11-xcb`.
 ///
 /// # Safety
 /// `display` is a live `Display*`.

@@ -4,8 +4,8 @@
 //! hollow. The larger hollow fills up to the height at which it spills, and so on until the water finds the grid's
 //! border. This is the depression hierarchy of Barnes, Callaghan and Wickert (2020); the level at which each hollow
 //! spills is that of the priority-flood (Barnes, Lehman and Mulla 2014). Cells are visited from the lowest up, equal
-//! heights by cell number, so every cell except a pit has a lower neighbour that has been visited. Run-off takes the
-//! steepest of the eight directions. Water leaves at the border.
+//! heights by cell number, so every cell except pits and cells at the border has a lower neighbour, which was visited
+//! before. Run-off takes the steepest of the eight directions. Water leaves at the border.
 
 /// Index that means no hollow: water that drains there leaves the grid.
 pub(super) const OUT: u32 = u32::MAX;
@@ -15,8 +15,7 @@ const UNSEEN: u32 = u32::MAX - 1;
 /// Hollow of a terrain. Its water is counted in millimetres times cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Basin {
-    /// Larger hollow of which this hollow becomes a part when this hollow and its neighbours are full; [`OUT`] for
-    /// none.
+    /// Larger hollow that this hollow and another one form when both are full; [`OUT`] for none.
     pub parent: u32,
     /// Pit into which the hollow spills when it is full; [`OUT`] if the water leaves the grid.
     pub spills_to: u32,
@@ -154,8 +153,8 @@ impl Rising<'_> {
         };
     }
 
-    /// Handles a cell where several hollows meet and returns its owner. If ground that drains off the grid is among
-    /// them, each hollow ends there; otherwise they join, two at a time.
+    /// Handles a cell where several hollows meet and returns its owner. If a neighbour drains off the grid, each hollow
+    /// ends at the cell. Otherwise the hollows join, two at a time.
     fn saddle(&mut self, cell: usize, met: &[u32], size: (usize, usize)) -> u32 {
         if met.contains(&OUT) {
             let to = self.lowest_of(cell, OUT, size);

@@ -1,6 +1,6 @@
 //! Surface classes of the ground, and how water changes the look of each.
 //!
-//! | class | darkens | film | level above a depth of | puddles |
+//! | class | darkens | film | depth that covers the relief | puddles |
 //! | --- | --- | --- | --- | --- |
 //! | soil | as wet ground does | little: water soaks in, and clods are rough | 10 mm | on the host's terrain only |
 //! | rock | as wet ground does | in parts, on rough faces | 10 mm | on the host's terrain only |
@@ -10,8 +10,8 @@
 //! | building | as wet ground does | most of it | 1 mm | on the host's terrain only |
 //!
 //! Porous and rough ground under water darkens by one law (Angstrom 1925; Lekner & Dorf 1988), the same for soil and
-//! asphalt: dark soils have an albedo of 0.05 when wet, and light ones 0.4 when dry (Oke 1987, table 1.1). The shares
-//! of film and the slopes are estimates: no measurements of reflection from wet soil, rock and roofs were found.
+//! asphalt. Albedos of soil range from 0.05 (dark and wet) to 0.4 (light and dry; Oke 1987, table 1.1). The shares of
+//! film and the slopes are estimates: no measurements of reflection from wet soil, rock and roofs were found.
 
 pub(crate) use crate::terrain::CLASSES;
 pub use crate::terrain::SurfaceClass;
@@ -56,7 +56,8 @@ pub(crate) struct SurfaceLook {
     pub film: f32,
     /// Root mean square slope, along one axis, of the ground under the film, beyond the film's own slope.
     pub slope: f32,
-    /// Depth at which standing water covers most of the ground's relief, mm; with 0 no standing water is drawn.
+    /// Scale of the ground's relief, mm: standing water begins to cover the relief at 0.2 of this depth and covers all
+    /// of it at twice this depth. With 0 no standing water is drawn.
     pub relief_mm: f32,
     /// Upper limit of the albedo estimated from the host's colour.
     pub most_albedo: f32,
@@ -64,7 +65,7 @@ pub(crate) struct SurfaceLook {
     pub hollows: f32,
     /// Confidence that the ground is level, 0 to 1, used if neither terrain, normals nor depth give its slope.
     pub level: f32,
-    /// Share of the ground on which snow lies.
+    /// Factor on the share of the ground that lying snow covers: 0 on water, 1 on other classes.
     pub snow: f32,
 }
 

@@ -92,7 +92,7 @@ impl GroundGrid {
         place(self) == place(other) && self.heights_m == other.heights_m
     }
 
-    /// Returns the surface class of a cell.
+    /// Returns the surface class of a cell; [`SurfaceClass::Unspecified`] if the host gave no classes.
     pub(crate) fn class(&self, cell: usize) -> SurfaceClass {
         self.classes.get(cell).copied().unwrap_or_default()
     }
@@ -126,7 +126,8 @@ impl GroundGrid {
         })
     }
 
-    /// Returns the nodes around a place of the host's world if it is on this terrain and not high above it.
+    /// Returns the nodes around a place of the host's world, with their weights; `None` outside the grid, and at
+    /// [`ABOVE_M`] or more above its ground.
     pub(crate) fn on_terrain(&self, position: DVec3, to_enu: DMat3) -> Option<[(usize, f64); 4]> {
         let (cells, height) = self.cells_at(position, to_enu);
         let about = self.about(cells)?;

@@ -49,7 +49,8 @@ pub struct GroundAt {
 
 /// Interval at which the sunlight for evaporation is updated, s: a multiple of the step.
 const SUN_EVERY_S: f64 = 300.0;
-/// Longest leap of time that is simulated, s. A longer update restarts the state this long before its end.
+/// Longest leap of time that is simulated, s. A longer update restarts the state this long before its end, or up to
+/// [`SUN_EVERY_S`] earlier.
 const LONGEST_S: f64 = 86_400.0;
 
 /// Ground of a context.
@@ -63,13 +64,14 @@ pub(crate) struct HeldGround {
     pub(super) host: Option<Box<HostGround>>,
     /// Incremented whenever the water of the cells has changed.
     pub revision: u64,
-    /// Incremented whenever the host replaces the grid.
+    /// Incremented when the host sets a grid with other heights or removes the grid, and when a loaded state has
+    /// another one.
     pub generation: u64,
-    /// Incremented whenever the host sets new classes for its terrain.
+    /// Incremented whenever the grid's classes may have changed: with new classes, a new grid or a loaded state.
     pub classes_revision: u64,
     /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,
-    /// Start of the 10-s slot in which the terrain was set, s. Steps that begin earlier leave the terrain out.
+    /// Start of the 10-s slot in which the host set the grid, s. Steps that begin earlier leave the grid out.
     terrain_from_s: f64,
     /// Time, s, and revision of the water that was last published for the soil.
     pub(super) published: Option<(f64, u64)>,
@@ -103,7 +105,7 @@ pub(super) const TILES_KEY: &str = "terrain_tiles";
 const CLASS_KEY: &str = "surface_class";
 
 impl HeldGround {
-    /// Creates a dry, level ground.
+    /// Creates the ground of a new context: without a grid or tiles, and without simulated water.
     pub fn new(model: GroundModel, seed: u64) -> Self {
         Self {
             model,
@@ -123,8 +125,9 @@ impl HeldGround {
         }
     }
 
-    /// Replaces the grid, for [`Context::set_ground_grid`](crate::context::Context::set_ground_grid). A grid with the
-    /// same heights keeps its water.
+    /// Replaces the grid or, with `None`, removes it, for
+    /// [`Context::set_ground_grid`](crate::context::Context::set_ground_grid). A grid with the same heights keeps its
+    /// water.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -176,7 +179,8 @@ impl HeldGround {
         }))
     }
 
-    /// Returns the surface class at a place: that of the terrain's cell, else the default.
+    /// Returns the surface class at a place: that of the grid's nearest cell or of the tile's cell, else the context's
+    /// default.
     fn surface_class_at(&self, world: &World, position: DVec3) -> SurfaceClass {
         let tile = self.tile_class_at(world, position);
         let cell = self.host.as_ref().and_then(|held| {
@@ -200,12 +204,13 @@ impl HeldGround {
         self.host.as_ref().map(|held| (&held.terrain.grid, held.to_enu))
     }
 
-    /// Returns whether a step of the water ends at or before the present time.
+    /// Returns whether the water's next step ends at or before the present time and is therefore still to be done.
     fn is_behind(&self, world: &World) -> bool {
         self.state.is_some_and(|state| state.next_s() <= world.time_s)
     }
 
-    /// Returns the simulated water on level, open ground; `None` if the water is not simulated.
+    /// Returns the simulated water on level, open ground at the present time; before the first update that of the
+    /// reported cover. `None` if the water is not simulated.
     pub fn water(&self, world: &World) -> Option<GroundWater> {
         match (self.model, self.state) {
             (GroundModel::Reported, _) => None,
@@ -218,8 +223,7 @@ impl HeldGround {
         }
     }
 
-    /// Returns the cover of the ground now: `reported`, with the wetness and puddles of the simulated water if there is
-    /// one.
+    /// Returns the cover of the ground now: `reported`, with the wetness and puddles of the water if it is simulated.
     fn cover(&self, world: &World, reported: SurfaceCover) -> SurfaceCover {
         match self.water(world).map(|w| w.cover()) {
             Some((wetness, puddles)) => SurfaceCover { wetness, puddles, ..reported },
@@ -480,7 +484,8 @@ fn forcing(world: &World, c: &Conditions, state: &GroundState) -> Forcing {
     forcing_from(world, c, state.sunlight_w_m2, state.time_s)
 }
 
-/// Returns the snow on level, open ground: the simulated snow, else snow of the reported depth that is some days old.
+/// Returns the snow on level, open ground: the simulated snow, else the reported depth of snow with the density and
+/// albedo of snow some days old.
 fn snow_about(world: &World, now: &SceneMoment<'_>) -> SnowHere {
     if let Some(snow) = &world.snow {
         return snow.country;

@@ -28,8 +28,9 @@ fn hand_over<'a>(device: &Device, textures: impl Iterator<Item = &'a wgpu::Textu
 
 impl HeldGround {
     /// Returns the water on the host's terrain as an up-to-date texture for the host's own materials. Changes since the
-    /// last call are uploaded and submitted: at most every 10 s of simulation time. The texture object stays the same
-    /// until another grid is set or loaded; the next call of this function or the next frame of a view then drops it.
+    /// last call, which come at most every 10 s of simulation time, are uploaded and submitted. The texture object
+    /// stays the same until another grid is set or loaded; the next call of this function or the next frame of a view
+    /// then drops it.
     ///
     /// # Errors
     /// [`Status::WrongOrder`] without a terrain, [`Status::DeviceLost`], or a GPU fault.
@@ -89,8 +90,9 @@ impl HeldGround {
         Ok(GroundTexture { texture: water, snow, generation: 1, revision, uv_from_world: rows })
     }
 
-    /// Returns the texture views of the terrain's water and surface for drawing, brought up to date if `wanted`; `None`
-    /// without a grid.
+    /// Returns the texture views of the terrain's water and surface for drawing, brought up to date if `wanted`. `None`
+    /// without a grid, or if they were never wanted. If `wanted`, the host's GPU context must be current
+    /// ([`Device::enter`]).
     pub fn views(
         &self,
         device: &Arc<Device>,
@@ -102,7 +104,8 @@ impl HeldGround {
         filled.map_or([None, None], |f| f.views.clone().map(Some))
     }
 
-    /// Updates and returns the textures. The host's GPU context must be current ([`Device::enter`]).
+    /// Updates and returns the textures; `None` without a grid. The host's GPU context must be current
+    /// ([`Device::enter`]).
     fn fill<'a>(
         &self,
         device: &Arc<Device>,

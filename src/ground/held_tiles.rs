@@ -27,8 +27,8 @@ fn without_terrain() -> Error {
 }
 
 impl HeldGround {
-    /// Sets the lattice of a terrain without tiles, or removes the terrain; see
-    /// [`Context::set_terrain`](crate::context::Context::set_terrain).
+    /// Sets the lattice of a terrain that has no tiles yet, or removes the terrain; see
+    /// [`Context::set_terrain`](crate::context::Context::set_terrain). A new lattice also removes the host's grid.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] naming the field; nothing changes then.
@@ -161,12 +161,14 @@ impl HeldGround {
         Ok(stepped.is_some())
     }
 
-    /// Returns the water of level ground, which also lies on tiles without a state of their own.
+    /// Returns the water of level ground, simulated or else of the reported cover. Tiles without a state of their own
+    /// have the same water.
     pub(super) fn even_water(&self, world: &World) -> GroundWater {
         self.water(world).unwrap_or_else(|| GroundWater::of_cover(&world.timeline.at(world.time_s).surface))
     }
 
-    /// Returns the class of a tile's cell at a place; `None` off the tiles.
+    /// Returns the class of a tile's cell at a place; `None` off the tiles, and at [`ABOVE_M`] or more above their
+    /// ground.
     pub(super) fn tile_class_at(&self, world: &World, position: DVec3) -> Option<SurfaceClass> {
         let terrain = world.set.tiles.as_ref()?;
         let (_, height) = terrain.cells_at(position);
@@ -193,7 +195,7 @@ impl HeldGround {
         Some(Shown { terrain, water, even: self.even_water(world), ice: ice as f32, snow })
     }
 
-    /// Returns the water of each cell of a tile.
+    /// Returns the water of each cell of a tile; `None` if there is no such tile. A cell without ground has no water.
     pub fn tile_water<'a>(
         &'a self,
         world: &'a World,

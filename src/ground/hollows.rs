@@ -1,5 +1,5 @@
 //! Hollows of a ground whose heights are unknown: a sum of waves that is fixed to the host's world. This is the f64
-//! twin of `shaders/ground/hollows.wgsl`.
+//! reference of `shaders/ground/hollows.wgsl`.
 //!
 //! Waves have two advantages over noise on a lattice. The average of each wave over a pixel is known exactly, so
 //! distant puddles fade to their mean without flicker. The sum of the waves is normally distributed, so the water level
@@ -11,7 +11,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::chance::RandomStream;
 
-/// Distance after which the pattern repeats, m: a multiple of every wavelength.
+/// Distance along each axis after which the pattern repeats, m. Each wave makes a whole number of turns in it.
 pub const PERIOD_M: f64 = 1e4;
 /// Number of waves in the pattern.
 pub const WAVES: usize = 16;
@@ -19,9 +19,9 @@ pub const WAVES: usize = 16;
 /// numbers. They are the same in all worlds; only the phases depend on the seed. The shader has them as constants: some
 /// software drivers take longer to read a uniform block than to add a wave.
 ///
-/// The waves form three bands, with wavelengths of 17 to 7 m, 5.3 to 2.2 m and 1.7 to 0.8 m. Each band has enough waves
-/// to look irregular even where pixels are too coarse for the shorter bands. The directions of successive waves differ
-/// by the golden angle.
+/// The waves form three bands, with wavelengths of 14.9 to 7.7 m, 4.9 to 2.2 m and 1.4 to 0.8 m. Each band has enough
+/// waves to look irregular even where pixels are too coarse for the shorter bands. The directions of successive waves
+/// differ by the golden angle.
 const TURNS: [(i32, i32); WAVES] = [
     (513, 432),
     (-684, 28),
@@ -101,7 +101,7 @@ impl Hollows {
 }
 
 /// Returns the axes of the pattern in the host's world: the two of the world's three axes that are closest to
-/// horizontal. In an Earth-centred world the choice differs between six sides of the planet.
+/// horizontal. In an Earth-centred world the planet has six sides, and the choice changes from each side to the next.
 pub(crate) fn pattern_axes(world_to_enu: &DMat3) -> [DVec3; 2] {
     let up = (world_to_enu.transpose() * DVec3::Z).abs();
     if up.z >= up.x && up.z >= up.y {

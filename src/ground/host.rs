@@ -95,7 +95,8 @@ impl HostGround {
         true
     }
 
-    /// Sets each cell to `water`, the water of level, open ground; to less under boxes, and to more in rain areas.
+    /// Sets each cell to `water`, the water of level, open ground. Cells under boxes get less, and cells in rain areas
+    /// more.
     fn show(&mut self, c: &Conditions, water: &GroundWater, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let cells = self.rain.first_water(&self.terrain.grid.cells(), (c, water), overs, shelters);
         self.water = TerrainWater::new(&self.terrain, |cell| cells[cell]);
@@ -115,7 +116,7 @@ impl HostGround {
         Ok(self.step(&RainStep { conditions, forcing, seconds }, &overs, shelters))
     }
 
-    /// Discards the state; the next step begins with the ground as it is then.
+    /// Discards the state; the next step begins a new one with the water that level, open ground then has.
     pub fn begin_anew(&mut self) {
         (self.begun, self.shown) = (false, None);
     }
@@ -123,8 +124,8 @@ impl HostGround {
     /// Updates the values that depend only on the present weather, areas and shelter: the ice, and the water of a grid
     /// without a state. Returns whether anything may have changed.
     pub fn refresh(&mut self, world: &World, model: GroundModel, state: Option<&GroundState>) -> Result<bool> {
-        // Takes the weather at the beginning of the present step, so that this water changes only as often as a stepped
-        // state: weather and areas may change at any time.
+        // Takes the weather at the beginning of the present step, so that the derived water changes only as often as a
+        // stepped state: weather and areas may change at any time.
         let slot_s = ((world.time_s / STEP_S).floor() * STEP_S).max(world.timeline.known_from_s());
         let c = world.over().weather_at(self.rain.whole.middle, slot_s);
         if self.begun && c.surface.ice == 0.0 && !self.rain.is_iced() {

@@ -11,7 +11,7 @@ use crate::{
     weather::Falling,
 };
 
-/// Rain area over a grid.
+/// Rain area of the world, and its rain on a grid.
 #[derive(Clone, Copy)]
 pub(super) struct AreaOverGrid {
     pub shaft: Shaft,
@@ -34,7 +34,7 @@ pub(super) struct AreasOverGrid {
 }
 
 impl AreasOverGrid {
-    /// Returns all areas over the grid.
+    /// Returns all present areas, with those that do not reach the grid.
     pub fn all(&self) -> impl Iterator<Item = &AreaOverGrid> {
         self.list.iter().flatten()
     }

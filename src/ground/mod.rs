@@ -2,16 +2,17 @@
 //!
 //! **Drawing**. The surface pass ([`Stages::SURFACE`](crate::frame::Stages::SURFACE)) draws the water onto the host's
 //! picture, pixel by pixel from the host's depth. Wet ground is darker (Angstrom 1925; Lekner & Dorf 1988), and its
-//! rough film mirrors sky, sun and moon (Fresnel, n = 1.333). Standing water fills the hollows of a pattern that is
-//! fixed to the host's world. The water's surface is level, and smooth but for the rings of drops.
+//! rough film mirrors sky, sun, moon and the host's lamps (Fresnel, n = 1.333). Standing water fills the hollows of the
+//! host's terrain. Where heights are unknown, it fills those of a pattern that is fixed to the host's world. The
+//! surface of standing water is level; wind and the rings of drops roughen it a little.
 //!
 //! **Surface normals** come from the host's image of normals, else from its terrain, else from the depths around a
 //! pixel. The error of a normal from depths limits how strongly a surface mirrors. Level ground catches all rain, walls
 //! less, undersides none.
 //!
 //! **Surface classes** ([`SurfaceClass`]: what the ground is made of) come from an image, else from the terrain's
-//! cells, else from the context. A closed film and puddles belong to paved ground. The cost is one sky lookup a pixel,
-//! and nothing where the ground is dry.
+//! cells, else from the context. Only paved ground has a closed film everywhere, and puddles where heights are unknown.
+//! The cost is one sky lookup a pixel, and nothing where the ground is dry.
 //!
 //! **Accuracy**. The result is right for a host that hands over scene-linear luminance: the albedo of the ground then
 //! follows from its luminance and the light on it. A surface in shadow is taken for a dark surface in the light, and

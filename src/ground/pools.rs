@@ -109,8 +109,8 @@ impl Pools {
         gone
     }
 
-    /// Takes water from the parts of a hollow in proportion to their surfaces. Returns the water that no part can give,
-    /// mm times cells.
+    /// Passes a loss of `water`, mm times cells, down to the parts of a hollow, in proportion to their surfaces when
+    /// full. Returns the loss if no part can hold water, otherwise 0.
     fn pass(&mut self, basins: &Basins, basin: usize, water: f64) -> f64 {
         // Parts without a capacity of their own have no water.
         let holding = || basins.parts(basin).filter(|part| basins.list[*part].capacity > 0.0);
@@ -156,8 +156,8 @@ mod tests {
         (0..basins.list.len()).map(level).collect()
     }
 
-    /// Creates basins of level ground with two pits, 0.3 m and 0.2 m deep, and a saddle 0.1 m below the ground between
-    /// them.
+    /// Creates basins of level ground with two pits, 0.3 m and 0.2 m deep. The saddle between the pits is 0.1 m below
+    /// the ground.
     fn two_pits() -> Basins {
         let mut row = vec![0.0f32; 9];
         (row[2], row[3], row[4], row[5]) = (-0.3, -0.3, -0.1, -0.2);

@@ -72,9 +72,9 @@ pub(super) struct GridRain {
     shadow: Shadow,
     /// Ice on the grid.
     glaze: Glaze,
-    /// Precipitation on every cell in this step, mm, before boxes keep any of it off; `None` if cells differ.
+    /// Precipitation on every cell in the last step, mm, before boxes keep any of it off; `None` if cells differ.
     even_mm: Option<f64>,
-    /// Precipitation on each cell in this step, mm, less the part that boxes keep off, if `even_mm` is `None`.
+    /// Precipitation on each cell in the last step, mm, less the part that boxes keep off, if `even_mm` is `None`.
     rates: Vec<f64>,
 }
 
@@ -203,7 +203,8 @@ impl GridRain {
         }
     }
 
-    /// Returns the first and last column and row to which the shadow of a box can reach.
+    /// Returns the first and last column, and the first and last row, to which the shadow of a box can reach; `None` if
+    /// it cannot reach the grid.
     fn shadow_within(&self, grid: &CellGrid<'_>, shelter: &Shelter, velocity: DVec3) -> Option<[[usize; 2]; 2]> {
         let center = self.to_enu * (shelter.center_m - grid.origin);
         let radius = shelter.half_size_m.length();
@@ -236,7 +237,7 @@ impl GridRain {
         DropSizes::new(&heaviest, factor_in(&c.air, self.altitude_m)).thirds_m_s()
     }
 
-    /// Returns whether any cell is under ice.
+    /// Returns whether there is ice on open ground; boxes may still keep it off every cell.
     pub fn is_iced(&self) -> bool {
         self.glaze.ice > 0.0
     }
@@ -247,7 +248,8 @@ impl GridRain {
         self.shade_rain(grid, c, overs, shelters);
         let own = liquid(&c.precipitation);
         let liquid_stays = 1.0 - c.precipitation.freezing;
-        // Meltwater of falling snow and ice, mm/h, is the same everywhere.
+        // Liquid beside the weather's rain, mm/h, the same everywhere: meltwater, less the rain that lying snow takes
+        // up.
         let melting = forcing.liquid_mm_h - own * liquid_stays;
         let hours = seconds / 3600.0;
         let fallen_mm = |liquid: f64| ((liquid * liquid_stays + melting) * hours).max(0.0);
@@ -347,7 +349,7 @@ impl GridRain {
         }
     }
 
-    /// Returns the rain areas over the terrain at a time; `c` is the weather at that time.
+    /// Returns the world's rain areas at a time, and which of them reach the grid; `c` is the weather at that time.
     pub fn overs(&self, world: &World, time_s: f64, c: &Conditions) -> Result<AreasOverGrid> {
         let mut overs = AreasOverGrid { list: [None; MAX_AREAS], evens: [None; MAX_AREAS] };
         if world.set.regions.is_empty() {

@@ -1,5 +1,5 @@
-//! Reflection of light by water, in f64: the twin of `shaders/ground/optics.wgsl`, with the same names and order of
-//! parameters.
+//! Reflection of light by water, in f64: the reference of `shaders/ground/optics.wgsl`, with the same names and order
+//! of parameters.
 
 pub use crate::chance::normal_quantile;
 use std::f64::consts::PI;
@@ -58,7 +58,7 @@ pub fn seen_area(slope: f64, cosine: f64) -> f64 {
 
 /// Returns the luminance of the glitter of a lamp of illuminance 1 on rough water, divided by the Fresnel share (Cox &
 /// Munk 1954, eq. 5, with the shadowing of facets by each other). `normal` is that of the surface, `facet` the normal
-/// of the facet that reflects the lamp's centre into the eye, `disc2` = (radius of the lamp / 4)^2, rad^2.
+/// of the facet that reflects the lamp's centre into the eye, `disc2` = (angular radius of the lamp / 4)^2, rad^2.
 pub fn glitter(slope: f64, disc2: f64, normal: DVec3, facet: DVec3, to_eye: DVec3, to_lamp: DVec3) -> f64 {
     let (c, lit, seen) = (normal.dot(facet), normal.dot(to_lamp), normal.dot(to_eye));
     let area = seen_area(slope, seen) * seen_area(slope, lit);

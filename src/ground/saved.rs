@@ -1,5 +1,5 @@
-//! Saved form of a terrain and its water as text. Each number is the hexadecimal word of its bits; a run of n equal
-//! numbers is written as "bits*n".
+//! Saved form of the host's grid and its water as text. Each number is the hexadecimal word of its bits; a run of n
+//! equal numbers is written as "bits*n".
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -30,13 +30,14 @@ pub(super) struct SavedGround {
     /// Numbers of the cells' classes; left out if no cell has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     classes: String,
-    /// Film and soaked water of each cell, mm, and water in each hollow, mm times cells; as bits of f64.
+    /// Film and soaked water of each cell, mm, and water in each hollow, mm times cells (-1 for a hollow whose parts
+    /// hold separate lakes), as bits of f64.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     water: Option<[String; 3]>,
 }
 
 impl SavedGround {
-    /// Writes a terrain and its water.
+    /// Creates the saved form of a grid and its water.
     pub fn of(held: &HostGround) -> Self {
         let grid = &held.terrain.grid;
         let column = |i: usize| words(held.water.top.iter().map(move |t| t[i].to_bits()));

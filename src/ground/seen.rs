@@ -17,7 +17,8 @@ pub(crate) struct GroundSeen<'a> {
     pub snow: SnowHere,
     /// Whether any snow lies on the terrain.
     pub has_snowy_terrain: bool,
-    /// Whether the terrain's cells have snow of their own.
+    /// Whether the terrain's cells have snow of their own, which is simulated; otherwise the snow of level, open ground
+    /// lies on them.
     pub terrain_has_snow: bool,
     /// Surface class of ground for which the host gives none.
     pub surface_class: SurfaceClass,

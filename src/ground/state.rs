@@ -10,7 +10,7 @@ use crate::{error::Result, weather::Conditions, world::World};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundModel {
     /// Wetness from the present weather: the reported wetness, or the wetness that the present rain keeps up. There is
-    /// no state: when rain ends, the ground is dry at once.
+    /// no state: when rain ends, the wetness that it kept up is gone at once.
     #[default]
     Reported,
     /// Simulated water: rain adds to it, and it drains and dries by wind, sun and humidity ([`crate::ground::water`]).

@@ -17,8 +17,8 @@ use super::{
 
 /// Number of cells in a run. A run is skipped in a step if nothing falls, flows or dries on any of its cells.
 pub(crate) const RUN: usize = 64;
-/// Standing water, mm, of a cell in a dry hollow or in no hollow. The more negative this value, the closer to the
-/// puddle's water its interpolated edge lies.
+/// Standing water, mm, of a cell in a dry hollow or in no hollow. The more negative this value, the closer the
+/// interpolated edge of a puddle lies to the cells under water.
 const BARE_MM: f32 = -50.0;
 
 /// Terrain of the host and its hollows.
@@ -146,7 +146,7 @@ impl TerrainWater {
         new
     }
 
-    /// Returns the volume of water in each hollow, mm times cells.
+    /// Returns the volume of water in each hollow, mm times cells, in the form of [`Pools::held`].
     pub fn held(&self) -> &[f64] {
         &self.pools.held
     }

@@ -20,19 +20,20 @@ pub const SNIPPET_WGSL: &str = include_str!("../../shaders/snippets/welkin_groun
 /// GLSL text of the functions in [`SNIPPET_WGSL`], for GLSL 3.30 and GLSL ES 3.00.
 pub const SNIPPET_GLSL: &str = include_str!("../../shaders/snippets/welkin_ground.glsl");
 
-/// Water on the host's terrain for the host's own shaders: the values of [`GroundCell`](crate::ground::GroundCell), one
-/// texel per node.
+/// Water on the host's terrain, on a grid or on tiles, for the host's own shaders: the values of
+/// [`GroundCell`](crate::ground::GroundCell), one texel per node.
 #[derive(Clone, Debug)]
 pub struct GroundTexture {
     /// RGBA half floats: film in mm, soaked share of the pores, standing water in mm, share under ice. Standing water
     /// is negative where none stands: minus the height of the ground above its hollow's water level, or -50 where the
-    /// hollow is dry. The texture belongs to the context. The next
-    /// [`Context::ground_texture`](crate::context::Context::ground_texture) and frames with
-    /// [`Stages::SURFACE`](crate::frame::Stages::SURFACE) update it.
+    /// hollow is dry. The texture belongs to the context, and the next call of the function that returned it updates
+    /// it. The texture of a grid is also updated by frames with [`Stages::SURFACE`](crate::frame::Stages::SURFACE).
     pub texture: wgpu::Texture,
-    /// Incremented whenever `texture` is replaced, which happens when another grid is set or loaded.
+    /// Incremented whenever `texture` is replaced, which happens when another grid is set or loaded. Always 1 for
+    /// tiles.
     pub generation: u64,
-    /// Value of [`Context::ground_revision`](crate::context::Context::ground_revision) for the contents.
+    /// Value of [`Context::ground_revision`](crate::context::Context::ground_revision) for the contents of a grid's
+    /// texture. For tiles, the number of writes to the textures so far.
     pub revision: u64,
     /// Snow on the same nodes, RGBA half floats: depth in m, density in kg/m^3, wetness, albedo of visible light.
     /// `None` without simulated snow ([`LyingSnowModel`](crate::snowpack::LyingSnowModel)). Replaced and updated
@@ -119,7 +120,7 @@ impl TerrainTextures {
         self.filled = Some(filled);
     }
 
-    /// Returns the up-to-date snow texture for the host.
+    /// Returns the up-to-date snow texture for the host; `None` without simulated snow.
     pub fn host_snow(&mut self, device: &Device, snow: Option<&LyingSnow>) -> Option<wgpu::Texture> {
         let (filled, snow) = (self.filled.as_mut()?, snow?);
         let [width, height] = [filled.water.width(), filled.water.height()];

@@ -38,7 +38,7 @@ const CLOSED_FILM_SLOPE: f64 = 0.15;
 /// Mean square slope of puddles by wind, as a share of that of the open sea (Cox & Munk 1954: 0.00512 per m/s, both
 /// axes together). It is small because puddles are only a few metres long.
 const PUDDLE_SHARE_OF_SEA: f64 = 0.03;
-/// Mean square slope of puddles by the rings of drops, per mm/h of rain.
+/// Mean square slope of puddles by the rings of drops, per mm/h of rain up to 50 mm/h.
 const RING_SLOPE2_PER_MM_H: f64 = 2e-4;
 
 /// Uniform block `GroundUniform` of `shaders/ground/uniform.wgsl`, whose comments describe each field.
@@ -138,7 +138,8 @@ pub(crate) struct WetScene<'a> {
     pub normals: (DMat3, [f32; 2]),
 }
 
-/// Width of the border zone of a terrain, in cells, in which it fades into the level, open ground around it.
+/// Width, in cells, of the border zone in which a terrain fades into the level, open ground around it. On a small
+/// terrain the zone is a quarter of the shorter side.
 const TERRAIN_RIM: f64 = 2.0;
 /// Largest distance from a terrain at which a surface still belongs to the terrain: a constant part, m, and a share of
 /// the cell size.

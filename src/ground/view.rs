@@ -28,7 +28,7 @@ const MOST_UNITS: f64 = 6e4;
 /// Ground of a view.
 pub(crate) struct GroundView {
     uniform: UniformBlock,
-    /// Uniform block of the frame; `None` if no surface has water or snow.
+    /// Uniform block of the frame; `None` if no surface has water or snow, or if the frame lacks colour or depth.
     block: Option<GroundUniform>,
     /// Whether the host's terrain is around the camera.
     has_terrain: bool,
@@ -44,7 +44,7 @@ pub(crate) struct GroundView {
 }
 
 impl GroundView {
-    /// Creates the part of a view that draws the ground.
+    /// Creates the ground of a new view.
     pub fn new(device: &Device, blocks: &Blocks) -> Self {
         let uniform = blocks.block(device, size_of::<GroundUniform>());
         let (window, drops) = (TerrainWindow::default(), DropsKept::default());

@@ -1,12 +1,12 @@
 //! Simulated water of level, open ground: a film, water in the pores, and water in hollows, all in mm averaged over the
 //! whole ground.
 //!
-//! The state advances in steps of [`STEP_S`] that begin at whole multiples of [`STEP_S`], so the result does not depend
-//! on how often a caller asks for it. In a step the rain that does not freeze wets the ground, pores fill, the film
-//! runs off into the hollows and away, hollows leak and overflow, and everything dries by Penman's law. Each of these
-//! processes is solved over the whole step, so no step can overshoot. Freezing, thawing and dew are not modelled. On
-//! the host's terrain (`terrain.rs`) each cell has film and pores by these laws, and run-off collects in the hollows of
-//! the terrain.
+//! The state advances in steps that end at whole multiples of [`STEP_S`], so the result does not depend on how often a
+//! caller asks for it. Each step is [`STEP_S`] long; only the first may be shorter. In a step the rain that does not
+//! freeze wets the ground, pores fill, the film runs off into the hollows and away, hollows leak and overflow, and
+//! everything dries by Penman's law. Each of these processes is solved over the whole step, so no step can overshoot.
+//! Freezing, thawing and dew are not modelled. On the host's terrain (`terrain.rs`) each cell has film and pores by
+//! these laws, and run-off collects in the hollows of the terrain.
 
 use super::reference::{normal_density, normal_quantile, normal_share};
 use crate::{
@@ -22,15 +22,15 @@ pub(crate) const PORES_MM: f64 = 0.4;
 /// Time constant with which pores take up the water on them, s.
 const SOAK_S: f64 = 90.0;
 /// Run-off coefficient k of a film, mm^-2 s^-1: d film / dt = -k film^3 on a slope of 2 % and 5 m length. The flux per
-/// metre of width is g sin(slope) / (3 nu) film^3 (Nusselt 1916).
+/// metre of width is g sin(slope) / (3 nu) film^3 (Nusselt 1916), with the kinematic viscosity nu = 1.3e-6 m^2/s.
 const RUN_OFF: f64 = 9.81 * 0.02 / (3.0 * 1.3e-6) / 5.0 * 1e-6;
-/// Share of the run-off that flows into a hollow.
+/// Share of the run-off that flows into hollows. The rest leaves the ground.
 const INTO_HOLLOWS: f64 = 0.4;
 /// Root mean square depth of hollows, mm.
 const HOLLOW_MM: f64 = 6.0;
 /// Share of the ground under water at which the hollows overflow.
 const OVERFLOW_SHARE: f64 = 0.35;
-/// Leakage from hollows into the ground below, mm/h.
+/// Leakage of standing water into the ground below, mm/h.
 const LEAK_MM_H: f64 = 0.4;
 /// Depth of asphalt's texture, mm. A film of the depth F, mm, covers the share 1 - exp(-F / 0.15 mm) of the ground.
 const FILM_MM: f64 = 0.15;
@@ -50,10 +50,10 @@ pub struct GroundWater {
     pub hollows_mm: f64,
 }
 
-/// Liquid that falls and water that evaporates during a step.
+/// Liquid that reaches the ground and water that evaporates during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forcing {
-    /// Rate at which liquid falls, mm/h.
+    /// Rate at which liquid reaches the ground, mm/h: rain and drizzle that do not freeze, and meltwater.
     pub liquid_mm_h: f64,
     /// Evaporation rate of open water, mm/h.
     pub evaporation_mm_h: f64,
@@ -70,8 +70,8 @@ impl Forcing {
 }
 
 impl Forcing {
-    /// Returns the forcing under snow whose melting is simulated: the snow absorbs the rain that falls on it and
-    /// releases its own run-off.
+    /// Returns the forcing under snow whose melting is simulated. The snow absorbs the rain that falls on it and all
+    /// falling snow and ice, and releases its own run-off.
     pub(crate) fn under_snow(self, c: &Conditions, snow: Meltwater) -> Self {
         let f = &c.precipitation;
         let rain_mm_h = (f.rain_mm_h + f.drizzle_mm_h) * (1.0 - f.freezing);
@@ -126,7 +126,8 @@ fn covered_by(water_mm: f64) -> f64 {
 }
 
 impl GroundWater {
-    /// Creates the water of a ground with this cover.
+    /// Creates the water of a ground with this cover. A wetness above 0.965 counts as 0.965, and a share of puddles
+    /// above 0.35 as 0.35.
     pub fn of_cover(cover: &SurfaceCover) -> Self {
         let film = ((cover.wetness - DAMP) / (1.0 - DAMP)).clamp(0.0, 0.95);
         Self {

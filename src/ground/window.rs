@@ -3,8 +3,8 @@
 //!
 //! A window has 512 x 512 cells around the place and moves in steps of 64 cells. A texel is a cell, so with cells of 1
 //! m the window reaches 224 to 288 m from the camera; beyond the window the ground is drawn as level and open. Only
-//! changed parts are filled and uploaded: everything if the window moves, all water if the water has changed, else the
-//! rectangles in which the ground changed.
+//! changed parts are filled and uploaded: everything if the window moves; otherwise the rectangles in which the ground
+//! changed, all water if the water has changed, and all snow if the snow has.
 
 use glam::{DMat3, DVec3};
 use half::f16;
@@ -22,7 +22,7 @@ const WINDOW: i32 = 512;
 const STEP: i32 = 64;
 /// Height stored for a hole, m: so high that no surface of the host lies near it.
 const NOWHERE_M: f32 = 1e6;
-/// Value of standing water for a cell without any near it, mm.
+/// Value of standing water, mm, for a cell that has none on it or beside it.
 const BARE_MM: f64 = -50.0;
 
 /// Grid of nodes that a frame draws: a whole grid, or a window of a tiled terrain.
@@ -135,7 +135,8 @@ impl TerrainWindow {
         self.textures.as_ref().map(|(textures, _)| textures)
     }
 
-    /// Returns the up-to-date views of water and surface around a camera.
+    /// Returns the up-to-date views of the window's two textures around a camera or place; `None` if no tile reaches
+    /// into the window.
     pub(super) fn views(&mut self, device: &Device, eye: DVec3, shown: &Shown<'_>) -> [Option<wgpu::TextureView>; 2] {
         let Some(rect) = window(shown.terrain, eye) else { return [None, None] };
         let terrain = shown.terrain;
@@ -161,7 +162,7 @@ impl TerrainWindow {
         if is_wet_anew {
             self.fill(device, shown, (rect, rect), WindowPart::Water);
         }
-        // Fills the snow anew if it has changed. A new texture is empty, which is revision 0.
+        // Fills the snow anew if it has changed. A new texture is empty, as the snow is at revision 0.
         if before.map_or(0, |f| f.snow) != now.snow {
             self.fill(device, shown, (rect, rect), WindowPart::Snow);
         }
@@ -271,8 +272,8 @@ impl TerrainWindow {
     }
 }
 
-/// Returns the highest water level beside a cell minus the cell's height, mm (negative). Interpolation with this value
-/// puts the shore where the water's level meets the ground between the two cells.
+/// Returns the highest water level beside a cell minus the cell's height, mm, from [`BARE_MM`] to 0. Interpolation with
+/// this value puts the shore where the water's level meets the ground between the two cells.
 fn shore(shown: &Shown<'_>, cell: u32) -> f64 {
     if !shown.water.has_lakes_near(shown.terrain, cell) {
         return BARE_MM;

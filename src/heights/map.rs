@@ -56,7 +56,7 @@ impl HeightMap {
         Ok(self)
     }
 
-    /// Returns the map with the distance and place of its samples from a file.
+    /// Returns the map with this distance between its samples and this place of its south-western sample.
     pub(super) fn placed(mut self, cell: Option<[f64; 2]>, south_west: Option<[f64; 2]>) -> Self {
         (self.cell, self.south_west) = (cell, south_west);
         self

@@ -12,8 +12,8 @@
 //!
 //! A height is `base + step x number` ([`HeightScale`]), so whole numbers keep their full precision, and feet become
 //! metres. The caller names the number that means no data; NaN always does. For a damaged file every reader returns an
-//! error that names the file, the place in it and what is accepted. Other formats must be converted first, by
-//! `gdal_translate`, which writes each of these formats; `docs/heights.md` has the commands.
+//! error that names the file or its format, the place in it and what is accepted. Other formats must be converted
+//! first, by `gdal_translate`, which writes each of these formats; `docs/heights.md` has the commands.
 //!
 //! [`HeightMap::resampled`] keeps the mean height. It averages, over each new cell, the piecewise parabolas of Colella
 //! and Woodward (1984, *The Piecewise Parabolic Method*, equations 1.5 to 1.9), whose mean in each old cell is the

@@ -76,7 +76,8 @@ impl NoiseTerrain {
             if octave > 0 && wavelength < 2.0 * cell_m {
                 break;
             }
-            // Octaves whose corners coincide would all be 0 at the origin.
+            // Each octave is shifted by an offset of its own: it is 0 at its cells' corners, so unshifted octaves would
+            // all be 0 at the origin.
             let key = mixed(mixed(self.seed).wrapping_add(octave as u64));
             let part = |shift: u32| f64::from((key >> shift) as u16) / 65_536.0;
             let noise = gradient_2d(place / wavelength + DVec2::new(part(0), part(16)), PERIOD, (key >> 32) as u32);
@@ -101,7 +102,8 @@ impl HeightMap {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a size that [`HeightMap::new`] refuses, a distance outside
-    /// \[0.01, 10 000\] m, a place farther than 1e7 m, and fields of `terrain`; [`crate::Status::OutOfMemory`].
+    /// \[0.01, 10 000\] m, a `south_west_m` farther than 1e7 m from 0 in either direction, and fields of `terrain`;
+    /// [`crate::Status::OutOfMemory`].
     pub fn generate(
         columns: u32,
         rows: u32,

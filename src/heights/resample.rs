@@ -82,8 +82,8 @@ impl Line {
         Self { old, new: new as usize }
     }
 
-    /// Returns the end of `index` new cells: the old cell in which it lies and the part of that cell before it. Whole
-    /// numbers leave no gap and no overlap between new cells.
+    /// Returns the end of the first `index` new cells: the old cell in which this end lies, and the part of that cell
+    /// before it. Whole numbers leave no gap and no overlap between new cells.
     fn end(self, index: usize) -> (usize, f64) {
         let end = index as u64 * self.old as u64;
         ((end / self.new as u64) as usize, (end % self.new as u64) as f64 / self.new as f64)
@@ -111,8 +111,8 @@ impl Line {
     }
 
     /// Returns the integral of the parabola of cell `i` over a part of that cell. The parabola's value at each edge is
-    /// that of the cubic through the sums of the four cells around the edge (equation 1.6 for equal cells). Beyond the
-    /// last known cell, heights continue linearly.
+    /// that of the cubic whose means over the four cells around the edge are the heights of these cells (equation 1.6
+    /// for equal cells). Beyond the last known cell, heights continue linearly.
     fn integral(self, i: usize, begin: f64, end: f64, cell: impl Fn(usize) -> PartlyKnown) -> f64 {
         let mean = cell(i).value;
         if begin == 0.0 && end == 1.0 {

@@ -20,8 +20,8 @@ impl Default for HeightScale {
 }
 
 impl HeightScale {
-    /// Returns the finest scale by which all heights of a map have numbers from 1 to 65 535. The number 0 stays free
-    /// and may mean no data.
+    /// Returns the finest scale, with steps of at least 1e-6 m, by which all heights of a map have numbers from 1 to
+    /// 65 535. The number 0 stays free and may mean no data.
     pub fn fitting(map: &HeightMap) -> Self {
         let [low, high] = map.range_m().unwrap_or_default().map(f64::from);
         let step_m = ((high - low) / 65_534.0).max(1e-6);
@@ -93,8 +93,8 @@ pub struct HeightSettings {
     /// Number in the file that means no data, before it is scaled, such as -9999 or -32768. NaN always means no data,
     /// and so do the number that an ESRI ASCII grid names and transparent pixels of a PNG. Default: none.
     pub no_data: Option<f64>,
-    /// Layout of a raw file. `None`, the default, for files of the other formats, which are recognised by their first
-    /// bytes.
+    /// Layout of a raw file. With `None`, the default, files have one of the other formats, which are recognised by
+    /// their first bytes.
     pub raw: Option<RawHeights>,
 }
 

@@ -59,8 +59,8 @@ impl LandLight {
         }
     }
 
-    /// Returns the light at the ground below the camera. Outside the terrain's bounds it is the light at the nearest
-    /// place within them.
+    /// Returns the light at the ground below the camera; up to [`AT_GROUND_M`] above the ground it is the light at the
+    /// camera. Outside the terrain's bounds the ground is that of the nearest place within them.
     ///
     /// # Errors
     /// As [`crate::world::World::scene_named`].

@@ -15,7 +15,7 @@ const TURN: f64 = 0.61;
 /// Number of materials: one for each class of surface.
 pub(super) const MATERIALS: usize = 7;
 
-/// Colours of a material, linear Rec. 709 albedo.
+/// Colours of a material, linear Rec. 709 albedo; the fourth number of each is unused.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Material {
@@ -35,8 +35,8 @@ const fn material(albedo: [f32; 3], fine: [f32; 3], broad: [f32; 3]) -> Material
 }
 
 /// Materials by class number: for class 0 the grass of natural ground, then soil, rock, asphalt, grass, the bed of
-/// water and concrete. Their luminances are within the ranges of Oke 1987, table 1.1, for visible light: grass 0.05 to
-/// 0.10, dry soil 0.10 to 0.20, asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
+/// water and concrete. The luminances of four of them are within the ranges of Oke 1987, table 1.1, for visible light:
+/// grass 0.05 to 0.10, dry soil 0.10 to 0.20, asphalt 0.05 to 0.20, concrete 0.10 to 0.35.
 pub(super) const CLASS_MATERIALS: [Material; MATERIALS] = [
     material([0.070, 0.080, 0.038], [0.013, 0.015, 0.007], [0.012, 0.009, 0.006]),
     material([0.190, 0.140, 0.095], [0.030, 0.023, 0.017], [0.024, 0.018, 0.012]),
@@ -72,7 +72,7 @@ pub(super) fn octaves(eye_m: DVec3) -> [Octave; OCTAVES] {
         let at = turned(i) * eye_m / length;
         let low = at.floor();
         let part = at - low;
-        // Cells count modulo 2^32: a pattern of 4 cm repeats after 180 000 km.
+        // Cells count modulo 2^32: the pattern of the shortest octave, 4.3 cm, repeats after 180 000 km.
         let cell = |v: f64| v.rem_euclid(4_294_967_296.0) as u32 as i32;
         let (sine, cosine) = libm::sincos(TURN * i as f64);
         Octave {

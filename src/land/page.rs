@@ -22,7 +22,7 @@ pub(super) const VERTICES: i32 = NODE + 1;
 /// Texels along a side of a page: four for each square, and two more for interpolation at the eastern and northern
 /// edges.
 pub(super) const TEXELS: i32 = 4 * NODE + 2;
-/// Number of texels beyond each side of a page whose heights the slopes need.
+/// Number of texels beyond each side of a page at which heights are also read, because the page's slopes need them.
 const MARGIN: i32 = 3;
 /// Number of heights along a side of the square that is read for the texels of a page.
 const READ: i32 = TEXELS + 2 * MARGIN;
@@ -185,7 +185,8 @@ impl PageWriter {
         }
     }
 
-    /// Mean of the dug soil in the square of a texel around a lattice position.
+    /// Mean of the dug soil in the square of a texel around a lattice position. A cell at the upper edge of a wall of
+    /// soil shows the terrain's `surface_soil`.
     fn dug_texel(&self, cells: &mut CellReader<'_>, place: [i32; 2], side: i32) -> DugTexel {
         let (mut sum, mut share, mut last) = ([0.0; 3], 0, DugColor::default());
         let samples = samples(side);
@@ -270,7 +271,7 @@ pub(super) fn shows_soil(terrain: &Terrain) -> bool {
     terrain.soil_revision > 0
 }
 
-/// Whether a texel of a page has no ground.
+/// Whether any texel of a page has no ground.
 pub(super) fn has_holes(cells: &mut CellReader<'_>, page: NodeKey) -> bool {
     PageRect::texels(page.level).places().any(|at| cells.class(position(page, at)).is_none())
 }
@@ -296,7 +297,8 @@ impl TexelSamples {
     }
 }
 
-/// Shares of the classes in the square of a texel around a lattice position.
+/// Shares of the classes in the square of a texel around a lattice position; all 0 if the position itself has no
+/// ground.
 fn classes(cells: &mut CellReader<'_>, place: [i32; 2], side: i32, default: u8) -> ClassTexel {
     let mut texel = [0; 8];
     let Some(own) = cells.class(place) else { return texel };

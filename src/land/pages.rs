@@ -25,8 +25,9 @@ const MOST_SLOTS: u32 = 2048;
 
 /// Textures of the pages.
 pub(super) struct PageTextures {
-    /// Heights of the vertices.
+    /// Heights of the vertices, m.
     pub vertices: wgpu::Texture,
+    /// Slopes to the east and the north, on the page's level and on the next coarser one.
     pub slopes: wgpu::Texture,
     /// Shares of the first four classes, and of the other three with the presence of ground.
     pub classes: [wgpu::Texture; 2],
@@ -57,9 +58,9 @@ struct PageSlot {
     page: Option<NodeKey>,
     /// Number of the last picture that used the page.
     used: u64,
-    /// Whether a texel has no ground.
+    /// Whether any texel of the page has no ground.
     has_holes: bool,
-    /// Whether a vertex has no ground.
+    /// Whether any vertex of the page has no ground.
     is_torn: bool,
 }
 
@@ -82,7 +83,7 @@ pub(super) struct Pages {
     default_class: u8,
     /// Whether the pages have colours of dug soil.
     pub has_dug: bool,
-    /// Texels written since the view was created.
+    /// Texels written since these pages were created, or since [`Self::begin`] began them anew.
     #[cfg(test)]
     pub texels_written: u64,
 }
@@ -93,7 +94,8 @@ impl Pages {
         Self { is_bare: true, ..Self::default() }
     }
 
-    /// Begins a picture of a terrain in which cells without a class have the class `default`.
+    /// Begins a picture of a terrain in which cells without a class have the class `default`. Forgets all pages if this
+    /// class has changed, or if the terrain has got its first dug soil or lost it.
     pub fn begin(&mut self, terrain: &Terrain, default: u8) {
         self.picture += 1;
         if !self.is_bare && self.has_dug != shows_soil(terrain) {
@@ -146,8 +148,9 @@ impl Pages {
         Some(slot as u32)
     }
 
-    /// Writes an instance for each patch, with the slot of its page, and fills pages that have no slot yet. If there is
-    /// no room for a page, its patch and all later patches are left out.
+    /// Writes an instance for each patch, with the slot of its page, and fills pages that have no slot yet. If there
+    /// are too few slots, their number is doubled and all pages are written anew. At [`MOST_SLOTS`] the first patch
+    /// whose page gets no slot is left out, and with it all later patches.
     pub fn place(
         &mut self,
         device: &Device,

@@ -81,7 +81,7 @@ impl LandPass {
     /// Draws the patches of a picture.
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] if a shader file is missing.
     pub fn draw(
         &mut self,
         device: &Device,

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::terrain::Terrain;
 
-/// Returns the distance along a ray to the ground, m, up to `farthest_m`. `origin` and the unit vector `direction`
-/// are in metres along the lattice's axes from its origin.
+/// Returns the distance along a ray to the ground, m; `None` if the ray meets no ground within `farthest_m`. `origin`
+/// is in metres along the lattice's axes from its origin, and `direction` is a unit vector along these axes.
 pub(crate) fn ray_to_ground(terrain: &Terrain, origin: DVec3, direction: DVec3, farthest_m: f64) -> Option<f64> {
     let cell_m = terrain.desc.cell_m;
     let plan = DVec2::new(direction.x, direction.y) / cell_m;

@@ -73,7 +73,8 @@ impl NodeKey {
 pub(super) struct Relief {
     /// Identity and revision of the terrain that was read.
     read: Option<(u64, u64)>,
-    /// Lowest and highest height of each node with ground, m. A node includes all its edges.
+    /// Lowest and highest height of the vertices of each node with ground, m, including the vertices on all its edges.
+    /// A vertex in a hole has the height of ground near it.
     bounds: HashMap<NodeKey, [f32; 2]>,
     /// Level of the roots.
     top: u8,
@@ -108,8 +109,9 @@ impl Relief {
         &self.errors_m
     }
 
-    /// Updates the bounds and the errors after the changes of the terrain since the last call. Calls `changed` with
-    /// each changed rectangle, or with `None` if everything may have changed.
+    /// Updates the bounds after the changes of the terrain since the last call. Measures the errors anew once more than
+    /// an eighth of the cells have changed. Calls `changed` with each changed rectangle, or with `None` if everything
+    /// may have changed.
     pub fn update(&mut self, terrain: &Terrain, mut changed: impl FnMut(Option<CellRect>)) {
         let now = (terrain.id, terrain.revision);
         if self.read == Some(now) {
@@ -226,8 +228,8 @@ fn leaf_bounds(cells: &mut CellReader<'_>, key: NodeKey) -> Option<[f32; 2]> {
     Some(heights.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)]))
 }
 
-/// Returns the vertical error of each level, m: the quantile [`HELD_SHARE`] of the distances by which the level's
-/// triangles lie above or below random cells. It is at least that of the next finer level.
+/// Returns the vertical error of each level up to `top`, m: the quantile [`HELD_SHARE`] of the distances by which the
+/// level's triangles lie above or below random cells. The error is at least that of the next finer level.
 fn level_errors_m(terrain: &Terrain, top: u8) -> [f64; LEVELS] {
     let tiles: Vec<_> = terrain.all().map(|(_, tile)| tile.key).collect();
     let (mut cells, mut chance) = (CellReader::new(terrain), RandomStream::new(0, 44));

@@ -23,7 +23,8 @@ const DIAGONAL: f64 = 23.0;
 /// Side of a square in the picture, pixels: in perspective a level is used at least down to this size, with parallel
 /// rays at most up to it.
 const LONGEST_SIDE_PX: f64 = 10.0;
-/// Factor by which distances may exceed the true ones ([`Relief::reference_m`]).
+/// Largest ratio of the distances used here, which put all ground at the reference height ([`Relief::reference_m`]), to
+/// the true ones.
 const FARTHER: f64 = 1.07;
 /// Least ratio of a level's reach to the distance at which its vertices begin to move.
 const LEAST_BAND: f64 = 1.25;
@@ -67,7 +68,8 @@ impl LandPatch {
 pub(super) struct LevelDistances {
     /// Place of the eye on the lattice.
     pub eye: DVec2,
-    /// Height of the eye above the reference, at least 0.
+    /// Height of the eye above the reference height, at least 0. For parallel rays, and for a picture of too many
+    /// patches, it is instead the distance that selects the level wanted.
     pub above: f64,
     /// Weight of the horizontal distance: 1, or 0 for parallel rays, whose pixels are equally large at any distance.
     pub spread: f64,
@@ -77,7 +79,7 @@ pub(super) struct LevelDistances {
 
 impl LevelDistances {
     /// Returns the distances for a camera. `eye` is in cells, `eye_m` its height above the terrain's origin,
-    /// `height_px` the height of the picture.
+    /// `height_px` the height of the picture, `error_px` the vertical error that the host accepts.
     pub fn new(
         relief: &mut Relief,
         camera: &Camera,
@@ -95,7 +97,8 @@ impl LevelDistances {
             };
             let level = (1..LEVELS).take_while(is_fine).last().unwrap_or(0);
             let reach = Self::reach_for(|_| SHORTEST_REACH);
-            // This distance is in the middle of those at which the level's vertices do not move.
+            // This distance is beyond the reach of the next finer level, and less than that at which the vertices of
+            // this level begin to move.
             let above = if level == 0 { 0.0 } else { 1.05 * reach[level - 1] };
             return Self { eye, above, spread: 0.0, reach };
         }
@@ -207,7 +210,8 @@ impl Selection<'_> {
         self.frustum.sees(node.low(), node.side(), bounds)
     }
 
-    /// Adds the patches of a node that lies within the reach of its level, or is a root.
+    /// Adds the patches in the picture of a node that lies within the reach of its level, or is a root. Children beyond
+    /// the reach of their level are drawn as quarters of this node.
     fn add(&self, node: NodeKey, patches: &mut Vec<LandPatch>) {
         if patches.len() > MOST_PATCHES {
             return;

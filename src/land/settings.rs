@@ -5,13 +5,13 @@ use crate::error::{Error, Result, check_range};
 /// Settings with which a context's views draw the tiles of its terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDrawing {
-    /// Vertical error of the drawn triangles, pixels, \[0.25, 16\], default 1. 99.7 % of the ground is within this
-    /// error. The error sets how far each level of detail reaches, between 40 and 160 sides of the level's squares.
-    /// Ground so rough that a level would have to reach farther is drawn with a larger error.
+    /// Accepted vertical error of the drawn triangles, pixels, \[0.25, 16\], default 1. It sets how far each level of
+    /// detail reaches, between 40 and 160 sides of the level's squares, so that 99.7 % of the ground is within this
+    /// error. Ground so rough that a level would have to reach farther than 160 sides is drawn with a larger error.
     pub error_px: f64,
     /// Distance from the camera up to which the ground has shadows of the sun and the moon, m: 0 for none, or \[100,
-    /// 1e5\], default 1e4. The shorter the distance, the sharper the near shadows. Shadows take up to 34 MB of GPU
-    /// memory in each view.
+    /// 1e5\], default 1e4. The shorter the distance, the sharper the near shadows. The shadow maps take up to 34 MB of
+    /// GPU memory in each view.
     pub shadows_to_m: f64,
 }
 

@@ -97,8 +97,8 @@ fn lux(v: [f64; 3]) -> [f32; 4] {
 }
 
 impl LandPicture {
-    /// Returns the constants for a draw. `clip` is the matrix from camera-relative east, north, up to clip space, `top`
-    /// the level of the largest nodes.
+    /// Returns the constants for a draw, without those of the shadow maps. `clip` is the matrix from camera-relative
+    /// east, north, up to clip space, `top` the level of the largest nodes.
     pub fn uniform(&self, clip: DMat4, top: u8) -> LandUniform {
         let metres = self.eye_m();
         LandUniform {

@@ -1,4 +1,4 @@
-//! Drawn terrain in a view: which patches a picture shows, their pages, and the draw.
+//! Drawn terrain in a view: which patches a picture shows, their pages, the shadow maps, and the draw.
 
 use glam::{DMat4, DVec3};
 

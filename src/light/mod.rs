@@ -1,4 +1,5 @@
-//! Measures of light that every room uses: luminance, the three wavelengths, phase functions, exposure and tone curves.
+//! Light, for all rooms: luminance, the default wavelengths and the colours of wavelengths, phase functions, exposure
+//! and tone curves.
 
 pub mod phase;
 pub mod spectrum;

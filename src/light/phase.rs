@@ -24,7 +24,7 @@ pub enum Phase {
         diameter_um: f64,
         /// Asymmetry of the Henyey-Greenstein function, \[-0.95, 0.95\].
         g: f64,
-        /// Share of the Henyey-Greenstein function: 0 is droplets alone.
+        /// Share of the Henyey-Greenstein function, \[0, 1\]: 0 is droplets alone.
         share: f64,
     },
 }
@@ -83,8 +83,8 @@ impl PhaseLobes {
 ///
 /// Light that is scattered n = `order` times by a Henyey-Greenstein lobe is spread by a lobe of g^n. In a blend whose
 /// Draine lobe has the weight w, the share (1 - w)^n of the light was scattered by the Henyey-Greenstein lobe only. The
-/// rest was scattered by Draine's lobe about n w times and becomes more isotropic: alpha is divided by the square of
-/// that number.
+/// rest was scattered by Draine's lobe about n w times, at least once. This number is the exponent of Draine's g, and
+/// alpha is divided by its square, so the lobe becomes more isotropic.
 pub fn lobes_phase(lobes: &PhaseLobes, order: f64, versine: f64) -> f64 {
     let lobe = |g: f64| {
         let d = (1.0 - g) * (1.0 - g) + 2.0 * g * versine;

@@ -33,7 +33,7 @@ pub(crate) const REC709_FROM_XYZ: [[f64; 3]; 3] = [
     [ 0.055_630_080, -0.203_976_959,  1.056_971_514],
 ];
 
-/// Returns the linear Rec. 709 colour of a unit spectral radiance at one wavelength: cd/m^2 per W m^-2 sr^-1.
+/// Returns the linear Rec. 709 colour of light of one wavelength and unit radiance: cd/m^2 per W m^-2 sr^-1.
 pub fn rec709_of_wavelength(wavelength_nm: f64) -> [f64; 3] {
     apply(&REC709_FROM_XYZ, &cie_1931(wavelength_nm)).map(|v| v * LUMINOUS_EFFICACY_LM_PER_W)
 }

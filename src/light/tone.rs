@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check_range};
 
-/// Curve from exposed luminance to display values.
+/// Curve from exposed values (luminance times [`Exposure::factor`]) to display values, of which 1 is display white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ToneCurve {
-    /// No curve: the exposed value itself. Values above 1 are clamped when they are written.
+    /// No curve: the exposed value itself. Values above 1 are clamped only where they are encoded by sRGB, or by a
+    /// target's format that ends at 1.
     Linear,
     /// 1 - exp(-x) for each channel (O'Neil 2005), which never reaches white: bright skies keep their gradation.
     #[default]
@@ -38,7 +39,9 @@ impl ToneCurve {
     }
 }
 
-/// Exposure of a picture: one value for all channels of a simulator, never measured per view.
+/// Exposure of a picture: one value for all channels of a simulator, never measured per view. [`Exposure::factor`]
+/// gives it in display units per cd/m^2. Display units are exposed values, to which the tone curve has not been applied
+/// yet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Exposure {
     /// Computed in closed form from the light of sun, moon and sky at the place, and therefore equal on every channel
@@ -87,14 +90,14 @@ impl Exposure {
 }
 
 /// Returns the exposure, display units per cd/m^2, by the saturation-based sensitivity of ISO 12232 with the usual lens
-/// factor q = 0.65: white is L_max = 1.2 * 2^EV.
+/// factor q = 0.65: the exposed value is 1 at the luminance L_max = 1.2 * 2^EV, cd/m^2.
 fn ev100_factor(ev: f64) -> f64 {
     1.0 / (1.2 * ev.exp2())
 }
 
-/// Returns the exposure, display units per cd/m^2, at which the adaptation luminance has the display value `key`. The
-/// key is smaller for a smaller luminance (Krawczyk, Myszkowski & Seidel 2005, eq. 11), so that a night looks dark and
-/// yet is not black.
+/// Returns the exposure, display units per cd/m^2, at which the adaptation luminance has the exposed value `key` before
+/// the tone curve. The key is smaller for a smaller luminance (Krawczyk, Myszkowski & Seidel 2005, eq. 11), so that a
+/// night looks dark and yet is not black. Below 1e-5 cd/m^2 the exposure stays the same.
 fn auto_factor(adaptation_cd_m2: f64) -> f64 {
     let luminance = adaptation_cd_m2.max(1e-5);
     let key = 1.03 - 2.0 / (2.0 + (luminance + 1.0).log10());

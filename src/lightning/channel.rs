@@ -2,10 +2,10 @@
 //!
 //! # Model
 //! A channel wanders around a straight line by midpoint displacement: the middle of each interval is moved sideways at
-//! random, by a share of the interval's length, and less in the first two halvings. Photographs show a fractal
-//! dimension of 1.1 to 1.4 (Tsonis 1991); the chosen share gives 1.15 (tested). From the path of a ground flash 8 to 17
-//! branches leave, each at 20 to 50 degrees to the path, with 0.15 to 0.6 of the remaining path's length. A third of
-//! them branch again. All branches point down, and none reaches the ground.
+//! random, by a share of the interval's length. This share is smaller in the first two halvings. Photographs show a
+//! fractal dimension of 1.1 to 1.4 (Tsonis 1991); the chosen share gives 1.15 (tested). From the path of a ground flash
+//! 8 to 17 branches leave, each at 20 to 50 degrees to the straight way to the path's end, with 0.15 to 0.6 of the
+//! length of this way. A third of them branch again. All branches point down, and none reaches the ground.
 //!
 //! Tall objects attract a ground flash. The last leap of a leader with peak current I, in kA, has the length L = 10
 //! I^0.65 m (Love 1973). The leader comes down until it is within that distance of the ground or of something tall, and
@@ -31,7 +31,7 @@ pub const POINTS: usize = (1 << HALVINGS) + 1;
 /// A tall object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mast {
-    /// Tip, m east, north and up.
+    /// Tip: m east and north on the map, and the altitude, m.
     pub tip_m: DVec3,
 }
 
@@ -40,7 +40,7 @@ pub fn sound_m_s(temperature_c: f64) -> f64 {
     331.3 + 0.606 * temperature_c
 }
 
-/// Returns the length of a leader's last leap, m, for the peak current that follows (Love 1973).
+/// Returns the length of a leader's last leap, m, for the peak current, kA, of the stroke that follows (Love 1973).
 pub fn leap_m(peak_ka: f64) -> f64 {
     10.0 * libm::pow(peak_ka.max(0.0), 0.65)
 }
@@ -66,8 +66,8 @@ pub struct Channel {
     pub branches: Vec<Branch>,
 }
 
-/// Returns the end of a ground flash: the tip of the mast that the flash strikes, or the point at the height `ground_m`
-/// of the ground, straight below the flash's start.
+/// Returns the end of a ground flash: the tip of the mast that the flash strikes, or the point of the ground at the
+/// flash's place, at the height `ground_m`.
 pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
     let leap = leap_m(flash.strokes()[0].peak_ka);
     let below = flash.place_m;
@@ -84,8 +84,9 @@ pub fn struck(flash: &Flash, masts: &[Mast], ground_m: f64) -> DVec3 {
 }
 
 impl Channel {
-    /// Creates the channel of a flash that starts at the height `top_m`. A ground flash ends at `end_m`. A flash in the
-    /// cloud ends some kilometres away from its start.
+    /// Creates the channel of a flash. It starts at the height `top_m`, beside the flash's place by a tenth of the
+    /// height above `end_m`. A ground flash ends at `end_m`. A flash in the cloud ends some kilometres away from its
+    /// start.
     pub fn new(flash: &Flash, top_m: f64, end_m: DVec3) -> Self {
         let mut chance = RandomStream::new(flash.id, 0xc4a1);
         let start = flash.place_m.extend(top_m) + aside(&mut chance, DVec3::Z) * 0.1 * (top_m - end_m.z);
@@ -187,9 +188,10 @@ fn wander(chance: &mut RandomStream, (start, end): (DVec3, DVec3), halvings: u32
 /// Number of branches of the first order: the least value, and the length of the range above it. A random value of
 /// this range is rounded down.
 const BRANCHES: (f64, f64) = (8.0, 10.0);
-/// Range of the angles of branches to the path that they leave, degrees.
+/// Range of the angles of branches to the direction of the path that they leave, degrees.
 const LEAVES_DEG: (f64, f64) = (20.0, 50.0);
-/// Range of the ratio of a branch's length to the rest of the path that it leaves.
+/// Range of the ratio of a branch's length to the straight distance from its start to the end of the main path. For a
+/// branch of a branch it is the ratio to the straight length of that branch.
 const LENGTHS: (f64, f64) = (0.15, 0.6);
 /// Share of branches that branch again.
 const AGAIN: f64 = 0.33;
@@ -221,7 +223,7 @@ fn branches(chance: &mut RandomStream, main: &[DVec3]) -> Vec<Branch> {
     out
 }
 
-/// Creates a branch that leaves a path at `from`, where the path itself goes on along `way`.
+/// Creates a branch that leaves a path at `from`. `way` is the direction of the path.
 fn branch(
     chance: &mut RandomStream,
     (from, way): (DVec3, DVec3),

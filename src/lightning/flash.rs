@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Largest number of strokes. Flashes with more have hardly been seen (26; Rakov and Uman 2003).
+/// Largest number of strokes. Flashes with more than 26 have hardly been seen (Rakov and Uman 2003).
 pub const MOST_STROKES: usize = 26;
 
 /// Kind of a flash.
@@ -42,7 +42,7 @@ pub struct Flash {
     pub time_s: f64,
     /// Kind of the flash.
     pub kind: FlashKind,
-    /// Place where it starts, m east and north.
+    /// Place on the map near which it starts, m east and north.
     pub place_m: DVec2,
     /// Strokes in order, of which the first `count` belong to the flash.
     pub(super) strokes: [Stroke; MOST_STROKES],

@@ -1,4 +1,4 @@
-//! Glow around a flash, in f64: twin of `shaders/between/flash.wgsl`.
+//! Glow around a flash, in f64: the reference of `shaders/between/flash.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,8 @@ const BASE_REFLECTS: f64 = 0.8;
 const ASYMMETRY: f64 = 0.75;
 
 /// Returns the luminous intensity, cd, of the visible side of the clouds in the light of a source: `k` of the shader.
-/// Seen from below, it is the light that leaves through the base, or that the base reflects.
+/// Seen from below, it is the light that leaves through the base, or that the base reflects. Seen from above, it is the
+/// light that leaves through the top; the top reflects none.
 pub(super) fn from_clouds_cd(source: &LightSource, from_below: bool) -> f64 {
     match (source.is_hidden(), from_below) {
         (true, true) => source.flux_lm * source.down_share / (2.0 * PI * PI),
@@ -30,9 +31,9 @@ fn on_clouds(k: f64, h: f64, r: f64) -> f64 {
     k * h / (r * r + h * h).powf(1.5)
 }
 
-/// Returns the light that air with `scattering_per_m` between the eye and the distance `range` scatters once towards
-/// the eye. The source of 1 cd lies at the distance `along` in the ray's direction and `h` beside the ray, m. `steps`
-/// is the number of samples of the angle.
+/// Returns the luminance, cd/m2, of the light that air with `scattering_per_m` between the eye and the distance `range`
+/// scatters once towards the eye. The source of 1 cd lies at the distance `along` in the ray's direction and `h` beside
+/// the ray, m. `steps` is the number of samples of the angle.
 #[cfg(test)]
 fn in_air(scattering_per_m: f64, (along, h): (f64, f64), range: f64, steps: u32) -> f64 {
     let phase = |c: f64| {

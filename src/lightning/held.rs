@@ -13,7 +13,7 @@ use crate::{
     world::{HeldEffect, UpdateBudget, World, parse_error},
 };
 
-/// Time for which a triggered flash is kept after its first stroke, s. Its thunder has passed by then.
+/// Time for which a triggered flash is kept after its first stroke, s. In this time its thunder travels 40 km.
 const KEPT_S: f64 = 120.0;
 
 /// Lightning of a context.
@@ -76,7 +76,8 @@ const TABLE: &str = "settings";
 const KEY: &str = "lightning";
 
 impl HeldLightning {
-    /// Removes the lightning from the saved state `state` and returns it.
+    /// Removes the lightning from the saved state `state` and returns it. Without lightning in the state it returns the
+    /// default settings.
     ///
     /// # Errors
     /// [`Status::Parse`] for a value of another form or for more than [`MAX_TRIGGERED`] triggered flashes.
@@ -120,8 +121,8 @@ impl HeldLightning {
     /// Adds a flash. `now_s` is the present.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field, or if there are [`MAX_TRIGGERED`] already; [`Status::WrongOrder`]
-    /// for a flash in the past. Nothing changes then.
+    /// [`Status::InvalidArgument`] naming a field that is out of range, or if there are [`MAX_TRIGGERED`] flashes
+    /// already; [`Status::WrongOrder`] for a flash in the past. After an error nothing has changed.
     pub fn trigger(&mut self, flash: &FlashTrigger, now_s: f64) -> Result<()> {
         flash.validate()?;
         if flash.time_s < now_s {

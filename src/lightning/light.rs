@@ -34,13 +34,13 @@ const SMOOTH_S: f64 = 0.15;
 /// Colour of a black body of 20 000 K in linear Rec. 709, with luminance 1.
 pub const COLOR: [f64; 3] = [0.75, 0.99, 1.84];
 
-/// Longest time before its first stroke for which a flash gives light, s.
+/// Longest time before its first stroke at which a flash gives light already, s.
 pub const BEFORE_S: f64 = 0.1;
-/// Longest time after its last stroke for which a flash gives light, s.
+/// Longest time after its last stroke at which a flash still gives light, s.
 const AFTER_S: f64 = 0.06;
-/// Longest time after its first stroke for which a flash drawn under the limit on flicker gives light, s.
+/// Longest time after its first stroke at which a flash drawn under the limit on flicker still gives light, s.
 const SMOOTH_AFTER_S: f64 = 1.5;
-/// Longest time from a flash's first stroke to its last, s. Longer ones hardly ever occur.
+/// Time after a flash's first stroke from which on its light is ignored, s. Flashes hardly ever last longer.
 pub const LONGEST_S: f64 = 4.0;
 
 /// Interval over which light is averaged, s of simulation time. If both ends are equal, the light is that of this
@@ -82,7 +82,7 @@ impl Span {
 pub enum Course {
     /// The measured course: leaders, strokes and their decay.
     Natural,
-    /// Rises once and decays smoothly, with the same total light.
+    /// Rises once and decays smoothly, with the total light of the strokes but none of the leaders.
     Smooth,
 }
 
@@ -100,8 +100,8 @@ impl Course {
 /// Properties on which the light of a part of a channel depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Position along the main channel, 0 at the upper end to 1. For a branch: the position on the main channel that
-    /// the leader reaches at the same time.
+    /// Position along the main channel, 0 at the upper end to 1 at the lower end. For a branch: the position on the
+    /// main channel that the leader reaches at the same time.
     pub down: f64,
     /// Length of the main channel, m.
     pub length_m: f64,

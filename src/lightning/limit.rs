@@ -2,8 +2,8 @@
 //!
 //! With the limit a flash rises once and fades: two changes. Of the flashes near a camera, one is drawn only if it
 //! begins at least a second after the last drawn one. Any second then has at most three changes (WCAG 2.2, success
-//! criterion 2.3.1, allows three flashes of two changes each). The choice restarts every 10 s with a second in which
-//! none is drawn. It therefore depends only on the flashes of these 10 s, and is the same in every view and for
+//! criterion 2.3.1, allows three flashes of two changes each). The choice restarts every 10 s with a second in which no
+//! drawn flash begins. It therefore depends only on the flashes of these 10 s, and is the same in every view and for
 //! every order in which a host draws times.
 
 /// Length of an epoch, s. The choice in an epoch does not depend on other epochs.

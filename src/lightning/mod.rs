@@ -8,8 +8,8 @@
 //! * [`schedule`]: the flashes of a storm cell are a Poisson process, evenly spread in time. They are taken from a
 //!   fixed stream of 60 candidates a minute for each cell. Each candidate has a random number u from 0 to 1 and becomes
 //!   a flash if u < rate / 60, with the cell's rate in flashes a minute. A changing rate therefore adds and removes
-//!   flashes, but moves none. Each flash stays in the cloud or goes to ground, and has strokes with pauses between
-//!   them, each with a peak current.
+//!   flashes, but moves none. Each flash stays in the cloud or goes to ground. It has one or more strokes, each with a
+//!   peak current, and pauses between them.
 //! * Storm cells: one in each square of 20 km x 20 km where the weather has thunder. Cells of the host
 //!   ([`LightningSettings`]) replace them. A host may also trigger single flashes ([`FlashTrigger`]).
 //! * [`channel`]: the path of a flash, from its charge (where the air has -12 degrees Celsius) down to the ground or

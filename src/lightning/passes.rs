@@ -41,7 +41,7 @@ pub(super) struct ChannelPass {
     no_layers: wgpu::TextureView,
     /// Pipelines that were used last.
     pipelines: LruCache<(DepthKey, Vec<Constant>), wgpu::RenderPipeline, MOST_PIPELINES>,
-    /// Bind group of the next draw, after the depth, the layer of clouds and the veil's block that it was made for.
+    /// Depth, layer of clouds and block of the veil for which the bind group of the last draw was made, and this group.
     bound: Option<(Option<KeptLayer>, Option<wgpu::TextureView>, BlockView, wgpu::BindGroup)>,
 }
 
@@ -87,7 +87,7 @@ impl ChannelPass {
     /// Adds parts to the layer `target`. The layer is cleared first unless it has content already (`over`).
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] if a shader file is missing.
     pub fn draw(
         &mut self,
         recording: &mut Recording<'_>,

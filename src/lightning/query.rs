@@ -16,7 +16,7 @@ use crate::{
     world::World,
 };
 
-/// Longest time of one query, s.
+/// Longest interval of time of one query, s.
 pub const MOST_SPAN_S: f64 = 3600.0;
 /// Largest distance for which flashes can be queried, m.
 pub const MOST_DISTANCE_M: f64 = 50_000.0;
@@ -64,6 +64,9 @@ pub struct LightningLight {
 
 /// Returns all flashes from `from_s` until `until_s` within the horizontal distance `most_m` of a place, in order of
 /// time.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming an argument that is out of range.
 pub(crate) fn events(
     world: &World,
     held: &HeldLightning,
@@ -98,6 +101,9 @@ pub(crate) fn events(
 }
 
 /// Returns the light of flashes at a place, averaged over `exposure_s` before `time_s`; with 0, the light at `time_s`.
+///
+/// # Errors
+/// [`crate::Status::InvalidArgument`] naming an argument that is out of range.
 pub(crate) fn light_at(
     world: &World,
     held: &HeldLightning,

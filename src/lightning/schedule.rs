@@ -28,7 +28,7 @@ const FIRST_KA: (f64, f64) = (30.0, 0.61);
 /// Peak current of later strokes: median, kA, and standard deviation of its logarithm (Berger et al. 1975).
 const LATER_KA: (f64, f64) = (12.0, 0.61);
 
-/// A storm that flashes at a constant rate.
+/// A storm. It flashes at the constant rate `per_minute`, or at a rate given to [`Self::visit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storm {
     /// Seed of its flashes.

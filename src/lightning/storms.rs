@@ -25,7 +25,7 @@ pub(crate) struct Storms<'a> {
 }
 
 impl Storms<'_> {
-    /// Whether there can be no flash between two times.
+    /// Whether it is certain that no flash begins between two times.
     pub fn is_quiet(&self, from_s: f64, until_s: f64) -> bool {
         let set = &self.held.settings;
         let by_host = set.cells.iter().any(|c| c.flashes_per_minute > 0.0)
@@ -85,7 +85,7 @@ impl Storms<'_> {
             (None, Some(thunder)) => PER_MINUTE * thunder,
             (None, None) => PER_MINUTE * timeline.at(time_s).precipitation.thunder,
         };
-        // Flashes start up to four radii away from a cell's middle.
+        // Fewer than one flash in 10 000 starts farther than four radii from a cell's middle.
         let reach = DVec2::splat(reach_m + 4.0 * RADIUS_M);
         let (low, high) = (((near_m - reach) / SQUARE_M).floor(), ((near_m + reach) / SQUARE_M).floor());
         for j in low.y as i64..=high.y as i64 {

@@ -17,12 +17,12 @@ use crate::{
 const CHARGE_C: f64 = -12.0;
 /// Lapse rate of the air, K/m.
 const COOLS_K_M: f64 = 6.5e-3;
-/// Least height of the charge above the station, m.
+/// Least height of the charge above the station, m, before the charge is moved to within the clouds.
 const LEAST_M: f64 = 2500.0;
 /// Least distance of the charge from the cloud's base and top, m. In a cloud thinner than twice this distance the
 /// charge lies half way up.
 const WITHIN_M: f64 = 800.0;
-/// Least cover with which a layer of cloud hides a channel inside it.
+/// Least cover with which a layer of cloud hides a channel inside it, if its optical depth is above 5.
 const HIDES_FROM: f64 = 0.2;
 /// Depth in cloud over which a channel fades to 1/e, m.
 const FADES_M: f64 = 60.0;
@@ -145,7 +145,7 @@ impl Strike {
         self.anchor_m + (p - self.anchor).dot(self.up)
     }
 
-    /// Calls `see` with each part and its light, averaged over a span.
+    /// Calls `see` with each part that shines, and with its light averaged over a span.
     pub fn each_part(&self, span: &Span, course: Course, mut see: impl FnMut(&ChannelPart)) {
         let main = self.channel.points_m.as_slice();
         self.each_of(main, (0.0, 1.0), (1.0, false), (span, course), &mut see);
@@ -162,8 +162,8 @@ impl Strike {
         }
     }
 
-    /// Calls `see` with each part of one path. `from` and `until` are the values of [`Stretch::down`] at its ends, and
-    /// `strength` is the ratio of its light to that of the main path.
+    /// Calls `see` with each part of one path that shines. `from` and `until` are the values of [`Stretch::down`] at
+    /// the path's ends, and `strength` is the ratio of its light to that of the main path.
     fn each_of(
         &self,
         points: &[DVec3],
@@ -191,7 +191,8 @@ impl Strike {
     }
 }
 
-/// Returns the tips of tall objects near a flash: the host's masts, and the tops of its shelters.
+/// Returns the tips of tall objects that are less than 2 km from a flash along east and along north: the host's masts,
+/// and the tops of its shelters.
 fn tall_near(world: &World, masts: &[DVec3], flash: &Flash, to_enu: &DMat3) -> Vec<Mast> {
     let up = to_enu.transpose() * DVec3::Z;
     let top = |s: &Shelter| {

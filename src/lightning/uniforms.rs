@@ -55,7 +55,7 @@ impl ChannelUniform {
 pub(super) struct PartInstance {
     /// One end, relative to the camera, m.
     pub from: [f32; 3],
-    /// Luminous intensity times exposure, cd.
+    /// Luminous intensity, cd, times exposure.
     pub intensity: f32,
     /// Other end, relative to the camera, m.
     pub to: [f32; 3],

@@ -33,10 +33,10 @@ const FRAME_S: f64 = 1.0 / 60.0;
 /// Longest interval between two frames over which the second one averages the light, s. A longer interval counts as a
 /// jump of the host's time.
 const LONGEST_FRAME_S: f64 = 0.5;
-/// Illuminance at the eye below which a flash is not drawn, lux.
+/// Illuminance at the eye below which a light source of a flash is left out, lux. Without any source no flash is drawn.
 const FAINTEST_LUX: f64 = 1e-7;
-/// Illuminance at the eye, as a share of all other light on the ground, below which a flash is not drawn. The larger of
-/// this limit and [`FAINTEST_LUX`] applies.
+/// Illuminance at the eye, as a share of all other light on the ground, below which a light source of a flash is left
+/// out. The larger of this limit and [`FAINTEST_LUX`] applies.
 const FAINTEST_SHARE: f64 = 1e-5;
 
 /// Interval of time over which a frame averages the light of flashes.
@@ -103,8 +103,9 @@ pub(crate) struct LightningView {
     shown: FlashBlock,
 }
 
-/// Returns the interval over which a frame averages light: since the previous frame, or a sixtieth of a second without
-/// one. While time stands still, frames keep the same interval.
+/// Returns the interval over which a frame averages light: since the previous frame, or a sixtieth of a second if there
+/// is none, if time has jumped, or if nothing of earlier frames may show (`is_pure`). While time stands still, frames
+/// keep the same interval.
 fn frame_time(last_frame: Option<FrameTime>, frame_id: u64, now_s: f64, is_pure: bool) -> FrameTime {
     let alone = Span { from_s: now_s - FRAME_S, until_s: now_s };
     let span = match last_frame {
@@ -185,7 +186,7 @@ impl LightningView {
         let _ = now.flash.set(light);
     }
 
-    /// Returns the own layer, created for a picture of the size of `color`.
+    /// Returns the view's own layer, created anew if the size of `color` has changed.
     fn layer(&mut self, device: &Device, color: &wgpu::Texture) -> wgpu::TextureView {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..color.size() };
         if self.layer.as_ref().is_some_and(|(texture, _)| texture.size() != size) {

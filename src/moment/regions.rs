@@ -76,7 +76,7 @@ impl<'a> WeatherOver<'a> {
     }
 
     /// Returns the wind at 10 m at a place and time, with gusts, and its upward velocity above 100 m, m/s. The wind of
-    /// a weather region counts as if it had always blown. The displacement by a region's wind is not used: everything
+    /// a weather region is taken as if it had always blown. The displacement by a region's wind is not used: everything
     /// that the wind carries moves by the world's displacement, at every place, so that nothing jumps at a region's
     /// border.
     ///
@@ -163,7 +163,8 @@ impl<'a> WeatherOver<'a> {
         if at_s == 0.0 { Ok([0.0; 2]) } else { Ok(self.carrying_until(at_s)?.displacement_m().truncate().to_array()) }
     }
 
-    /// Returns the rain areas at a time as shafts, in their order; `c` is the weather at that time.
+    /// Returns the rain areas at a time as shafts, in their order. `c` is the weather at that time. If there are
+    /// weather regions, the weather outside them is used in place of `c`.
     ///
     /// # Errors
     /// As [`WeatherOver::check_time`].
@@ -227,7 +228,8 @@ impl<'a> WeatherOver<'a> {
     }
 
     /// Returns the weather `c` of a time with the rates of rain and drizzle at a place, where rain areas replace a
-    /// share of the weather's own rain. The extinction of the drops changes with the rates.
+    /// share of the weather's own rain. The extinction of the drops changes with the rates. Where the areas cannot be
+    /// placed at that time, `c` is returned as it is.
     pub fn at_place(&self, position: DVec3, time_s: f64, c: Conditions) -> Conditions {
         if self.regions.is_empty() {
             return c;

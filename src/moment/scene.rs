@@ -74,8 +74,8 @@ pub struct Scene {
     pub moon: Light,
     /// Linear Rec. 709 colours, cd/m^2 or lux, of light at the planet's three wavelengths under a sun at 1 au.
     pub color: [[f64; 3]; 3],
-    /// Whether the moon gives more direct light here than the sun, compared without clouds and fog. Below clouds and
-    /// fog, only the light of the one that stands higher would be left.
+    /// Whether the moon gives more direct light here than the sun. The two are compared without clouds and fog, because
+    /// clouds and fog would leave only the light of the one that stands higher.
     pub moon_is_brighter: bool,
     /// Light on the ground.
     pub ground: GroundLight,
@@ -100,7 +100,8 @@ impl Scene {
         if self.moon_is_brighter { &self.moon } else { &self.sun }
     }
 
-    /// Returns the number of lights, sun and moon, that contribute to the picture.
+    /// Returns the number of lights that contribute to the picture: the sun, and the moon if it is bright enough to be
+    /// drawn.
     pub(crate) fn lamps(&self) -> u32 {
         1 + u32::from(self.moon.matters)
     }

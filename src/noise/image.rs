@@ -38,8 +38,8 @@ impl NoiseImage {
     }
 
     /// Creates an image of these bytes, x first, then y, then z, with a full chain of mip levels. Each texel of a level
-    /// is the mean of 2 x 2 or 2 x 2 x 2 texels of the level above. Where an edge has an odd number of texels, its last
-    /// one is left out.
+    /// is the mean of 2 x 2 or 2 x 2 x 2 texels of the next finer level. Where an edge of that level has an odd number
+    /// of texels, its last one is left out.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] if the number of bytes is not that of texels; [`Status::OutOfMemory`].
@@ -101,10 +101,10 @@ impl NoiseImage {
         above as f64 / self.levels[0].len() as f64
     }
 
-    /// Returns the cutoff that gives `cover`, 0 to 1, as closely as bytes allow: [`NoiseImage::cover`] differs by at
-    /// most the share of the texels with one of the 256 byte values. Within a byte value the cutoff is interpolated as
-    /// if the texels with this byte were spread evenly over all numbers that round to the byte. The values of a
-    /// filtered texture are spread so.
+    /// Returns the cutoff that gives `cover`, 0 to 1, as closely as bytes allow: [`NoiseImage::cover`] at this cutoff
+    /// differs from `cover` by at most the share of the texels that have the cutoff's own byte. Within a byte value the
+    /// cutoff is interpolated as if the texels with this byte were spread evenly over all numbers that round to the
+    /// byte. The values of a filtered texture are spread so.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a cover outside \[0, 1\].
@@ -140,7 +140,7 @@ pub(super) fn empty(bytes: u64) -> Result<Vec<u8>> {
     Ok(room)
 }
 
-/// Returns the mip level below one of `size` texels: means in whole bytes, halves rounded up
+/// Returns the next coarser mip level of one of `size` texels: means in whole bytes, halves rounded up
 /// (`shaders/noise/shrink.wgsl`).
 fn halved(finer: &[u8], size: [u32; 3]) -> Result<Vec<u8>> {
     let [width, height, depth] = size_of_level(size, 1);

@@ -1,7 +1,7 @@
 //! Noise in textures that repeat without a seam, out of which clouds are cut.
 //!
 //! A noise texture is a sum of octaves. Each octave has twice as many cells across the texture as the one before, and a
-//! smaller amplitude. There are three kinds ([`NoiseKind`]):
+//! smaller amplitude A. There are three kinds ([`NoiseKind`]):
 //!
 //! - gradient noise N (Perlin 2002, *Improving Noise*): 0 at the corners of the cells, with continuous second
 //!   derivatives. The texel holds the sum of A (1 + N) / 2 over the octaves. With this mapping the presets of

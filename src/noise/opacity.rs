@@ -4,7 +4,8 @@
 use crate::error::{Error, Result, check_range};
 
 /// Conversion of noise n to the opacity of a cloud, b (1 - exp(-k max(0, n - c))). Up to the cutoff c the sky is clear.
-/// Above it the law of Beer and Lambert applies, with the excess of the noise as the cloud's thickness.
+/// Above it the law of Beer and Lambert applies, with the excess of the noise as the cloud's thickness. An excess of 1
+/// has the optical thickness k. The bias b is the greatest opacity.
 ///
 /// The source prints two forms, in which the density has different meanings. In 1 - d^(alpha - c) the exponent is in
 /// levels of 8 bits, so that k = -255 ln d. In b (1 - E^(n - c)) it is from 0 to 1, so that k = -ln E. The two agree
@@ -17,8 +18,9 @@ pub struct CloudFunction {
 }
 
 impl CloudFunction {
-    /// Creates the function from the density d of the source's two-dimensional clouds, 0 to 1: 0.99 gives soft veils,
-    /// 0.95 firm clouds, 0 completely hard edges, 1 no cloud. `cutoff` is in \[0, 1\]; a greater one gives less cloud.
+    /// Creates the function from the density d of the source's two-dimensional clouds, 0 to 1: 0.99 gives thin and soft
+    /// clouds, 0.95 firm ones, 0 completely hard edges, 1 no cloud. `cutoff` is in \[0, 1\]; a greater one gives less
+    /// cloud.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or density outside \[0, 1\].
@@ -43,8 +45,8 @@ impl CloudFunction {
         Self::new(cutoff, optical_thickness(exponent), bias)
     }
 
-    /// Creates the function from the optical thickness k of noise that exceeds the cutoff by 1. It is at least 0;
-    /// infinity gives completely hard edges.
+    /// Creates the function from the optical thickness k of noise that exceeds the cutoff by 1. The thickness is at
+    /// least 0; infinity gives completely hard edges.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a cutoff or bias outside \[0, 1\] or a thickness below 0.

@@ -33,8 +33,8 @@ pub struct NoiseSettings {
     pub frequency: [u32; 3],
     /// Octaves, 1 to 16; default 6. Octaves with less than two texels to a cell add only their mean.
     pub octaves: u32,
-    /// Amplitude of the first octave, 0 to 4; default 0.7. The sum over all octaves should be 1 to 2, or most texels
-    /// are alike.
+    /// Amplitude of the first octave, 0 to 4; default 0.7. The amplitudes of all octaves should have a sum of 1 to 2,
+    /// or most texels are alike.
     pub amplitude: f64,
     /// Ratio of an octave's amplitude to that of the one before, 0 to 1; default 0.5.
     pub persistence: f64,
@@ -78,8 +78,9 @@ pub(super) fn axes(size: [u32; 3]) -> usize {
     if size[2] == 1 { 2 } else { 3 }
 }
 
-/// Checks that edges are powers of two within their range, and that the texels are not too many. Powers of two make
-/// every mip level the exact mean of the one above and give cells exactly the same positions as on a GPU.
+/// Checks that edges are powers of two within their range, and that the texels are not too many. With powers of two
+/// every texel of a mip level covers whole texels of the next finer level, and cells have exactly the same positions as
+/// on a GPU.
 fn check_size(size: [u32; 3]) -> Result<()> {
     let axes = axes(size);
     let longest = LONGEST[axes - 2];

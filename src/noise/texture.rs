@@ -12,7 +12,7 @@ use crate::gpu::bind::{self, Slot};
 use crate::gpu::pass::{FullscreenDesc, fullscreen};
 use crate::gpu::{Device, readback};
 
-/// Distance of the blocks in a buffer, bytes; a multiple of every device's alignment.
+/// Distance from one block to the next in a buffer, bytes; a multiple of every device's alignment.
 const STEP: usize = 256;
 
 /// `Slice` of `shaders/noise/slice.wgsl`.
@@ -134,8 +134,8 @@ impl NoiseTexture {
 
     /// Records the next passes: rows of slices with about `texels` texels in all channels together, but at least one
     /// row. This lets a frame draw as much as it has time for. Mip levels follow the slices from which they are made.
-    /// Returns true when everything is drawn. The passes of one call may share a submission with other work; the calls
-    /// must be submitted in their order.
+    /// Returns true when all passes have been recorded. The passes of one call may share a submission with other work;
+    /// the calls must be submitted in their order.
     pub fn step(&mut self, encoder: &mut wgpu::CommandEncoder, texels: u32) -> bool {
         if let Some(build) = &mut self.build
             && build.step(encoder, texels)
@@ -160,11 +160,12 @@ impl NoiseTexture {
         self.texture.create_view(&Default::default())
     }
 
-    /// Reads one channel back with its mip levels. Waits for the GPU, so do not call it in a frame.
+    /// Reads one channel back with its mip levels. All passes of [`NoiseTexture::step`] must have been submitted. Waits
+    /// for the GPU, so do not call it in a frame.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a channel that the texture does not have; [`crate::Status::WrongOrder`]
-    /// before everything is drawn; [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
+    /// before all passes are recorded; [`crate::Status::DeviceLost`], [`crate::Status::OutOfMemory`] or a GPU fault.
     pub fn read(&self, device: &Device, channel: usize) -> Result<NoiseImage> {
         let channels = self.texture.format().components() as usize;
         if channel >= channels {
@@ -221,9 +222,9 @@ struct NoiseBuild {
     /// Pipelines that draw the noise, one for each channel.
     noise: Vec<wgpu::RenderPipeline>,
     noise_group: wgpu::BindGroup,
-    /// Pipeline that draws a mip level from the one above it.
+    /// Pipeline that draws a mip level from the next finer one.
     shrink: wgpu::RenderPipeline,
-    /// Bind groups in which each level is read to draw the one below it.
+    /// Bind groups in which each level is read to draw the next coarser one.
     shrink_groups: Vec<wgpu::BindGroup>,
     /// Mip level of the next pass.
     level: u32,

@@ -13,7 +13,7 @@ pub(crate) struct MovingAir {
     pub velocity_m_s: DVec3,
     /// Simulation time, s.
     pub time_s: f64,
-    /// Extinction of everything except precipitation, 1/m.
+    /// Extinction of fog and aerosol, 1/m, without that of the air's molecules and of precipitation.
     pub extinction_per_m: f64,
 }
 

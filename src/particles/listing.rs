@@ -45,8 +45,8 @@ struct ListBuffers {
     groups: [wgpu::BindGroup; 2],
 }
 
-/// Returns the number of blocks for rows of things. It is rounded up to powers of two, so that a growing number of
-/// things replaces the buffers only now and then.
+/// Returns the number of blocks for rows of things. The number for each row is rounded up to a power of two, so that a
+/// growing number of things replaces the buffers only now and then.
 fn blocks_of([things, rows]: [u32; 2]) -> u64 {
     u64::from(things.div_ceil(BLOCK_THINGS).next_power_of_two()) * u64::from(rows)
 }

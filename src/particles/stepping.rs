@@ -171,7 +171,9 @@ impl ShellCapacities {
         std::array::from_fn(|s| counts[s].min(self.0[s]))
     }
 
-    /// Returns these capacities, or larger ones if `counts` do not fit; the sum of all shells is at most `most`.
+    /// Returns these capacities if they hold `counts`, each taken as at least `least`. Otherwise returns new ones,
+    /// whose sum over all shells is at most `most`: larger ones or, if these exceed `most`, as few as are needed or
+    /// allowed.
     fn for_counts(&self, counts: [u32; SHELLS], least: u32, most: u64) -> Self {
         if self.0.iter().zip(counts).all(|(room, count)| *room >= count.max(least)) {
             return *self;
@@ -269,7 +271,7 @@ impl StepPass {
     /// Makes room for the states, binds the wind, and records the step. The effect's own block is already uploaded.
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] if a shader file is missing.
     pub fn step(
         &mut self,
         device: &Arc<Device>,

@@ -155,8 +155,8 @@ pub(crate) fn layer_pass<'a>(
     })
 }
 
-/// Number of values of the sine of the angle between line of sight and streaks at which the standard deviation is
-/// tabulated.
+/// Number of deviations that a [`StreakContrast`] tabulates, at equal steps of the sine of the angle between line of
+/// sight and streaks.
 const ANGLES: usize = 9;
 
 /// Contrast of streaks in a picture, for the plan.

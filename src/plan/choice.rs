@@ -85,7 +85,7 @@ impl Choices {
         };
     }
 
-    /// Chooses the steps to take; `previous` are those taken now.
+    /// Chooses the steps to take, and says which limit they break, if any. `previous` are the steps taken now.
     pub fn choose(&self, governor: &Governor, demands: &PlanDemands, previous: Set) -> (Set, GaveWay) {
         let now = self.all.without(previous);
         let fits = |set: Set| governor.fits(&self.all.without(set), demands.milliseconds, &now);

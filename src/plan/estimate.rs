@@ -1,4 +1,4 @@
-//! Estimate of a picture's error without some of its parts, from the pixels that the gauge saw.
+//! Estimate of the error of a picture without some of its parts, from the pixels that the gauge saw.
 //!
 //! The *error* is defined as everywhere in the crate: the 95th percentile over pixels of |Y' - Y| / (Y + 0.01 white)
 //! after exposure. A tolerance also bounds the worst pixel, to [`WORST`] times the tolerance. So a far ridge keeps its

@@ -51,7 +51,7 @@ pub const CHANNELS: usize = 5;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GaugeSample {
     /// Relative change of luminance, (Y' - Y) / (Y + 0.01 white), for each channel: Y' is without the parts of the
-    /// channel.
+    /// channel, or with a coarser form of them (`shaders/plan/gauge.wgsl`).
     pub composed: [f32; CHANNELS],
     /// Kind of the pixel: 1 where the host drew something, -1 where it did not, 0 where the host keeps the pixel for
     /// itself.
@@ -114,6 +114,9 @@ impl Gauge {
 
     /// Records the pass. `groups`, `layouts` and `constants` are those of the composition. `shader` is the variant for
     /// the number of samples of the host's colour and depth.
+    ///
+    /// # Errors
+    /// The errors of [`pass::fullscreen`].
     pub fn record(
         &mut self,
         device: &Arc<Device>,

@@ -32,7 +32,7 @@ pub(in crate::capi) struct Call {
 }
 
 impl Call {
-    /// Returns the live object behind a handle, if the object's device still answers.
+    /// Returns the live object behind a handle. From here on a panic in this call poisons the object's device.
     ///
     /// # Errors
     /// [`Status::BadHandle`] with the parameter's name; [`Status::Poisoned`] if an earlier call on the device has
@@ -50,7 +50,7 @@ impl Call {
         Ok(object)
     }
 
-    /// Sets the device that a panic in this call poisons.
+    /// Sets the device that a panic in this call poisons, and injects the fault that a test has set ([`inject`]).
     pub(in crate::capi) fn blame(&mut self, device: &Arc<DeviceCell>) {
         self.device = Some(device.clone());
         match INJECTED.replace(Injected::Nothing) {
@@ -62,7 +62,8 @@ impl Call {
     }
 }
 
-/// Runs the body of a C function; turns its error or panic into a status and the thread's message.
+/// Runs the body of a C function; turns its error or panic into a status and the thread's message. Inside a callback of
+/// Welkin's the body does not run: the call is refused.
 pub(in crate::capi) fn guard(function: &'static str, body: impl FnOnce(&mut Call) -> Result<Status>) -> wk_status {
     hush_panics();
     if DEPTH.get() > 0 {

@@ -1,5 +1,5 @@
-//! State that the boundary keeps with a device: whether a call on the device has panicked, and the objects that can be
-//! released only once the host's context is current again.
+//! State that the boundary keeps with a device: its owner, what its contexts share, whether a call on the device has
+//! panicked, and the objects that can be released only once the host's context is current again.
 
 use std::{
     any::Any,
@@ -139,7 +139,8 @@ impl DeviceCell {
         Ok(entered)
     }
 
-    /// Releases an object now if the host's context can be entered from here, else at the next GPU call.
+    /// Releases an object now if it needs no host's context or that context can be entered from here, else at the next
+    /// [`DeviceCell::enter`] or [`DeviceCell::drain`].
     pub(in crate::capi) fn retire(&self, object: Arc<dyn Any + Send + Sync>) {
         match self.gpu.enter_to_release() {
             Ok(entered) => {

@@ -87,7 +87,8 @@ fn locate<T: HandleObject>(table: &HandleTable, param: &str, handle: usize) -> R
     }
 }
 
-/// Enters a new object into the table. Until its removal, it is one of the children of `parent`.
+/// Enters a new object into the table, and returns its handle. Until its removal, the object is one of the children of
+/// `parent`.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] when the table is full, [`Status::BadHandle`] if the parent was destroyed meanwhile.

@@ -29,10 +29,14 @@ pub(in crate::capi) fn out<T>(param: &str, p: *mut T) -> Result<*mut T> {
     Ok(p)
 }
 
-/// Reads three coordinates in the host's world. The query itself checks whether they are a valid position.
+/// Reads three coordinates in the host's world. Whether they are a valid position is checked by the function that uses
+/// them.
 ///
 /// # Safety
 /// `p` is NULL or points to three numbers.
+///
+/// # Errors
+/// If `p` is NULL or misaligned.
 pub(in crate::capi) unsafe fn position(param: &str, p: *const [f64; 3]) -> Result<[f64; 3]> {
     layout::check_pointer(&param, p)?;
     // SAFETY: checked, and the caller's promise.
@@ -110,14 +114,14 @@ pub(in crate::capi) unsafe fn slice_mut<'a, T: Copy>(
     Ok(unsafe { std::slice::from_raw_parts_mut(p, count) })
 }
 
-/// Writes a state's bytes into the caller's buffer. `*out_size` gets their number; with `capacity` 0 nothing else is
-/// written.
+/// Writes a state's bytes into the caller's buffer. `*out_size` gets their number, also if the buffer is too small;
+/// with `capacity` 0 nothing else is written.
 ///
 /// # Safety
 /// `buffer` is NULL or has `capacity` bytes, `out_size` is NULL or writable; no one else uses either during the call.
 ///
 /// # Errors
-/// If a pointer is NULL, or the buffer is too small.
+/// If `out_size` is NULL or misaligned, if `capacity` is not 0 and `buffer` is NULL, or if the buffer is too small.
 pub(in crate::capi) unsafe fn answer_bytes(
     bytes: &[u8],
     buffer: *mut c_void,
@@ -267,7 +271,8 @@ fn check_element_size<T>(name: &str, size: u32) -> Result<()> {
 /// `p` is NULL or points to `count` structs, `stride` bytes apart, each with `struct_size` readable bytes.
 ///
 /// # Errors
-/// More structs than the limit, a stride that does not fit, the first wrong field, or the error of `take`.
+/// More structs than the limit, a pointer that is NULL or misaligned, a stride that does not fit, the first wrong
+/// field, or the error of `take`. `take` has then seen the structs before the wrong one.
 pub(in crate::capi) unsafe fn each<T: Layout>(
     list: &List<'_>,
     p: *const T,
@@ -280,7 +285,7 @@ pub(in crate::capi) unsafe fn each<T: Layout>(
 /// Reads a list as [`each`] does, where each struct may have extensions of the types in `known`.
 ///
 /// # Safety
-/// As [`each`]; every link of their chains is NULL or points to a struct that begins with a head.
+/// As [`each`]; every link of the structs' chains is NULL or points to a struct that begins with a head.
 ///
 /// # Errors
 /// As [`each`].

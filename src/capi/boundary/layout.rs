@@ -82,7 +82,7 @@ pub(crate) struct Head {
 
 /// Largest size of a struct, bytes: a larger one is a mistake, not a future version.
 const MAX_STRUCT_BYTES: usize = 64 * 1024;
-/// Longest extension chain: a longer one is a cycle.
+/// Number of structs at which an extension chain is refused as a cycle.
 const MAX_CHAIN: usize = 16;
 
 #[allow(dead_code, clippy::all, clippy::undocumented_unsafe_blocks, reason = "written by build.rs")]
@@ -283,7 +283,8 @@ unsafe fn check_size(param: &dyn Display, p: *const u8, size: usize, info: &Stru
     }
 }
 
-/// Reads a struct of this or another version. A missing tail gets its defaults, and every number is checked by name.
+/// Reads a struct of this or another version. Fields that the caller's version lacks get their defaults; the others are
+/// checked, and an error names the field.
 ///
 /// # Safety
 /// `p` is NULL or points to `struct_size` readable bytes.
@@ -359,7 +360,7 @@ pub(crate) struct OutStruct<T: Layout> {
     size: usize,
 }
 
-/// Checks the caller's struct for an answer: its size and type, and that its chain has no unknown extension.
+/// Checks the caller's struct for an answer: its size and type, and that it has no extension.
 ///
 /// # Safety
 /// `p` is NULL or points to `struct_size` writable bytes.

@@ -56,6 +56,9 @@ impl log::Log for LogSink {
 
 /// Installs, replaces or (with `None`) removes the receiver. When the function returns, the old receiver is no longer
 /// called.
+///
+/// # Errors
+/// [`Status::InUse`] for a receiver if the program has set a logger of its own.
 pub(in crate::capi) fn set(callback: wk_log_fn, user: *mut c_void, max_level: wk_log_level) -> Result<()> {
     static INSTALLED: OnceLock<bool> = OnceLock::new();
     let receiver = callback.map(|callback| Receiver { callback, user });

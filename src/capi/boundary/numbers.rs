@@ -209,7 +209,7 @@ pub const WK_STRUCT_TYPE_SOIL_BALANCE: wk_struct_type = 127;
 
 /// Severity of a message.
 pub type wk_log_level = u32;
-/// Something failed; the call's status says so too.
+/// Something failed. The call in progress, or a later call on the device, returns the failure as its status too.
 pub const WK_LOG_LEVEL_ERROR: wk_log_level = 1;
 /// Something works less well than it could: a fallback, a slow path.
 pub const WK_LOG_LEVEL_WARNING: wk_log_level = 2;

@@ -189,7 +189,8 @@ pub(in crate::capi) unsafe fn record(
         .map_err(|e| e.map_field(|field| format!("frame.target.{field}")))
 }
 
-/// Returns the textures of the view that `stages` write and that the host's shaders read.
+/// Returns the textures of the view that `stages` write and that the host's shaders read. The map of the clouds'
+/// shadows is among them at any stage.
 fn sampled(object: &ViewObject, view: &mut View, stages: Stages) -> Result<[Option<wgpu::Texture>; 4]> {
     let mut read = [const { None }; 4];
     if object.has_veil() && stages.has(Stages::MEDIUM) {

@@ -1,5 +1,5 @@
-//! Radiance and transmittance of clouds along a ray, in f64, for queries: twin of `shaders/clouds/march.wgsl` and
-//! `shaders/clouds/about.wgsl`, with finer steps.
+//! Radiance and transmittance of clouds along a ray, in f64, for queries: the computation of
+//! `shaders/clouds/march.wgsl` and `shaders/clouds/about.wgsl`, with finer steps.
 //!
 //! # Error
 //! `cargo test --test clouds radiance -- --nocapture` compares pictures with these rays.
@@ -29,11 +29,11 @@ use crate::{
     moment::Scene,
 };
 
-/// Largest scaled depth of a step in cloud.
+/// Scaled depth of the shortest step, whose length also stays between 1/128 and 1/24 of the layer's thickness.
 const STEP_DEPTH: f64 = 0.25;
-/// Largest ratio of a step's length to its distance from the eye.
+/// Ratio of a step's length to its distance from the eye, between the shortest and the longest step.
 const STEP_ANGLE: f64 = 0.002;
-/// Largest share of a layer's thickness by which a step goes up or down.
+/// Share of a layer's thickness by which the longest step goes up or down.
 const STEP_RISE: f64 = 0.04;
 /// Transmittance at which a ray ends.
 const LEAST: f64 = 0.001;
@@ -42,13 +42,13 @@ const FARTHEST_M: f64 = 60e3;
 /// Length, m, over which clouds fade out at the end of the path [`FARTHEST_M`]. Without this fade a cloud would end in
 /// a flat face.
 const FADES_M: f64 = 15e3;
-/// Ends of the intervals into which the path to the sun is divided, in distances from cloud to cloud.
+/// Ends of the intervals into which the path to the sun is divided, in units of [`Shape::scale_m`].
 const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 /// Number of first intervals in which solid noise frays the clouds' edges; farther on they are smooth.
 const SUN_FRAYED: usize = 3;
-/// Largest slope of the map that rays assume when they skip clear air, per distance from cloud to cloud.
+/// Slope that rays take as the map's largest when they skip clear air, per [`Shape::scale_m`].
 const MAP_SKIP: f64 = 6.0;
-/// Largest slope of the solid noise that rays assume when they skip clear air, per side of its cube.
+/// Slope that rays take as the solid noise's largest when they skip clear air, per [`Shape::solid_m`].
 const SOLID_SKIP: f64 = 12.0;
 
 /// Threshold above which there is no cloud: just below [`CLEAR`].
@@ -77,7 +77,7 @@ struct MarchedLayer<'a> {
     /// Index of the medium: 0 for droplets, [`ICE`] for ice.
     medium: usize,
     /// Ratio of scaled extinction to extinction. Scaled extinction leaves out what droplets scatter into the narrow
-    /// forward peak ([`crate::clouds::transport::Scattering::scale`]).
+    /// forward peak ([`crate::clouds::light::transport::Scattering::scale`]).
     scale: f64,
 }
 
@@ -93,7 +93,7 @@ pub(crate) struct CloudRays<'a> {
     radius_m: f64,
     /// Whether a share of the layers above the place is a deck.
     pub has_deck: bool,
-    /// Factors on the two limits of a step's length, [`STEP_DEPTH`] and [`STEP_ANGLE`].
+    /// Factors on the lengths of steps: on the shortest step ([`STEP_DEPTH`]), and on [`STEP_ANGLE`] and [`STEP_RISE`].
     longer: [f64; 2],
 }
 
@@ -174,7 +174,7 @@ impl<'a> CloudRays<'a> {
     }
 
     /// Creates the clouds of one layer in given light over level ground, seen from a place, without a halo. `longer`
-    /// has the factors on a step's limits ([`STEP_DEPTH`] and [`STEP_ANGLE`]).
+    /// has the factors of [`CloudRays::longer`].
     pub(crate) fn given(
         field: Field<'a>,
         sources: &Arc<Sources>,
@@ -216,7 +216,8 @@ impl<'a> CloudRays<'a> {
     }
 
     /// Returns the intervals of a ray in the layers as (index of the layer, distances of its ends, m), in the order in
-    /// which the ray meets them. First come those on its way down, then those on its way up.
+    /// which the ray meets them. Intervals on its way down come first, then intervals on its way up. Each is at most
+    /// [`FARTHEST_M`] long.
     fn stretches(&self, d: DVec3, range_m: f64) -> Vec<(usize, [f64; 2])> {
         let lowest = -(self.radius_m + self.place_m.z) * d.z;
         let ground = self.crossings(d, 0.0);
@@ -263,7 +264,7 @@ impl<'a> CloudRays<'a> {
         }
     }
 
-    /// Marches the interval from `first` to `last` of a ray in one layer, m. Adds its light to `seen`.
+    /// Marches a ray through one layer, between the distances `first` and `last`, m. Adds the layer's light to `seen`.
     fn layer(&self, layer: &MarchedLayer<'_>, d: DVec3, [first, last]: [f64; 2], mut seen: MarchState) -> MarchState {
         let s = &layer.field.shape;
         let scaled = s.extinction_per_m * layer.scale;

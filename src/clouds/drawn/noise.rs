@@ -21,7 +21,7 @@ pub(crate) struct CloudNoise {
     pub solid: Solid,
     /// Light that was last computed for droplets, and for ice.
     lit: [Mutex<Option<LitMedium>>; 2],
-    /// Layers under cover maps that were last used.
+    /// Cache of the last used layers under cover maps.
     pub maps: Mutex<LayerMaps>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct CloudNoise {
 struct LitMedium {
     /// Medium for which `sources` was computed.
     medium: Arc<Transport>,
-    /// Tables under the sun of the last query.
+    /// Tables for this medium, and the sun for which they were computed.
     sources: Arc<Sources>,
 }
 
@@ -49,7 +49,7 @@ impl CloudNoise {
     }
 
     /// Returns the tables of light in a medium (0 droplets, 1 ice) under a sun in the direction `to_sun` (east, north,
-    /// up).
+    /// up). Cached tables serve as long as the sun is within [`SUN_MOVED`] (as a distance of unit vectors) of theirs.
     pub fn sources(&self, which: usize, medium: &Arc<Transport>, to_sun: DVec3) -> Arc<Sources> {
         // The light stays valid after a panic in another thread.
         let mut lit = self.lit[which].lock().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -20,8 +20,8 @@ pub(crate) const BEHIND: u32 = 2;
 /// is fine enough for broken clouds in a mirror of still water.
 pub(crate) const PANORAMA_SIDE: u32 = 96;
 
-/// Whether shadows get their own draw. A software driver evaluates both sides of a branch, so in a single draw it would
-/// compute shadows for the sky too.
+/// Whether shadows get their own draw: on a software driver that can mask each target separately. Such a driver
+/// evaluates both sides of a branch, so in a single draw it would compute shadows for the sky too.
 fn shades_apart(device: &Device) -> bool {
     let can = wgpu::DownlevelFlags::INDEPENDENT_BLEND;
     device.caps().software && device.adapter.get_downlevel_capabilities().flags.contains(can)

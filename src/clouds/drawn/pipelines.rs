@@ -53,7 +53,8 @@ pub(crate) struct Pipelines {
     pub picture_layout: wgpu::BindGroupLayout,
     /// Layouts for depths of one sample and of several.
     pub shadow_layouts: [wgpu::BindGroupLayout; 2],
-    /// The two pipelines that were used last, because a view that climbs and sinks again alternates between two keys.
+    /// Pipelines of the march: the two that were used last, because a view that climbs and sinks again alternates
+    /// between two keys.
     march: LruCache<March, wgpu::RenderPipeline, 2>,
     /// Pipeline of the light of lamps and flashes, created at first use.
     glow: LruCache<March, wgpu::RenderPipeline, 1>,
@@ -198,7 +199,7 @@ impl Pipelines {
     }
 }
 
-/// Returns the attachment of a view without depth, whose content is stored.
+/// Returns the colour attachment of a two-dimensional view. The pass stores its content.
 fn attachment(
     view: &wgpu::TextureView,
     load: wgpu::LoadOp<wgpu::Color>,

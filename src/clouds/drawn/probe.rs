@@ -39,7 +39,7 @@ const WIDE: f64 = 1e6;
 /// A box of uniform cloud under a sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvenCloud {
-    /// Optical depths from side to side (x, y) and from top to base. x and y are infinite for a slab.
+    /// Optical depths from side to side (x, y), and from top to base, [0, 1000]. x and y are infinite for a slab.
     pub depths: [f64; 3],
     /// Asymmetry parameter of its droplets (Henyey and Greenstein 1941), [0, 0.95].
     pub asymmetry: f64,
@@ -50,7 +50,7 @@ pub struct EvenCloud {
 }
 
 impl EvenCloud {
-    /// Checks that every field is in its range.
+    /// Checks that every field with a range is in it. Optical depths from side to side are not checked.
     fn check(&self) -> Result<()> {
         check_range("tau", self.depths[2], 0.0, 1e3, "")?;
         check_range("g", self.asymmetry, 0.0, 0.95, "")?;
@@ -263,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Compared with the twin in f64.
+    /// Compared with the model in f64.
     #[test]
     fn drawn_cubes_glow_as_the_model_of_lamps_has_it() {
         let device = Device::headless(&DeviceOptions::default()).expect("a software driver is installed");

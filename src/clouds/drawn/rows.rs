@@ -34,8 +34,8 @@ pub(crate) struct Turn {
 }
 
 impl MapRows {
-    /// Returns the rows to refresh in a frame, of `all` rows and at most `most` of them: the first one and their
-    /// number.
+    /// Returns the rows to refresh in a frame: the first one and their number. They are at most `most` of `all` rows,
+    /// or all rows if the map's content cannot be kept ([`Turn::holds`]).
     pub fn due(&mut self, (all, most): (u32, u32), turn: &Turn) -> Option<(u32, u32)> {
         let first_again = std::mem::take(&mut self.made_some);
         if turn.rests && self.made >= all {

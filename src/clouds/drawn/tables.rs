@@ -1,4 +1,5 @@
-//! Look-up tables of clouds for shaders: the map, the solid noise, and light that is scattered more than once.
+//! Look-up tables of clouds for shaders: the map of where clouds grow, the solid noise, light that is scattered more
+//! than once, and hosts' cover maps.
 
 use std::{sync::Arc, time::Instant};
 
@@ -99,14 +100,16 @@ pub(crate) fn sampler(device: &Device, address: wgpu::AddressMode) -> wgpu::Samp
     })
 }
 
-/// Tables of light scattered more than once in two media, by depth above, depth below and leak rate. The tables stand
-/// side by side, and the media one below the other.
+/// Tables of light in two media, by depth above, depth below and leak rate. Each medium has three tables side by side:
+/// under the beam on the top of a box of cloud, under the beam on its side, and under the sky. The media lie one below
+/// the other.
 pub(crate) struct LightTables {
     /// Texture with all tables.
     texture: wgpu::Texture,
     /// Media of the tables: droplets (0) and ice (1).
     pub media: [Arc<Transport>; 2],
-    /// Cosine of the sun's zenith angle for which the tables hold; `None` before the first update.
+    /// Cosine of the sun's zenith angle for which the tables hold; `None` if the next update has to compute all of
+    /// them.
     under: Option<f64>,
 }
 
@@ -129,7 +132,8 @@ impl LightTables {
         self.under = None;
     }
 
-    /// Updates the tables for a sun with this cosine of its zenith angle, if it has moved enough.
+    /// Updates the tables for a sun with this cosine of its zenith angle, if the cosine has changed by `SUN_MOVED` or
+    /// more.
     pub fn update(&mut self, device: &Device, cosine: f64) {
         let cosine = cosine.clamp(-1.0, 1.0);
         if self.under.is_some_and(|c| (c - cosine).abs() < SUN_MOVED) {
@@ -153,7 +157,7 @@ impl LightTables {
     }
 }
 
-/// Look-up tables of clouds: map, solid noise, and light.
+/// Look-up tables of clouds, with the samplers that read them: map, solid noise, light, and hosts' cover maps.
 pub(crate) struct CloudTables {
     /// Map of where clouds grow.
     pub map: wgpu::TextureView,

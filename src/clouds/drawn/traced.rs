@@ -7,10 +7,10 @@
 //! meet the radiance above, and photons that leave through the base meet the radiance below. The drawn light has the
 //! same inputs. Nothing is absorbed. The layer is level and infinite.
 //!
-//! The only error is the photons' noise; each answer includes its standard error. After a scattering through a wide
-//! angle, the narrow lobe of the phase function is widened where the sun is sampled. Otherwise a few rare photons would
-//! contribute most of the radiance. The widening changes the reflectance of uniform slabs by less than the test's
-//! noise.
+//! The photons' noise is the main error; each answer includes its standard error. The other error is a widened lobe:
+//! after a scattering through a wide angle, the narrow lobe of the phase function is widened where the sun is sampled.
+//! Otherwise a few rare photons would contribute most of the radiance. The widening changes the reflectance of uniform
+//! slabs by less than the test's noise.
 
 use std::sync::Arc;
 
@@ -79,7 +79,8 @@ pub struct Seen {
     pub all: f64,
     /// Parts of `all` by source: sun, above, below.
     pub by: [f64; 3],
-    /// Transmittance of the cloud, 0 to 1.
+    /// Transmittance of the cloud, 0 to 1. In the model it includes light that droplets scatter into the narrow forward
+    /// peak, in the photons' answer only light that is not scattered.
     pub through: f64,
     /// Standard error of `all`; 0 for the model.
     pub error: f64,
@@ -118,7 +119,7 @@ impl LitLayer {
     }
 
     /// Returns the model's light along a ray from `eye` (east, north, up), m: the march for queries through this field.
-    /// `longer` scales the lengths of its steps by depth and by angle.
+    /// `longer` has two factors on the lengths of its steps: by depth, and by angle and rise.
     pub fn model(&self, eye: DVec3, direction: DVec3, longer: [f64; 2]) -> Seen {
         // Each source has its own colour channel, with unit strength.
         let light = LayerLight { sun: [1.0, 0.0, 0.0], above: [0.0, 1.0, 0.0], below: [0.0, 0.0, 1.0] };
@@ -225,7 +226,7 @@ impl Photon<'_> {
     }
 }
 
-/// A layer, and the eye that looks at it.
+/// Case of the comparison with photons: a layer, the sun, and the eye that looks at the layer.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Name of the case.
@@ -309,7 +310,8 @@ impl Case {
         LitLayer::new(&slab, SEED, GivenLight::over_ground(to_sun, SKY, GROUND))
     }
 
-    /// Returns rays that meet cloud: their origins and directions.
+    /// Returns up to `count` rays that meet cloud and are neither nearly level nor near the sun: their origins and
+    /// directions.
     pub fn rays(&self, layer: &LitLayer, count: usize) -> Vec<(DVec3, DVec3)> {
         let ray = |i: usize| {
             let [low, high] = self.pitch_deg;
@@ -404,7 +406,7 @@ mod tests {
         }
     }
 
-    /// Largest errors allowed for [`CASES`]: median, 95th percentile, mean.
+    /// Largest errors allowed for [`CASES`]: median, 95th percentile, and error of the mean radiance.
     const HELD: [[f64; 3]; 7] = [
         [0.14, 0.45, 0.08],
         [0.20, 0.68, 0.33],

@@ -36,15 +36,15 @@ pub(crate) struct LayerUniform {
     pub shape: [f32; 4],
     /// Position of the camera on the map's first and second sheet, in their periods.
     pub sheets: [f32; 4],
-    /// Position of the camera in the solid noise, in its period (up: from the layer's base); share of the cellular
-    /// pattern.
+    /// Position of the camera in the solid noise, east and north, in periods; 0, because the noise begins at the
+    /// layer's base; share of the cellular pattern.
     pub solid: [f32; 4],
     /// Illuminance by the sun or moon on a surface that faces it, lux times exposure.
     pub sun: [f32; 4],
     /// Radiance of sky and higher clouds above the layer, cd/m^2 times exposure.
     pub above: [f32; 4],
-    /// Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled width of a cloud from side to
-    /// side.
+    /// Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled optical depth of a cloud from
+    /// side to side.
     pub below: [f32; 4],
     /// Index of the medium; ratio of scaled extinction to extinction; share of the layer that is drawn as a volume;
     /// 1/side of the solid noise, 1/m.
@@ -124,7 +124,7 @@ pub(crate) struct PictureUniform {
     /// Matrix from a place relative to the last frame's camera (east, north, up), m, to that frame's clip space. From a
     /// place relative to this frame's camera, `moved` is subtracted first.
     pub before: [[f32; 4]; 4],
-    /// Movement of a cloud relative to the camera since the last frame, m.
+    /// Movement of a cloud relative to the camera since the last frame (east, north, up), m.
     pub moved: [f32; 3],
     /// Ratio of this frame's exposure to the last one's, 0 without history.
     pub exposed: f32,
@@ -136,7 +136,7 @@ pub(crate) struct PictureUniform {
 pub(crate) struct ShadowUniform {
     /// Unit vector towards the light (east, north, up), never level.
     pub to_light: [f32; 3],
-    /// Height of the plane above the sea, m.
+    /// Height of the map's plane above the sea, m.
     pub plane: f32,
     /// Position of the camera in the map, in periods.
     pub camera: [f32; 2],

@@ -4,13 +4,14 @@
 //! # Model
 //! A cell is an ellipse. Over a polygonal area it is the ellipse through the corners of the bounding rectangle. The
 //! base of all cells is the base of the weather's lowest layer from which rain may fall, if this is at most
-//! `SAME_BASE_M` above the lowest top of the areas' rain. Otherwise their base is this lowest top. Under a closed layer
-//! there are no cells, because such a layer hides the sky.
+//! `SAME_BASE_M` above the lowest top of the areas' rain. Otherwise their base is this lowest top. If one of the
+//! weather's layers is closed, there are no cells, because such a layer hides the sky.
 //!
 //! The light at a place equals the light under one layer of the cells' cloud, whose cover is the share of the sky that
 //! the cells take up. A cell takes up as much as a level disc of equal area. Its share is the disc's view factor from
 //! level ground (Hamilton and Morgan 1952). The disc lies at the horizontal distance r |d / s| from the place: r is the
-//! disc's radius, d the vector to the cell's middle along the cell's axes, and s the cell's half widths.
+//! disc's radius, d the vector to the cell's middle along the cell's axes, and s the cell's half widths. Cells with the
+//! shares f together take up 1 - product (1 - f).
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
@@ -34,18 +35,18 @@ const EDGE_SLOPE: f64 = 3.0;
 /// Position of the rain area's border in the cell's edge: distance from the edge's outer end as a share of the edge's
 /// width. At the border, 1 % of the places have no cloud.
 const BORDER: f64 = 0.85;
-/// Ratio of the distance from cloud to cloud in a cell to the area's half width.
+/// Ratio of the distance from cloud to cloud in all cells to half the width of the narrowest area.
 const SPACING: f64 = 0.4;
 /// Least distance from cloud to cloud in a cell, m.
 const LEAST_SPACING_M: f64 = 600.0;
-/// Largest ratio of a cell's thickness to the area's half width.
+/// Largest ratio of the cells' thickness to half the width of the narrowest area.
 const DEEPEST: f64 = 2.0;
 /// Least thickness of a cell, m, unless its kind of cloud is thinner.
 const MOST_FLAT_M: f64 = 800.0;
 /// Largest height, m, of a layer's base above the lowest top of an area's rain at which the rain may come from that
 /// layer.
 const SAME_BASE_M: f64 = 300.0;
-/// Rain rate above which showers fall from cumulonimbus, mm/h.
+/// Least rain rate at which showers fall from cumulonimbus, mm/h.
 const HEAVY_MM_H: f64 = 10.0;
 /// Least rate for which a cell is made, mm/h.
 const LEAST_MM_H: f64 = 0.05;
@@ -64,8 +65,8 @@ pub struct AreaCell {
 }
 
 impl AreaCell {
-    /// Returns how far a place is inside the cell's edge (0 at the ellipse or outside, 1 where the edge ends), and its
-    /// distance from the ellipse if it is outside, m.
+    /// Returns how far a place is inside the cell's edge (0 at the ellipse or outside, 1 at the edge's inner end and
+    /// farther in), and a lower bound of the place's distance from the ellipse, m (0 inside).
     pub(crate) fn at(&self, place_m: DVec2) -> (f64, f64) {
         let away = place_m - self.center_m;
         let p = DVec2::new(away.dot(self.right), away.dot(self.right.perp()));
@@ -116,7 +117,7 @@ pub(crate) struct AreaClouds {
 impl AreaClouds {
     /// Creates the clouds around a place. `eye` is the place in the host's world, m, and `place_m` is the place in m
     /// east and north of the world's origin. `to_enu` rotates the host's axes to (east, north, up) there. Returns
-    /// `None` if no rain falls in any area.
+    /// `None` if no area has rain of at least [`LEAST_MM_H`].
     ///
     /// # Errors
     /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
@@ -186,8 +187,8 @@ fn view_factor(radius_m: f64, height_m: f64, aside_m: f64) -> f64 {
     0.5 * (1.0 - (h2 + d2 - r2) / (sum * sum - 4.0 * r2 * d2).max(f64::MIN_POSITIVE).sqrt())
 }
 
-/// Returns the layer that lights a place under the cells of rain areas. Its cover is the share of the sky that the
-/// cells hide there. `None` without cells. The place is `eye` in the host's world.
+/// Returns one layer under which a place has the same light as under the cells of rain areas. Its cover is the share of
+/// the sky that the cells hide there. `None` without cells. The place is `eye` in the host's world.
 ///
 /// # Errors
 /// [`WeatherOver::check_time`] refuses times for which the weather is not known.
@@ -208,14 +209,14 @@ pub(crate) fn over_place(
     let Some(slab) = clouds.slab(others) else { return Ok(None) };
     let height_m = (slab.base_m + conditions.air.station_altitude_m - local.place.altitude_m).max(0.0);
     let open = clouds.cells[..clouds.count].iter().fold(1.0, |open, cell| {
-        // The cell's outline is taken where half of its edge is cloud.
+        // The cell's outline is taken where the threshold is 0, so that half of the places on it have cloud.
         let cell = cell.with_edge(edge_m(&slab));
         let semi_m = cell.semi_m - cell.rim_m * CLEAR / (CLEAR - FILLED);
         let away = DVec2::new(cell.center_m.dot(cell.right), cell.center_m.dot(cell.right.perp()));
         let radius_m = (semi_m.x * semi_m.y).sqrt();
         open * (1.0 - view_factor(radius_m, height_m, (away / semi_m).length() * radius_m))
     });
-    // Such a cell has no gaps between clouds, so the distance from cloud to cloud is infinite.
+    // An infinite distance from cloud to cloud says that the cells' cloud is closed at any cover.
     Ok(Some(CloudSlab { cover: 1.0 - open, scale_m: f64::INFINITY, ..slab }))
 }
 

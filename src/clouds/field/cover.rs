@@ -1,9 +1,9 @@
-//! Cover of a layer: the share of the sky that it hides as seen from the ground, from which thresholds are found.
+//! Cover of a layer: the share of the sky that the layer hides as seen from the ground. The thresholds of the map are
+//! found from it.
 //!
 //! Cover is the share of the solid angle within 75 degrees of the zenith in which the layer's slant optical depth
-//! exceeds 0.1, or 0.03 for ice crystals, seen from far below. The sides of clouds hide more of the sky than their
-//! bases do, so thresholds are found by searching: `cargo run --release -p welkin-lab -- thresholds` prints
-//! `thresholds.in`.
+//! exceeds 0.1, or 0.03 for ice crystals, seen from below. The sides of clouds hide more of the sky than their bases
+//! do, so thresholds are found by searching: `cargo run --release -p welkin-lab -- thresholds` prints `thresholds.in`.
 
 use std::f64::consts::PI;
 
@@ -57,8 +57,8 @@ pub fn seen(field: &Field<'_>, is_ice: bool, places: usize) -> f64 {
     (0..places).map(|i| seen_from(field, place(i), hides)).sum::<f64>() / places as f64
 }
 
-/// Finds the thresholds of a kind for covers of 1 to 7 oktas, as the mean over several seeds: one line of
-/// `thresholds.in`.
+/// Finds the thresholds at which the clouds of a kind have covers of 1 to 7 oktas on average over several seeds: one
+/// line of `thresholds.in`.
 ///
 /// # Errors
 /// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
@@ -78,7 +78,7 @@ pub fn find_thresholds(kind: CloudKind, seeds: &[(Map, Solid)], places: usize) -
     Ok(row)
 }
 
-/// Whether a layer is of ice crystals, which hide the sky at the smaller optical depth of `HIDES`.
+/// Whether a layer is fibrous, and so made of ice crystals, which hide the sky at the smaller optical depth of `HIDES`.
 pub fn is_ice(slab: &CloudSlab) -> bool {
     slab.fibre > 0.5
 }

@@ -1,4 +1,4 @@
-//! Threshold, dome and extinction that give a part of a layer its own cover. The folder's `mod.rs` defines them.
+//! Threshold, dome and extinction with which a layer has a given cover at a place. The folder's `mod.rs` defines them.
 
 use super::{
     shape::Shape,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::weather::CloudSlab;
 
-/// Least cover that has clouds. Below it the threshold rises to [`CLEAR`].
+/// Cover below which the threshold rises linearly, to [`CLEAR`] at cover 0.
 const LEAST: f64 = 1e-3;
 /// Least cover from which dome and extinction are computed; below it they stay the same.
 const SHAPED_FROM: f64 = 0.02;

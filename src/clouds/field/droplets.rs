@@ -5,8 +5,9 @@ use crate::weather::CloudSlab;
 /// Droplet diameters with shared scattering tables, um.
 pub(crate) const LIQUID_UM: [f64; 5] = [8.0, 12.0, 16.0, 20.0, 30.0];
 
-/// Returns the diameter of [`LIQUID_UM`] that is nearest to the layers' mean droplet diameter, by ratio, um. Each layer
-/// counts in the mean by its cover times its share of liquid water.
+/// Returns the diameter of [`LIQUID_UM`] that is nearest to the layers' mean droplet diameter, by ratio, um. The mean
+/// weights each layer by its cover times its share of liquid water. Without liquid water the answer is the smallest
+/// diameter.
 pub(crate) fn nearest_diameter<'a>(slabs: impl Iterator<Item = &'a CloudSlab>) -> f64 {
     let add = |(water, sum): (f64, f64), s: &CloudSlab| {
         let liquid = s.cover * (1.0 - s.ice_fraction);

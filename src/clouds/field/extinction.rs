@@ -1,4 +1,5 @@
-//! Extinction of a layer at a place. Twin of `shaders/clouds/field.wgsl`; the folder's `mod.rs` explains the model.
+//! Extinction of a layer at a place, in f64. `shaders/clouds/field.wgsl` has the same formulas in f32; the folder's
+//! `mod.rs` explains the model.
 
 use glam::{DMat2, DVec2, DVec3};
 
@@ -14,7 +15,7 @@ const SOLID_MEAN: f64 = 0.47;
 /// Reciprocal of the range that contains nearly all of the solid noise.
 const SOLID_GAIN: f64 = 2.2;
 
-/// Largest amount that the solid noise adds to the excess, in units of `rough`; only rare peaks exceed it.
+/// Amount, in units of `rough`, up to which the solid noise raises the excess, except in rare peaks.
 pub(crate) const MOST_FRAYED: f64 = 0.8;
 
 /// Clouds of a layer.
@@ -51,7 +52,8 @@ impl Field<'_> {
         (Self { shape, placed: LocalCover::default(), ..*self }, steady)
     }
 
-    /// Returns the place in the map's pattern that belongs to a position. The pattern leans downwind with height.
+    /// Returns the horizontal position of a place, m, without the lean by which its cloud lies downwind of the layer's
+    /// base.
     pub(crate) fn upright(&self, position_m: DVec3) -> DVec2 {
         let s = &self.shape;
         let height = (position_m.z - s.base_m) / s.thickness_m;

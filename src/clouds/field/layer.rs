@@ -11,9 +11,9 @@ pub(crate) const ICE: usize = 1;
 pub(crate) struct OverheadLayer {
     /// Shape of the clouds, from `slab` and the air.
     pub shape: Shape,
-    /// Slab of the weather from which the layer comes.
+    /// Slab from which the layer comes: one of the weather's, or that of the cells over rain areas.
     pub slab: CloudSlab,
-    /// Slot of the layer in `Conditions::clouds`.
+    /// Slot of the layer in `Conditions::clouds`; for the cells over rain areas, a slot without cover.
     pub slot: usize,
     /// Share of the layer that is drawn as a volume, 0 to 1.
     pub share: f64,

@@ -52,7 +52,8 @@ impl LayerMap {
         Self { slab: *slab, map: map.clone(), texels, slope_per_m }
     }
 
-    /// Returns the threshold at a place, and the distance within which it stays the same, m.
+    /// Returns threshold, dome and extinction at a place, and the distance within which the threshold stays the same,
+    /// m.
     pub(crate) fn at(&self, place_m: DVec2) -> (CoverThreshold, f64) {
         let map = &self.map;
         let [columns, rows] = map.cells.map(|n| n as usize);
@@ -92,7 +93,7 @@ fn steepest(texels: &[[f32; 4]], map: &CloudMap) -> f64 {
 
 /// Returns for each cell the distance within which the map stays the same, m. It is two cells less than the distance to
 /// the nearest cell with another value, because values are interpolated between the centres of cells: one cell for the
-/// place from which the distance counts, one for the place at its end.
+/// place from which the distance is measured, one for the place at its end. The distance is at most 60 km.
 fn steady_m(map: &CloudMap) -> Vec<f64> {
     let [columns, rows] = map.cells.map(|n| n as usize);
     let most = (columns + rows) as u32;
@@ -114,7 +115,8 @@ fn steady_m(map: &CloudMap) -> Vec<f64> {
     away.into_iter().map(|n| (f64::from(n.saturating_sub(2)) * map.cell_m).min(60e3)).collect()
 }
 
-/// Cache of layers under maps. An entry is valid as long as its layer and its map stay the same.
+/// Cache of layers under maps, with up to [`MAX_CLOUD_LAYERS`] entries, of which the oldest is dropped first. An entry
+/// is valid as long as its layer and its map stay the same.
 #[derive(Default)]
 pub(crate) struct LayerMaps(Vec<Arc<LayerMap>>);
 

@@ -75,7 +75,7 @@ impl Shape {
         let tall = (2.0 * slab.convection - 1.0).max(0.0);
         let sheet = mix(mix(0.35, 1.4, slab.cellular), mix(1.5, 0.2, tall), heaps);
         let dome = mix(sheet, 0.4, slab.fibre).max(mix(HIGHEST, HIGHEST_OF_TOWERS, tall) - threshold);
-        // Sheets, even those whose cells are slightly convective (heaps up to 0.3), keep their tops.
+        // 0 for sheets, even if their cells are slightly convective (heaps up to 0.3), and 1 for heaps.
         let piled = ((heaps - 0.3) / 0.7).max(0.0);
         // Above `HEADS_AS_CLOUDS_M`, heads of heaps grow only as the distance from cloud to cloud to the power 0.4.
         let finer = (slab.scale_m / HEADS_AS_CLOUDS_M).max(1.0).powf(-0.6 * piled);

@@ -145,7 +145,8 @@ impl CloudLayers {
         (self.drawn, self.has_deck) = (self.count, false);
     }
 
-    /// Inserts a layer in the order of bases. Returns its index, or `None` if the list is full.
+    /// Inserts a layer in the order of bases, and makes all layers volumes. Returns the layer's index, or `None` if the
+    /// list is full.
     pub fn insert(&mut self, layer: OverheadLayer) -> Option<usize> {
         if self.count == MAX_CLOUD_LAYERS {
             return None;

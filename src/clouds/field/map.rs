@@ -1,5 +1,5 @@
-//! Map of where clouds grow. Ranks give the noise a normal distribution, so the share of the plane above a threshold is
-//! known.
+//! Map of where clouds grow. The noise at each texel is replaced by the normal quantile of its rank, so the share of
+//! the plane above a threshold is known.
 
 use glam::{DVec2, UVec2};
 
@@ -32,7 +32,7 @@ const CELLULAR_OCTAVES: u32 = 3;
 /// Texels of the map: two sheets of gradient noise, then two of cellular noise.
 pub struct Map(pub Vec<[f32; 4]>);
 
-/// Returns the value of a sheet before its ranks are taken. `place` is in periods.
+/// Returns the noise of a sheet, before ranks replace it. `place` is in periods.
 fn raw(sheet: u32, place: DVec2, seed: u32) -> f64 {
     let cells = MAP_CELLS as u32;
     let octaves = |count: u32, first: u32, persistence: f64, noise: &dyn Fn(DVec2, UVec2, u32) -> f64| {

@@ -1,6 +1,6 @@
 //! Cloud field: where there is cloud in a layer, and which layers are over a place. A threshold cuts the clouds out of
 //! a map and solid noise. The threshold follows from the layer's cover, or from the cover that a host's map or a rain
-//! area gives to a part of the layer.
+//! area gives to places of the layer.
 //!
 //! # Model
 //! A horizontal map says how strongly cloud grows at each place, as a number z with a normal distribution about 0. The
@@ -12,7 +12,7 @@
 //! At a place with excess e and height h, from 0 at the base to 1 at the top, the extinction is k c. k is the layer's
 //! extinction inside clouds, 1/m, and c = (e - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here dome(h)
 //! is the excess that cloud needs at height h, rough and soft are fields of [`Shape`], and noise is the solid noise,
-//! scaled to about 0 to 1. In cumulus the dome also grows with e, so that no top is cut flat.
+//! scaled to about 0 to 1. In cumulus and in cellular sheets the dome also grows with e, so that no top is cut flat.
 //!
 //! Ice cloud is stretched along the wind that carries it, and leans with height: the head of a fibre lies downwind of
 //! the crystals that have fallen from it. Cumulonimbus has an anvil, a sheet below the layer's top around its towers

@@ -1,10 +1,10 @@
 //! Local cloud cover that overrides a layer's own: a host's map of cover (`CloudMap`), and cells of cloud over rain
-//! areas, so that no rain falls out of a clear sky. Twin of `shaders/clouds/placed.wgsl`.
+//! areas, so that no rain falls out of a clear sky. `shaders/clouds/placed.wgsl` has the same formulas.
 //!
 //! # Model
-//! A part of a layer with its own cover is cut out of the field as a whole layer with this cover would be: with the
-//! threshold, dome and extinction of that cover. These three are found for the middle of each cell of a map and
-//! interpolated between.
+//! Where a layer has a cover of its own at a place, its clouds are cut out of the field as in a whole layer with this
+//! cover: with the threshold, dome and extinction of the cover. For a map these three are found at the middle of each
+//! cell and interpolated between the middles.
 //!
 //! Cells over rain areas ([`super::cells`]) are a separate layer with cloud nowhere else. Over an area the layer is
 //! overcast. Beyond the area's border its cover falls to 0 across the cell's edge, which is several clouds wide, so

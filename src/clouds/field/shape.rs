@@ -26,8 +26,8 @@ pub struct Shape {
     pub cellular: f64,
     /// Side of the cube of solid noise, which repeats, m.
     pub solid_m: f64,
-    /// Growth of the dome with the excess e of its place, by sqrt(1 + held e^2), so that no cumulus reaches far above
-    /// the layer's top.
+    /// Growth of the dome with the excess e of its place, by sqrt(1 + held e^2), so that no cloud would reach far above
+    /// the layer's top, where it is cut off.
     pub held: f64,
     /// Least excess of a place that has an anvil over it; [`NO_ANVIL`] for a layer without anvils.
     pub anvil: f64,

@@ -28,13 +28,13 @@ impl Solid {
     /// Creates the noise of a seed.
     ///
     /// # Errors
-    /// [`crate::Status::OutOfMemory`].
+    /// [`crate::Status::OutOfMemory`] if there is no memory for the noise.
     pub fn new(seed: u64) -> Result<Self> {
         let image = NoiseImage::generate([SOLID_SIZE; 3], &solid_settings(seed))?;
         Ok(Self { size: SOLID_SIZE as usize, texels: image.levels()[0].clone() })
     }
 
-    /// Interpolates the texels at `place`, in periods; 0 to 1.
+    /// Interpolates the texels at `place`, which is in periods. Returns 0 to 1.
     pub fn at(&self, place: DVec3) -> f64 {
         let [x, y, z] = [place.x, place.y, place.z].map(|v| wrapped(v, self.size));
         let texel = |i: usize, j: usize, k: usize| f64::from(self.texels[(k * self.size + j) * self.size + i]) / 255.0;

@@ -19,14 +19,19 @@ pub(super) const OKTAS: usize = 7;
 /// Thresholds of the map by kind of cloud ([`CloudKind::ALL`] without the unknown kind) and oktas 1 to 7.
 pub(super) const THRESHOLDS: [(CloudKind, [f64; OKTAS]); 11] = include!("thresholds.in");
 
-/// Returns the slab that the weather derives for a kind when the host gives nothing else.
+/// Returns the slab that the weather derives for a kind and a cover when the host gives nothing else, with its base at
+/// 2000 m.
+///
+/// # Errors
+/// Errors of [`derive()`].
 pub fn typical(kind: CloudKind, cover: f64) -> Result<CloudSlab> {
     let weather = Weather { clouds: vec![CloudLayer::of(kind, cover, 2000.0)], ..Weather::default() };
     let conditions = derive(&weather)?;
     Ok(*conditions.cloud_slabs().next().unwrap_or(&CloudSlab::NONE))
 }
 
-/// Returns the threshold of one kind at this cover, interpolated in its row of the table.
+/// Returns the threshold of one kind at this cover: interpolated in its row of the table from 1 to 6 oktas, and
+/// extrapolated beyond.
 fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
     // Thresholds are nearly linear in the normal quantile of the cover.
     let quantile = |cover: f64| normal_quantile(cover.clamp(1e-9, 1.0 - 1e-9));

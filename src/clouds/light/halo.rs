@@ -1,4 +1,5 @@
-//! Halo of 22 degrees that ice crystals make around the sun or moon. Twin of `shaders/clouds/halo.wgsl`.
+//! Halo of 22 degrees that ice crystals make around the sun or moon, in f64. `shaders/clouds/halo.wgsl` has the same
+//! formulas.
 //!
 //! # Model
 //! Light that enters one side of a hexagonal crystal and leaves through the next side but one is refracted as by a
@@ -7,10 +8,10 @@
 //! that angle. Beyond the step it falls off nearly exponentially, to 1/e in 4.1 degrees; the test traces light through
 //! prisms. Ice refracts blue more than red, so the halo is red inside. The sun's disc blurs the step.
 //!
-//! Rough crystals make no halo. In cirrus with a visible halo 37 % of the crystals were smooth (Forster and
-//! Mayer 2022), and one cirrus in four had a halo (Forster et al. 2017). Here a fifth of the crystals are smooth. Half
-//! of what a crystal scatters is diffracted around it and goes nearly straight on (Babinet). 39 % of the light that
-//! enters the sides of a long prism goes into the halo.
+//! Rough crystals make no halo. In cirrus with a visible halo 37 % of the crystals were smooth (Forster and Mayer
+//! 2022), and one cirrus in four had a halo (Forster et al. 2017). Here a fifth of the crystals are smooth. Half of
+//! what a crystal scatters is diffracted around it and goes nearly straight on (Babinet). 39 % of the light that falls
+//! on the sides of a long prism goes into the halo.
 //!
 //! Only light that is scattered once shows the halo.
 
@@ -44,8 +45,8 @@ pub fn phase(index: f64, angle: f64) -> f64 {
     smooth(begun) * (-(angle - first).max(0.0) / FALL_RAD).exp() / all
 }
 
-/// Returns the amount that the halo adds to the phase function of ice without its peak, 1/sr, for red, green and blue,
-/// at this cosine of the scattering angle. It is negative away from the halo.
+/// Returns the amount that the halo adds to the phase function of ice without the forward peak, 1/sr, for red, green
+/// and blue, at this cosine of the scattering angle. It is negative away from the halo.
 pub fn excess(scattering: &Scattering, cosine: f64) -> [f64; 3] {
     let angle = cosine.clamp(-1.0, 1.0).acos();
     let smooth = scattering.smooth_phase(1.0 - cosine);

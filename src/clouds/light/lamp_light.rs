@@ -1,5 +1,5 @@
-//! Light from a lamp or a flash that a place in a cloud scatters; the source shines inside that cloud or outside it.
-//! Twin of `shaders/clouds/lit_lamps.wgsl`.
+//! Light of a lamp or a flash, scattered by a place in a cloud; the source shines inside that cloud or outside it.
+//! `shaders/clouds/lit_lamps.wgsl` has the same model.
 //!
 //! # Model
 //! A place stands in a box of cloud, as it does for the sun ([`super::Sources`]). Distances are scaled optical depths,
@@ -36,7 +36,7 @@ use crate::numerics::smooth;
 /// face at which diffuse light would be 0.
 const DARK_AT: f64 = 0.71;
 /// Powers of r (see the model) for the face opposite the nearest one, and for the other four. With them, the product of
-/// all shares has about the gradient that the sum of all images has at the nearest face.
+/// the factors 1 - r^n of all faces has about the gradient that the sum of all images has at the nearest face.
 const FARTHER: [i32; 2] = [2, 3];
 /// Depth from which light returns through the face that it fell on, in units of 1 / (1 - g').
 const RETURNS_FROM: f64 = 0.5;
@@ -56,7 +56,7 @@ pub struct Shine {
     pub between: f64,
     /// Scaled depths of the layer's cloud above and below the source.
     pub within: [f64; 2],
-    /// Whether the source shines inside a cloud, whatever lies on the path.
+    /// Whether the source counts as inside the cloud without regard to the share of the path that lies in cloud.
     pub is_buried: bool,
 }
 

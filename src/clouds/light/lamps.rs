@@ -14,11 +14,11 @@ use crate::{
 const LAMPS: usize = 16;
 /// Largest number of rows in the picture of the lamps' glow.
 const ROWS: u32 = 96;
-/// Display value below which glow is invisible: a quarter of a step of 8 bits.
+/// Luminance times exposure below which glow is invisible: a quarter of a step of 8 bits.
 const LEAST_SHOWN: f64 = 1e-3;
 /// Largest share of a lamp's light that a cloud reflects.
 const REFLECTS: f64 = 0.7;
-/// Least distance of a lamp from the cloud that it lights, m. A lamp inside a cloud counts as at this distance.
+/// Least distance of a lamp from the cloud that it lights, m. A lamp inside a cloud is taken to be at this distance.
 const NEAREST_M: f64 = 5.0;
 
 /// A lamp or a flash: `CloudLamp` of `shaders/clouds/lamps.wgsl`.
@@ -31,7 +31,8 @@ pub(crate) struct CloudLampUniform {
     pub radius: f32,
     /// Ratio of the mean intensity over all directions to that in the middle of the beam.
     pub even: f32,
-    /// Above 0 for a source that counts as inside a cloud, whatever lies between it and the lit place.
+    /// Above 0 for a source inside a cloud. The path from the source to a lit place is then taken as all cloud, and the
+    /// cloud on it is not measured.
     pub buried: f32,
     /// Padding.
     pub pad: f32,
@@ -66,7 +67,8 @@ fn even_share(lamp: &HostLight) -> f64 {
 }
 
 /// Returns an upper bound of the luminance of the clouds that a lamp lights, cd/m^2. `rise` is the sine of the beam's
-/// elevation, and `height_m` the lamp's height above the sea. Cloud above the beam's steepest ray stays dark.
+/// elevation, and `height_m` the lamp's height above the sea. The way to a layer is measured along the ray of the beam
+/// that is steepest towards the layer, because no other ray reaches the layer sooner.
 fn most_on(overhead: &CloudLayers, lamp: &HostLight, rise: f64, height_m: f64) -> f64 {
     let brightest = lamp.intensity_cd.into_iter().fold(0.0, f64::max);
     let steepest = |rise: f64| {
@@ -93,10 +95,11 @@ impl CloudLampUniform {
         Self { light, radius: 0.1, even: even_share(lamp) as f32, buried: 0.0, pad: 0.0 }
     }
 
-    /// Creates the lamp of a flash. It sends its light equally to all sides.
+    /// Creates the lamp of a flash. The flash sends its light equally to all sides.
     fn flash(flash: &FlashLamp, exposure: f64) -> Self {
         Self {
-            // Without the cloud around the flash: the clouds' shaders treat that cloud themselves.
+            // Leaves out that a flash inside a cloud shines through the cloud's base: the clouds' shaders compute what
+            // the cloud does to its light.
             light: FlashLamp { down_share: None, ..*flash }.uniform(exposure),
             radius: flash.radius_m.max(10.0) as f32,
             even: 1.0,
@@ -107,8 +110,8 @@ impl CloudLampUniform {
 }
 
 impl LampsUniform {
-    /// Finds the lamps and flashes of a moment for a picture of this many pixels; `None` if their glow would be
-    /// invisible.
+    /// Finds the lamps and flashes of a moment for a picture of this width and height, pixels. Lamps whose glow would
+    /// be invisible are left out. `None` if nothing is left.
     pub fn of(overhead: &CloudLayers, now: &SceneMoment<'_>, exposure: f64, picture: (u32, u32)) -> Option<Self> {
         let (lights, flashes) = (now.lamps, now.flash_lamps());
         if lights.is_empty() && flashes.is_empty() {

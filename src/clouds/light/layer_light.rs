@@ -1,4 +1,4 @@
-//! Light that falls on a layer of cloud from above and below it, and the mean light of broken layers.
+//! Light that falls on a layer of cloud from above and below it, and the mean radiance of the layers seen from a place.
 
 use std::f64::consts::PI;
 
@@ -20,8 +20,8 @@ pub(crate) struct LayerLight {
 }
 
 /// Returns the light on a layer from sun, sky and the layers above it, and from the ground and the layers below it,
-/// times `exposure`. It depends on the layer's position, not on the eye's. Where a map or rain areas place the clouds,
-/// the light of the ground below them is not known; the ground at the eye is used instead.
+/// times `exposure`. The light depends on the layer's height, not on the eye's. Where a map or rain areas place the
+/// clouds, the light of the ground below them is not known; the ground at the eye is used instead.
 pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposure: f64) -> LayerLight {
     let (c, light) = (&scene.conditions, scene.brighter());
     let albedo = scene.ground_albedo;
@@ -47,10 +47,10 @@ pub(crate) fn light_on(scene: &Scene, (shape, is_placed): (&Shape, bool), exposu
 }
 
 impl CloudLayers {
-    /// Returns the mean radiance of the drawn clouds seen from the place, cd/m^2, with their cover, and the height of
-    /// the lowest of them above the place, m. With a transmittance T, the lit side reflects 1 - T and the shaded side
-    /// passes T. From above only the lit side is seen. From below half of what is seen is lit and the other half is
-    /// shaded: ((1 - T) + T) / 2.
+    /// Returns the mean radiance of the drawn clouds seen from the place, cd/m^2, with their cover, and a height
+    /// relative to the place, m: the lowest of the bases of layers that begin above the place and of the tops of the
+    /// other layers. With a transmittance T, the lit side reflects 1 - T and the shaded side passes T. From above only
+    /// the lit side is seen. From below half of what is seen is lit and the other half is shaded: ((1 - T) + T) / 2.
     pub fn mean_radiance_and_cover(&self, scene: &Scene) -> ([f32; 4], f32) {
         let (mut light, mut clear, mut over) = ([0.0; 3], 1.0, f64::INFINITY);
         for layer in self.layers() {

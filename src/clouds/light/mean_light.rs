@@ -1,6 +1,6 @@
-//! Test of the weather's closed formulas for light under clouds, which hosts are given
-//! ([`Conditions::cloud_light_at`]). They are compared with the mean of the light that the drawn clouds let through to
-//! many places, for all heights of the sun, from below the clouds' base to above their top.
+//! Test of the weather's closed formulas for the share of direct light under clouds ([`Conditions::cloud_light_at`]),
+//! which queries report. The formulas are compared with the mean share that the drawn clouds let through to many
+//! places, for high and low light, from below the clouds' base to above their top.
 
 use glam::{DVec2, DVec3};
 

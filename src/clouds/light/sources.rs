@@ -1,5 +1,5 @@
-//! Light that a place in a cloud scatters towards the eye. `shaders/clouds/light.wgsl` is the twin on the GPU; `mod.rs`
-//! of this folder describes the model.
+//! Light that a place in a cloud scatters towards the eye, in f64. `shaders/clouds/light.wgsl` has the same formulas;
+//! `mod.rs` of this folder describes the model.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::transport::{Scattering, Table, Transport, leak_rate, table_at};
 /// Photons traced through the cloud field (`lab photons`) fit best with 0.5, photons through cubes with 1.5.
 const PART_RATE: f64 = 1.0;
 
-/// Scaled optical depths of cloud around a place; [`super::transport`] has the scale.
+/// Scaled optical depths of cloud around a place; [`super::transport`] defines the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depths {
     /// Depth straight up.
@@ -30,7 +30,8 @@ pub struct Depths {
     pub right: f64,
 }
 
-/// Tables of source terms for one medium under one sun. The cloud around a place counts as a box.
+/// Tables of source terms (the light that a place scatters) for one medium under one sun. The cloud around a place is
+/// taken as a box.
 pub struct Sources {
     /// Scattering of the medium.
     pub scattering: Scattering,
@@ -73,9 +74,10 @@ fn reach(near_depth: f64, far_depth: f64, turning: f64) -> f64 {
 /// Returns the profile of light between two opposite sides of a box, and its slope along that axis. `near` and `far`
 /// are the depths from the place to the sides. The mean of the profile is 1.
 ///
-/// The profile is a cosine in a box no wider than its `height`. In a wider box more of the light leaves through top and
-/// base before it reaches a side, so the profile is more even. It is also even near the face that the light falls on,
-/// in a box of any width; `entered` is the depth of the place behind this face.
+/// `height` is the extent of the box along the axis on which the light comes. The profile is a cosine in a box no wider
+/// than this. In a wider box more of the light leaves through the ends of that axis before it reaches a side, so the
+/// profile is more even. It is also even near the face that the light falls on, in a box of any width; `entered` is the
+/// depth of the place behind this face.
 fn across([near, far]: [f64; 2], turning: f64, height: f64, entered: f64) -> (f64, f64) {
     let extent = reach(near, far, turning);
     let b = std::f64::consts::PI / extent;
@@ -127,7 +129,7 @@ impl Sources {
         let spread = 1.0 / turning * of.scaled_albedo() * of.moments[1] / (4.0 * std::f64::consts::PI);
         let through = |terms: [f64; 4], axis: f64, sides: [((f64, f64), f64); 2]| {
             let [((s1, d1), x1), ((s2, d2), x2)] = sides;
-            // terms[0] is the mean radiance times the scaled albedo / (4 pi).
+            // terms[0] is the mean radiance times the scaled albedo. `mean` is the radiance summed over all directions.
             let mean = terms[0] / of.scaled_albedo() * 4.0 * std::f64::consts::PI;
             legendre_sum(terms, axis) * s1 * s2 - spread * mean * (d1 * s2 * x1 + d2 * s1 * x2)
         };

@@ -7,10 +7,9 @@
 //! for eight directions and four Legendre moments. Depths are scaled by 1 - albedo x share.
 //!
 //! A place has the scaled depths `above` and `below` it. The cloud above and the cloud below it are slabs from a ladder
-//! of depths, each deeper than the one before by the square root of 2. The radiance between the two slabs follows from
-//! their reflection and transmission. Its first four Legendre moments m_l give what the place scatters: J = albedo x
-//! sum of (2 l + 1) chi_l m_l P_l / (4 pi). chi_l are the moments of the phase function, and P_l the Legendre
-//! polynomials.
+//! of depths, each the square root of 2 times the one before. The radiance between the two slabs follows from their
+//! reflection and transmission. Its first four Legendre moments m_l give what the place scatters: J = albedo x sum of
+//! (2 l + 1) chi_l m_l P_l / (4 pi). chi_l are the moments of the phase function, and P_l the Legendre polynomials.
 //!
 //! A cloud of finite width loses light through its sides. In the diffusion approximation the light in a box varies as a
 //! cosine from side to side. It leaks as if it were absorbed at the rate D b^2 for each of the two level axes, with b =
@@ -30,7 +29,7 @@ use glam::{DMat4, DVec4};
 
 use crate::light::phase::{PhaseLobes, lobes_phase};
 
-/// Gauss nodes and weights over (0, 1). The nodes are the cosines of the directions of a hemisphere.
+/// Gauss nodes over (0, 1): the cosines of the directions of a hemisphere.
 const NODES: DVec4 =
     DVec4::new(0.069_431_844_202_973_71, 0.330_009_478_207_571_9, 0.669_990_521_792_428_1, 0.930_568_155_797_026_3);
 /// Weights of the [`NODES`].
@@ -42,12 +41,12 @@ const FORWARD_POWER: i32 = 6;
 /// Number of azimuths in half a turn over which the phase function is averaged.
 const AZIMUTHS: usize = 64;
 
-/// Scaled depth of the thinnest slab of a ladder. Each slab after it is deeper by the square root of 2.
+/// Scaled depth of the thinnest slab of a ladder. Each slab after it is the square root of 2 times as deep.
 pub const THINNEST: f64 = 0.05;
 /// Number of slabs in a ladder, with the one of depth 0.
 pub const DEPTHS: usize = 28;
-/// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The light falls off
-/// with the root of the rate; the root of ladder k is 0.03 (e^(k/4) - 1).
+/// Number of ladders. Each has one rate at which light leaks through the sides, per scaled depth. The root of the rate
+/// sets how fast light falls off; the root of the rate of ladder k is 0.03 (e^(k/4) - 1).
 pub const LEAKS: usize = 16;
 /// Factor in the roots of the leak rates.
 const LEAK_ROOT: f64 = 0.03;
@@ -73,7 +72,7 @@ fn legendre(l: usize, x: f64) -> f64 {
     [1.0, x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x][l]
 }
 
-/// Scattering by the droplets of a cloud, without the forward peak.
+/// Scattering by the droplets or crystals of a cloud, divided into a forward peak and the smooth rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattering {
     /// Whole phase function.
@@ -89,7 +88,7 @@ pub struct Scattering {
 }
 
 impl Scattering {
-    /// Creates the scattering of a phase function for droplets with this single-scattering albedo.
+    /// Creates the scattering of a phase function with this single-scattering albedo.
     pub fn new(lobes: PhaseLobes, albedo: f64) -> Self {
         let asymmetry = lobes.moments()[0].clamp(0.0, 0.999);
         let forward = asymmetry.powi(FORWARD_POWER);
@@ -124,8 +123,8 @@ impl Scattering {
     }
 
     /// Returns the peak that was cut off, 1/sr, after light has gone the scaled depth `gone` in all. Of the beam that
-    /// counts as going straight on, the share 1 - exp(-f gone / (1 - f)) was scattered in the peak, evenly along the
-    /// path, with f = [`Scattering::forward`].
+    /// counts as going straight on, the share 1 - exp(-f gone / (1 - f)) was scattered in the peak, with f =
+    /// [`Scattering::forward`]. The answer spreads this share evenly along the path.
     pub fn peak(&self, versine: f64, gone: f64) -> f64 {
         let x = self.forward * gone / (1.0 - self.forward);
         let share = if x < 1e-3 { 1.0 - 0.5 * x } else { (1.0 - (-x).exp()) / x };
@@ -148,7 +147,7 @@ impl Scattering {
     }
 
     /// Returns the light that a beam of unit irradiance and this cosine scatters into the directions down and up, per
-    /// unit of scaled depth. The sum over all directions is the albedo.
+    /// unit of scaled depth. The sum over all directions is the scaled albedo.
     fn sent_by_beam(&self, cosine: f64) -> (DVec4, DVec4) {
         let at = |sign: f64| DVec4::from_array(NODES.to_array().map(|mu| self.mean_phase(cosine, sign * mu)));
         let (down, up) = (at(1.0), at(-1.0));
@@ -313,8 +312,9 @@ fn in_turn<T>(none: T, mut chains: [impl Iterator<Item = T>; 2]) -> Vec<T> {
     std::iter::once(none).chain(pairs).take(DEPTHS).collect()
 }
 
-/// Source terms of light scattered more than once, by depth above (columns), depth below (rows) and leak rate (blocks
-/// of rows). Each entry has the Legendre coefficients of the cosine between a direction and straight down, 1/sr.
+/// Source terms, the light that a place scatters per unit of scaled depth, by depth above (columns), depth below (rows)
+/// and leak rate (blocks of rows). Each entry has the coefficients of Legendre polynomials of the cosine between a
+/// direction and straight down, 1/sr.
 pub type Table = Vec<[f32; 4]>;
 
 /// Transport of light in a medium: all that does not depend on the light itself.
@@ -432,7 +432,7 @@ fn cell(x: f64, count: usize) -> (usize, f64) {
     (i, x - i as f64)
 }
 
-/// Interpolates a table's source terms for the ladder without leak.
+/// Interpolates the source terms of the leak rate with which `table` begins. A whole table begins with no leak.
 fn first_leak_at(table: &[[f32; 4]], depth_above: f64, depth_below: f64) -> [f64; 4] {
     let (i, x) = cell(depth_place(depth_above), DEPTHS);
     let (j, y) = cell(depth_place(depth_below), DEPTHS);

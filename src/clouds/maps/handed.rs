@@ -10,7 +10,7 @@ use crate::moment::SceneMoment;
 /// fields change with each frame; get them again after it.
 ///
 /// The map lies in a level plane at the altitude of the weather's station and moves with the air that carries the
-/// clouds. It repeats every 20 km.
+/// clouds. It repeats every 20.48 km.
 #[derive(Clone, Debug)]
 pub struct CloudShadows {
     /// Share of the direct light that clouds let through. The light is that of the sun or the moon, whichever is

@@ -16,15 +16,15 @@ use crate::{
     stage::flag,
 };
 
-/// Number of rows that a frame refreshes. While inputs change, a frame waits until this many rows are old.
+/// Number of rows that a frame refreshes. While inputs change, the refresh is put off until this many rows are old.
 const ROWS: u32 = 12;
-/// Aging of the rows, which are refreshed a few at a time. First: distance, m, that the camera or the clouds move until
-/// all rows are old; it turns a cloud 500 m up by one texel. Second: factor on the aging of the shadow map. Third:
-/// change of the exposure (logarithm) until all rows are old. A share of such a change makes that share of the rows
-/// old.
+/// Changes that make all rows of the panorama old. A share of a change makes that share of the rows old, and the
+/// largest share holds. First: distance, m, by which the camera moves or by which the wind carries the clouds; it turns
+/// a cloud 500 m up by one texel. Second: no change, but a factor: the share of the shadow map's rows that has become
+/// old, times this factor, is a share of the panorama's rows. Third: change of the exposure's natural logarithm.
 const AGES: (f64, f64, f64) = (12.0, 4.0, 0.01);
-/// Jumps between two frames beyond which the panorama is redrawn at once: distance that the camera moves, m; change of
-/// the exposure (logarithm).
+/// Jumps between two frames beyond which the panorama is redrawn at once, besides those that put the shadow map out of
+/// date: distance by which the camera moves, m; change of the exposure's natural logarithm.
 const LEAPS: (f64, f64) = (100.0, 0.05);
 
 /// Inputs of the panorama, to detect changes.
@@ -34,7 +34,7 @@ pub(crate) struct PanoramaInputs {
     pub inputs: ShadowInputs,
     /// Altitude of the camera, m.
     pub altitude_m: f64,
-    /// Factor from radiance to display values.
+    /// Exposure, display units per cd/m^2.
     pub exposure: f64,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct CloudPanorama {
     view: wgpu::TextureView,
     /// Pipeline that draws the panorama.
     pipeline: wgpu::RenderPipeline,
-    /// Inputs of the last frame.
+    /// Inputs of the last frame that needed the panorama.
     around: Option<PanoramaInputs>,
     /// Progress of the refresh.
     rows: MapRows,
@@ -82,7 +82,9 @@ impl CloudPanorama {
     /// Bytes of GPU memory.
     pub const BYTES: u64 = 8 * PANORAMA_SIDE as u64 * PANORAMA_SIDE as u64;
 
-    /// Refreshes some rows, or all of them; none while another map has its turn. Returns the number of passes.
+    /// Refreshes some rows once enough of them are old, but none while another map has its turn (`waits`). If the whole
+    /// panorama is out of date, or the frame may use no history, all rows are drawn even then. Returns the number of
+    /// passes.
     pub fn draw(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

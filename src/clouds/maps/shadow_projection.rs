@@ -23,7 +23,7 @@ const FADE_SINES: [f64; 2] = [LOWEST, 0.07];
 const LEAPS: (f64, f64, f64) = (10.0, 0.01, 0.05);
 
 /// Distance, m, that the layer with which the map moves may go between two frames. A longer one means that another
-/// layer is the lowest now; nothing of the map is kept then.
+/// layer is the lowest now; nothing of the map is kept then. The hash of the cells over rain areas has the same limit.
 const LEAP_OF_DRIFT_M: f64 = 1500.0;
 /// Changes that make the whole map old:
 /// - time, s, in which clouds change by some thousandths of their life;
@@ -64,7 +64,7 @@ pub(crate) struct ShadowInputs {
     pub to_light: DVec3,
     /// Sum over the layers of the threshold plus the base in km.
     pub threshold_sum: f64,
-    /// Distance that the layer with which the map moves has drifted, m east and north.
+    /// Distance that the lowest layer, with which the map moves, has drifted, m east and north.
     pub drift_m: DVec2,
     /// Position of the camera, m east and north of the world's origin.
     pub camera_m: DVec2,
@@ -98,7 +98,8 @@ pub(crate) struct ShadowProjection {
     haze: [f64; 2],
 }
 
-/// Returns the extinction of the air at a scene's height, 1/m, and its scale height there, m.
+/// Returns the extinction of the air for green light at a scene's height, 1/m, and the scale height of this extinction
+/// there, m.
 fn haze(scene: &Scene) -> [f64; 2] {
     let (planet, h) = (&scene.planet, scene.place.altitude_m.max(0.0));
     let of = |extinction: f64, height_m: f64| (extinction * libm::exp(-h / height_m), height_m);

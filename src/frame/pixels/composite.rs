@@ -1,4 +1,4 @@
-//! Composition pass: one full-screen draw over the host's picture, in the variant that the frame needs.
+//! Pipelines of the composition, which is drawn over the host's picture in the variants that a frame needs.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -158,8 +158,8 @@ impl Composite {
         let depth_view = host.depth_layer().map(Layer::view);
         let [mask_view, classes, normals] =
             [host.mask_layer(), host.classes_layer(), host.normals_layer()].map(|l| l.map(Layer::view));
-        // The shader does not read this texture if there is no depth. It must be multisampled if colour is, and wgpu's
-        // OpenGL backend can adopt multisampled textures but not create them.
+        // Placeholder for an absent depth; no shader reads it. It must be multisampled if colour is. wgpu's OpenGL
+        // backend can adopt multisampled textures but not create them, so colour itself is the placeholder.
         let no_depth = if sampling == Sampling::Multi { &color_view } else { &self.none };
         let entry =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };

@@ -63,9 +63,9 @@ impl From<Error> for PipelineNotReady {
 }
 
 impl Draws {
-    /// Returns the draws of a variant. Unless `at_once`, each call compiles one large pipeline, and until all are
-    /// compiled the result is a single draw of all pixels ([`PipelineNotReady`]). `splits` is passed on to
-    /// [`kinds::draws`].
+    /// Returns the draws of a variant. Missing pipelines are compiled in this call, except for a picture with a coarse
+    /// grid unless `at_once`: then each call compiles one large pipeline, and until all are compiled the result is a
+    /// single draw of all pixels ([`PipelineNotReady`]). `splits` is passed on to [`kinds::draws`].
     ///
     /// # Errors
     /// [`PipelineNotReady::Coming`] with the single draw; [`PipelineNotReady::Failed`] for a missing shader file.

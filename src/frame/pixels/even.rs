@@ -24,8 +24,8 @@ const LEAST_SIDE: u32 = 64;
 const WEATHER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const CELLS: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-/// Whether the picture of `all` may use a grid. It may not if the weather has detail from pixel to pixel, if fog lies
-/// in front of clouds, or if colour or depth is multisampled.
+/// Whether the picture of `all` may use a grid. It may not if neither BACKGROUND nor MEDIUM is drawn, if the weather
+/// has detail from pixel to pixel, if fog lies in front of clouds, or if colour or depth is multisampled.
 pub(in crate::frame) fn may_be(all: &Variant) -> bool {
     let weather = all.stages.has(Stages::BACKGROUND) || all.stages.has(Stages::MEDIUM);
     let traits = all.constants.traits;

@@ -19,12 +19,12 @@ pub(in crate::frame) fn draws_apart(all: &Variant) -> bool {
     all.stages.has(Stages::SURFACE) || all.constants.traits.is_overlaid
 }
 
-/// Largest number of draws of a picture.
+/// Largest number of draws of a picture, besides the draw that writes the kinds.
 pub(in crate::frame) const DRAWS: usize = 5;
 
-/// Returns the draws that together make the picture of `all`; draws that would change nothing are left out. There is a
-/// single draw if samples have depths of their own or rays are marched. With a `grid`, interpolated pixels have draws
-/// of their own. If `splits`, the other pixels have a draw for each kind.
+/// Returns the draws that together make the picture of `all`. There is a single draw if samples have depths of their
+/// own or rays are marched. With a `grid`, interpolated pixels have draws of their own. If `splits`, the other pixels
+/// have a draw for each kind, except kinds that the draw would not change.
 pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Option<Variant>; DRAWS] {
     let (stages, traits) = (all.stages, all.constants.traits);
     let has_depth = all.images[0];
@@ -44,7 +44,7 @@ pub(in crate::frame) fn draws(all: &Variant, grid: bool, splits: bool) -> [Optio
     let drawn = Variant { stages: stages.without(Stages::BACKGROUND), pixels: Pixels::Drawn, ..*all };
     let is_far = behind || veils_all || everywhere;
     let is_drawn = has_depth && (veils_drawn || everywhere || stages.has(Stages::SURFACE));
-    // A grid covers the whole picture.
+    // A grid covers the whole picture, so it is used only if the weather changes every pixel.
     let grid = grid && is_far && (is_drawn || !has_depth);
     let even = grid.then(|| far(Pixels::Even));
     let even_drawn = (grid && has_depth && draws_apart(all)).then_some(Variant { pixels: Pixels::EvenDrawn, ..*all });

@@ -6,11 +6,12 @@
 //! for software drivers; the coarse grid serves both. There are three divisions:
 //!
 //! - *One draw of all pixels* ([`composite`]): on multisampled targets, in weather in which every pixel marches a ray,
-//!   and while the pipelines of the other divisions are not compiled.
+//!   on a GPU for pictures without a coarse grid, and while the pipelines of the coarse grid are not compiled.
 //! - *Draws by what pixels show* ([`kinds`]): sky, ground below the sky, the host's objects. On software drivers
 //!   ([`Caps::software`](crate::gpu::Caps)).
 //! - *The coarse grid* ([`even`]): sky, air and fog at every fourth pixel, interpolated in between. On every device,
-//!   for weather that has no detail from pixel to pixel, in pictures of at least 64 pixels a side.
+//!   for weather that has neither detail from pixel to pixel nor fog in front of clouds, in pictures of at least 64
+//!   pixels a side.
 //!
 //! Five caches keep what the draws need. Compiling a pipeline takes tens of milliseconds, and searching all of a
 //! device's pipelines for one takes longer than recording a draw.

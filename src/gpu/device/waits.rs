@@ -16,21 +16,21 @@ impl Device {
     /// Submits `encoder` and waits until the GPU has finished. For queries, tests and measurements, not for frames.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`], or the first GPU fault.
+    /// The errors of [`Device::wait`].
     pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
         self.submit(encoder);
         self.wait()
     }
 
-    /// Waits until the GPU has finished everything submitted.
+    /// Waits until the GPU has finished everything submitted, and gives up on a GPU that needs longer than 60 s.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`], or the first GPU fault.
+    /// [`Status::DeviceLost`], also if it gives up on the GPU; the first GPU fault since the last check.
     pub fn wait(&self) -> Result<()> {
         self.wait_within(LONGEST_WAIT)
     }
 
-    /// Waits as [`Device::wait`] does, for at most `limit`, and gives up on a GPU that needs longer.
+    /// Waits as [`Device::wait`] does, and gives up on a GPU that needs longer than `limit`.
     ///
     /// # Errors
     /// The errors of [`Device::wait`].

@@ -212,7 +212,8 @@ gl_functions! {
 }
 
 impl Api {
-    /// Loads functions that OpenGL ES names with a suffix.
+    /// Loads under their suffixed names the functions that [`Api::load`] did not find and that OpenGL ES has with a
+    /// suffix.
     ///
     /// # Safety
     /// The requirements of [`Api::load`].
@@ -287,7 +288,7 @@ impl Api {
     /// Deletes one object with `glDelete..`; zero is ignored.
     pub(crate) fn delete(&self, delete: unsafe fn(&Self, i32, *const u32), name: u32) {
         if name != 0 {
-            // SAFETY: one name is passed and one is there.
+            // SAFETY: the count is 1, and the pointer is to one name.
             unsafe { delete(self, 1, &name) };
         }
     }
@@ -336,7 +337,7 @@ impl Api {
     }
 }
 
-/// Converts an error flag that Welkin's own calls raised into an error.
+/// Converts an error flag that Welkin's own calls raised into an error; `None` for `NO_ERROR`.
 pub(crate) fn raised_in_welkin(error: u32) -> Option<Error> {
     let status = if error == OUT_OF_MEMORY { Status::OutOfMemory } else { Status::Internal };
     (error != NO_ERROR).then(|| Error::new(status, format!("OpenGL answered {} to Welkin's calls", spell(error))))

@@ -1,5 +1,5 @@
-//! Copies between framebuffers, for images that wgpu cannot use itself: the window's framebuffer, and depth in
-//! renderbuffers.
+//! Copies between framebuffers, for images that wgpu cannot use itself: framebuffers of the host, renderbuffers and
+//! multisampled images that are to be read, and multisampled images that are resolved.
 
 use super::{api::Api, names::*};
 use crate::error::{Error, Result, Status};
@@ -16,7 +16,7 @@ pub(super) struct BlitEnd {
 /// samples where the sample counts differ. Copies encoded values unchanged.
 ///
 /// # Errors
-/// The OpenGL error, by name, if OpenGL refuses the copy.
+/// [`Status::Unsupported`], with the name of OpenGL's error, if OpenGL refuses the copy.
 pub(super) fn copy(
     api: &Api,
     source: BlitEnd,

@@ -21,7 +21,7 @@ use crate::error::{Error, Result, Status};
 pub(super) struct TargetBuilder<'a> {
     pub(super) ask: Ask<'a>,
     pub(super) device: &'a wgpu::Device,
-    /// Whether the device draws as on OpenGL 3.3 or OpenGL ES 3.0.
+    /// Whether the host forces tier 0: the device then draws as on OpenGL 3.3 or OpenGL ES 3.0.
     pub(super) tier0: bool,
 }
 
@@ -178,7 +178,7 @@ impl TargetBuilder<'_> {
     ///
     /// # Errors
     /// [`Status::Unsupported`] for multisampled images on OpenGL ES, and for [`Multisample::Each`] before OpenGL 4.0 or
-    /// on tier 0.
+    /// on a forced tier 0.
     fn resolves(&self, multisample: Multisample, samples: u32) -> Result<bool> {
         let es = self.ask.info.is_es();
         match multisample {
@@ -201,7 +201,7 @@ impl TargetBuilder<'_> {
         }
     }
 
-    /// Queries one image, and checks its size and format.
+    /// Queries one image, and checks its size, samples and format.
     fn part(&self, desc: GlTargetDesc, image: GlImage, side: TargetSide) -> Result<TargetImage> {
         let size = (desc.width, desc.height);
         if let (TargetSide::Depth, GlImage::Framebuffer { .. }) = (side, image)
@@ -232,7 +232,8 @@ impl TargetBuilder<'_> {
         Ok(TargetImage { side, image, facts, parameters, copy: None, reading: None })
     }
 
-    /// Creates the copy that an image needs, and the framebuffers at both ends of the copy.
+    /// Creates the copy that an image needs, if it needs one, with the framebuffers at both ends of the copy. `resolve`
+    /// says that the image has more samples than `samples`, those of the copy.
     fn provide_copy(
         &self,
         part: &mut TargetImage,
@@ -274,7 +275,7 @@ impl TargetBuilder<'_> {
         outcome
     }
 
-    /// Creates a texture of Welkin's like one of the host's images.
+    /// Creates a texture of Welkin's for the copy of one of the host's images.
     fn storage(
         &self,
         side: TargetSide,
@@ -354,8 +355,8 @@ impl TargetBuilder<'_> {
         Ok((color, Some(read)))
     }
 
-    /// Creates wgpu textures for depth: one to attach and one to read. They are two textures of one object, because
-    /// wgpu refuses to read a texture that is attached.
+    /// Creates wgpu textures for depth: one to attach and one to read. There are two even if both refer to one object,
+    /// because wgpu refuses to read a texture that is attached.
     fn depth(
         &self,
         part: &TargetImage,

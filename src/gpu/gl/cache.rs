@@ -1,4 +1,5 @@
-//! Cache of the targets that a host uses again and again: built once, and begun at each call.
+//! Cache of the targets that a host uses again and again. Each is built once. Its use begins when the target is first
+//! requested after the host was entered, and ends when the host is left.
 
 use std::sync::Arc;
 
@@ -13,11 +14,13 @@ use super::{
 };
 use crate::error::{Error, Result, Status};
 
-/// Largest number of targets kept; beyond it the least recently used one is dropped.
+/// Number of cached targets from which on a new one replaces the least recently used one that is not in use. If all are
+/// in use, none is dropped.
 const CACHED_TARGETS: usize = 32;
 
 impl Inner {
-    /// Finds or builds the target of `desc`, and begins its use.
+    /// Finds or builds the target of `desc`, and begins its use. If the target is in use already, copies again the
+    /// images of it that are only read.
     pub(super) fn target(
         &mut self,
         info: &GlInfo,
@@ -89,7 +92,7 @@ impl Inner {
         }
         let window = self.window.get_or_insert_with(|| WindowSize::new(&self.api, info));
         self.api.BindVertexArray(self.backend.vertex_array);
-        // The result of a query about another size is discarded.
+        // For a new target, the result of a pending query is discarded: that query may be about another size.
         let before = window.check(&self.api, new);
         if !new {
             before?;
@@ -107,7 +110,7 @@ impl Inner {
         Ask { api: &self.api, info, scratch: self.scratch, encodes }
     }
 
-    /// Ends the use of `entry` if it is in use.
+    /// Ends the use of `entry` if it is in use. An error is kept for the next call that can return it.
     pub(super) fn end_of(&mut self, entry: &Entry) {
         if let Some(at) = self.active.iter().position(|id| *id == entry.target.id) {
             self.active.swap_remove(at);
@@ -149,7 +152,8 @@ impl Inner {
     }
 }
 
-/// Whether two descriptions name the same images for the same uses.
+/// Whether two descriptions name the same images, with the same treatment of samples. Size, generation and
+/// `write_depth` may differ.
 fn same_objects(a: &GlTargetDesc, b: &GlTargetDesc) -> bool {
     let images = |d: &GlTargetDesc| (d.color, d.depth, d.mask, d.surface_classes, d.normals, d.multisample);
     images(a) == images(b)

@@ -1,5 +1,5 @@
-//! Checks of the host's context before wgpu uses it. wgpu and its loader would panic where these checks return an
-//! error.
+//! Checks of the host's context before wgpu uses it. Where the context or a function is missing, wgpu and its loader
+//! would panic; these checks return an error.
 
 use std::{
     collections::HashSet,
@@ -14,7 +14,7 @@ use crate::error::{Error, Result, Status};
 pub enum GlProfile {
     /// Desktop OpenGL, core profile.
     Core,
-    /// Desktop OpenGL, compatibility profile (or a version before profiles).
+    /// Desktop OpenGL, compatibility profile.
     Compatibility,
     /// OpenGL ES.
     Es,
@@ -40,7 +40,8 @@ impl GlInfo {
     /// Queries the current context.
     ///
     /// # Errors
-    /// No context is current, its version cannot be read, or it is too old.
+    /// [`Status::WrongOrder`] if no context is current; [`Status::NoAdapter`] if its version cannot be read;
+    /// [`Status::Unsupported`] if it is older than OpenGL 3.3 or OpenGL ES 3.0.
     pub(super) fn query(api: &Api) -> Result<Self> {
         let Some(version_text) = api.text(VERSION) else {
             return Err(Error::new(
@@ -89,7 +90,7 @@ impl GlInfo {
     }
 
     /// Whether the context has a feature that came with version `desktop` or `es`, or earlier with one of `extensions`.
-    /// Version 0.0 means never.
+    /// Version 0.0 means that no version has the feature, only extensions.
     pub(super) fn knows(&self, desktop: (u32, u32), es: (u32, u32), extensions: &[&str]) -> bool {
         let since = if self.is_es() { es } else { desktop };
         since != (0, 0) && self.version >= since || extensions.iter().any(|e| self.has(e))
@@ -213,7 +214,7 @@ const NEEDED: &[&CStr] = &[
     c"glGetSynciv",
 ];
 
-/// Checks that the loader finds the functions that every context of the needed version has.
+/// Checks that the host's loader `get` finds all functions of [`NEEDED`].
 ///
 /// # Errors
 /// [`Status::InvalidArgument`] with the first missing name.
@@ -235,7 +236,7 @@ pub(super) fn loader_finds_all(get: &dyn Fn(&CStr) -> *const c_void) -> Result<(
 /// current program could be restored.
 ///
 /// # Errors
-/// [`Status::WrongOrder`] naming the mode.
+/// [`Status::WrongOrder`], which names the mode or the program that prevents drawing.
 pub(super) fn can_draw_now(api: &Api, info: &GlInfo) -> Result<()> {
     let refuse = |text: String| Err(Error::new(Status::WrongOrder, text));
     if info.profile == GlProfile::Compatibility {

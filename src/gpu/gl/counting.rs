@@ -69,9 +69,10 @@ impl Counting {
         is_conditional
     }
 
-    /// Opens a device. Refuses without opening if a query is active, because `trial` is then 0. Otherwise calls `open`
-    /// even if the trial says that rendering is conditional: if it really is, nothing is drawn and opening fails. If
-    /// opening succeeds all the same, trials are not reliable with this driver, and no more are made.
+    /// Opens a device. If `trial` is 0 (a query was active, or the context is OpenGL ES), an active query is refused
+    /// before `open` is called. Otherwise calls `open` even if the trial says that rendering is conditional: if it
+    /// really is, nothing is drawn and opening fails. If opening succeeds all the same, trials are not reliable with
+    /// this driver, and no more are made.
     ///
     /// # Errors
     /// The errors of [`Counting::allows`] and of `open`.

@@ -18,7 +18,7 @@ pub enum GlMode {
     HostContext,
 }
 
-/// Order between the commands of the two contexts in shared mode.
+/// Means by which the commands of the two contexts are kept in order, in shared mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Handover {
     /// `glFenceSync` and `glWaitSync`, as the standard requires.
@@ -40,7 +40,7 @@ pub struct GlHostDesc {
     pub user: *mut c_void,
     /// Context in which Welkin uses the host's OpenGL.
     pub mode: GlMode,
-    /// Order between the commands of the two contexts in shared mode.
+    /// Means by which the commands of the two contexts are kept in order, in shared mode.
     pub handover: Handover,
     /// Whether to draw as on OpenGL 3.3 or OpenGL ES 3.0, without compute, even if the driver can do more.
     pub force_tier0: bool,

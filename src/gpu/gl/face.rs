@@ -99,8 +99,8 @@ extern "system" fn get_string_i(name: u32, index: u32) -> *const u8 {
 pub(super) struct FaceGuard(());
 
 impl FaceGuard {
-    /// Shows wgpu the current context. `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks; `no_storage` hides
-    /// the extensions of [`STORAGE`].
+    /// Sets this thread's [`Face`] for the current context. `force_tier0` hides what OpenGL 3.3 or OpenGL ES 3.0 lacks;
+    /// `no_storage` hides the extensions of [`STORAGE`]. Returns `None` if the context has no `glGetString`.
     pub(super) fn show(api: &Api, info: &GlInfo, force_tier0: bool, no_storage: bool) -> Option<Self> {
         let real = api.GetString?;
         let text = |t: String| CString::new(t).ok();

@@ -1,4 +1,4 @@
-//! Internal formats of OpenGL that a host's picture and depth may have, and wgpu's names for them.
+//! Internal formats of OpenGL that a host's images may have, and wgpu's names for them.
 
 use wgpu::TextureFormat as Format;
 
@@ -44,7 +44,7 @@ const NORMALS: &[(u32, &str, Format)] = &[
     (RGBA32F, "GL_RGBA32F", Format::Rgba32Float),
 ];
 
-/// Bits of an attachment, queried when its internal format is not a sized name.
+/// Bits of an attachment, queried for a framebuffer, and for a texture whose internal format is not a sized name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Bits {
     pub(super) red: i32,

@@ -39,7 +39,7 @@ pub(super) enum Sharing {
     HostContext { state: Box<HostState>, counting: Counting, switch: Option<Switch> },
 }
 
-/// State that changes while drawing.
+/// Everything of a host that its lock protects: OpenGL's functions, Welkin's objects in the context, and the targets.
 pub(super) struct Inner {
     pub(super) api: Api,
     pub(super) sharing: Sharing,
@@ -165,7 +165,7 @@ impl GlHost {
     /// image must have one sample.
     ///
     /// # Errors
-    /// The errors of [`GlHost::target`].
+    /// [`Status::Unsupported`] for a framebuffer; the errors of [`GlHost::target`].
     pub fn depth(
         &self,
         device: &wgpu::Device,

@@ -64,8 +64,9 @@ pub(super) struct Ask<'a> {
 /// texture on OpenGL ES before 3.1, and a layer of an array texture or a face of a cube map in a framebuffer.
 ///
 /// # Errors
-/// There is no such object, it lacks storage or the requested buffer, or its target or format cannot be used. The
-/// message names the parameter.
+/// [`Status::InvalidArgument`] if there is no such object, if it was made with another target, or if it lacks storage
+/// or the requested buffer; [`Status::Unsupported`] if its target or format cannot be used. The message names the
+/// parameter.
 pub(super) fn facts(ask: Ask<'_>, image: GlImage, side: TargetSide, size: (u32, u32)) -> Result<Facts> {
     ask.api.take_error(); // so that only errors of the calls below count
     match image {
@@ -286,7 +287,7 @@ fn attached_size(ask: Ask<'_>, attachment: u32, samples: u32) -> Option<(u32, u3
     let (target, level) = (target_of(samples), get(FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL));
     let was = api.uint(if samples > 1 { TEXTURE_BINDING_2D_MULTISAMPLE } else { TEXTURE_BINDING_2D });
     api.BindTexture(target, name);
-    // Layers of arrays and faces of cube maps have other targets.
+    // Layers of arrays and faces of cube maps have other targets, so this binding fails for them.
     let size = (api.take_error() == NO_ERROR).then(|| {
         [TEXTURE_WIDTH, TEXTURE_HEIGHT].map(|pname| {
             let mut value = 0;

@@ -113,7 +113,7 @@ pub(super) fn name_here(info: &GlInfo, name: &CStr) -> Option<CString> {
     CString::new(format!("{name}{suffix}")).ok()
 }
 
-/// Returns a loader that finds functions by their names in this context.
+/// Returns a loader that finds functions by their names in this context, or else by the name that it is given.
 pub(super) fn finder<'a>(
     info: &'a GlInfo,
     get: &'a dyn Fn(&CStr) -> *const c_void,

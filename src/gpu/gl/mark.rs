@@ -1,7 +1,7 @@
 //! Recognition of OpenGL contexts by OpenGL's own means, because no portable call tells one context from another.
 //!
-//! Vertex arrays are never shared between contexts, but their names repeat. So each adopted context gets a vertex array
-//! whose attribute 15 points to a number that no other mark in this process has.
+//! Vertex arrays are never shared between contexts, but their names repeat. So each context that Welkin must recognise
+//! gets a vertex array whose attribute 15 points to a number that no other mark in this process has.
 
 use std::{
     ffi::c_void,
@@ -17,7 +17,7 @@ const ATTRIBUTE: u32 = 15;
 
 /// Number for the next mark to be created.
 static NEXT: AtomicUsize = AtomicUsize::new(0x5745_4C4B);
-/// Vertex array and number of each live mark.
+/// Vertex array and number of each live mark: one that [`Mark::set`] made for a device that still exists.
 static LIVE: Mutex<Vec<(u32, usize)>> = Mutex::new(Vec::new());
 
 /// Mark in one context.
@@ -79,7 +79,8 @@ impl Mark {
         api.delete(Api::DeleteBuffers, self.buffer);
     }
 
-    /// Removes the mark from the list of live marks, because its context no longer exists.
+    /// Removes the mark from the list of live marks only. Makes no OpenGL call, because the context may no longer
+    /// exist.
     pub(super) fn forget(&self) {
         LIVE.lock().unwrap_or_else(PoisonError::into_inner).retain(|&(_, number)| number != self.number);
     }

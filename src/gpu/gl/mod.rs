@@ -2,9 +2,9 @@
 //!
 //! # Two modes
 //! [`GlMode::Shared`]: the host creates a second context that shares objects with its own, and gives a callback that
-//! makes either one current. Welkin draws in the second context, so it cannot change the host's state. Fences order the
-//! two: the host's commands end before Welkin's begin, and Welkin's end before the host's next commands begin.
-//! Framebuffers are not shared between contexts, so targets are textures and renderbuffers.
+//! makes either one current. Welkin draws in the second context, so it cannot change the host's state. Fences (or
+//! flushes, see [`Handover`]) order the two: the host's commands end before Welkin's begin, and Welkin's end before the
+//! host's next commands begin. Framebuffers are not shared between contexts, so targets are textures and renderbuffers.
 //!
 //! [`GlMode::HostContext`]: Welkin draws in the host's own context. It saves the host's state, sets the state that wgpu
 //! assumes, and restores the host's state at the end (`src/gpu/gl/state`). Any framebuffer can be a target, the

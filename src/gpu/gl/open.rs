@@ -52,8 +52,9 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 /// The host's context must be current. On return it is current again, with its state restored, in either mode.
 ///
 /// # Errors
-/// [`Status::InvalidArgument`] for callbacks that are missing or return NULL; [`Status::WrongOrder`] if no context or
-/// the wrong one is current; [`Status::Unsupported`] if the context is older than OpenGL 3.3 or OpenGL ES 3.0;
+/// [`Status::InvalidArgument`] for a callback that is missing, or if `get_proc` returns NULL for a needed function;
+/// [`Status::WrongOrder`] if no context or the wrong one is current, if `make_current` fails, or if nothing can be
+/// drawn in the context now; [`Status::Unsupported`] if the context is older than OpenGL 3.3 or OpenGL ES 3.0;
 /// [`Status::AlreadyWrapped`] if the context has a device already; [`Status::NoAdapter`] if wgpu cannot use the
 /// context, or if its driver fails the test of known answers (`src/gpu/known.rs`) or does not finish the test in 6 s.
 ///
@@ -256,7 +257,7 @@ fn ask(opened: &Opened, api: &Api) -> std::result::Result<Backend, Fault> {
     Ok(backend)
 }
 
-/// Opens wgpu on the current context, whose state is that of a fresh context.
+/// Opens wgpu on the current context, whose state must be what wgpu assumes.
 fn open(
     api: &Api,
     info: &GlInfo,

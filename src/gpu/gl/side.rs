@@ -1,6 +1,6 @@
-//! Side of a target that a host's image belongs to: colour, depth, mask, classes or normals.
+//! Role of a host's image in a target: colour, depth, mask, surface classes or normals.
 
-/// Side of a target that an image belongs to.
+/// Role of an image in a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TargetSide {
     Color,
@@ -11,7 +11,7 @@ pub(super) enum TargetSide {
 }
 
 impl TargetSide {
-    /// Returns the noun for the image in messages.
+    /// Returns the name of the image in messages: that of its field in `target`.
     pub(super) fn noun(self) -> &'static str {
         &self.parameter()["target.".len()..]
     }

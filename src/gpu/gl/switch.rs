@@ -19,8 +19,8 @@ pub enum WhichContext {
 }
 
 impl WhichContext {
-    /// Returns the error for a callback that made a wrong context current when asked for this one. `accepted` completes
-    /// the sentence `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
+    /// Returns the error for a callback that failed or made a wrong context current when asked for this one. `accepted`
+    /// completes the sentence `make_current must, asked for WK_OPENGL_CONTEXT_HOST, `.
     pub(super) fn refuse(self, accepted: impl std::fmt::Display) -> Error {
         let name = match self {
             Self::Host => "WK_OPENGL_CONTEXT_HOST",
@@ -44,6 +44,9 @@ unsafe impl Sync for Switch {}
 
 impl Switch {
     /// Calls the host to make a context current.
+    ///
+    /// # Errors
+    /// [`Status::WrongOrder`] if the callback does not return 0.
     pub(super) fn to(self, which: WhichContext) -> Result<()> {
         // SAFETY: the host vouches for its callback and argument when it creates the device.
         let answer = unsafe { (self.call)(self.user, which as u32) };

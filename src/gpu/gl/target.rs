@@ -7,8 +7,11 @@
 //! | renderbuffer | drawn to directly | attached directly, read from a copy |
 //! | framebuffer (the window's or any other) | copied in, drawn to, copied back | copied in, copied back if asked |
 //!
-//! On OpenGL wgpu can neither read renderbuffers nor copy multisampled images, so Welkin copies them: depth each time
-//! the target is requested, so that shaders read its present contents; colour before each draw that reads it.
+//! A multisampled image that is resolved ([`Multisample::Resolve`]) is copied as a framebuffer is.
+//!
+//! On OpenGL wgpu can neither read renderbuffers nor copy multisampled images, so Welkin copies them before they are
+//! read: a renderbuffer's depth each time the target is requested, and after Welkin has written it; colour before each
+//! draw that reads it.
 //!
 //! Welkin never deletes the host's objects: each wgpu texture has a drop callback, which tells wgpu that it does not
 //! own the object.
@@ -34,7 +37,7 @@ pub enum Multisample {
     #[default]
     Each,
     /// Resolve: the wgpu textures have one sample. Colour is averaged on the way in and copied to every sample on the
-    /// way out; depth is that of one sample. Not on OpenGL ES.
+    /// way out; depth is that of one sample. Not on OpenGL ES, and not for multisampled images with `write_depth`.
     Resolve,
 }
 
@@ -97,7 +100,7 @@ pub(super) struct TargetImage {
     pub(super) image: GlImage,
     pub(super) facts: Facts,
     pub(super) parameters: Option<Parameters>,
-    /// Copy that wgpu uses in place of the host's image.
+    /// Copy that wgpu reads in place of the host's image, and draws to if [`Copied::drawn_to`] is set.
     pub(super) copy: Option<Copied>,
     /// Copy that wgpu reads while it draws to a colour image that it cannot copy.
     pub(super) reading: Option<Copied>,
@@ -213,7 +216,8 @@ impl Entry {
         self.parts.iter().any(|part| part.side == TargetSide::Depth && is_copied(part))
     }
 
-    /// Copies back what was drawn into copies, and restores the parameters of the host's objects.
+    /// Copies back what was drawn into copies, depth only if it may be written, and restores the parameters of the
+    /// host's objects.
     ///
     /// # Errors
     /// A refused copy; all parameters are restored in any case.

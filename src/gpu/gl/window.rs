@@ -53,8 +53,8 @@ impl WindowSize {
         unsafe { api.DeleteQueries(LINES as i32, self.queries.as_ptr()) };
     }
 
-    /// Starts a query about a window that should have `size`, unless a query is pending or the host counts samples
-    /// itself. wgpu's assumed state must be set, with a vertex array bound; that state is kept.
+    /// Starts a query about a window that should have this size, unless a query is pending or the host counts samples
+    /// itself. The state that wgpu assumes must be set, with a vertex array bound; that state is kept.
     pub(super) fn ask(&mut self, api: &Api, (width, height): (u32, u32)) {
         let busy = [ANY_SAMPLES_PASSED, ANY_SAMPLES_PASSED_CONSERVATIVE].iter().any(|target| {
             let mut current = 0;

@@ -29,7 +29,7 @@ impl Windows {
     /// that no context is current.
     ///
     /// # Errors
-    /// [`Status::WrongOrder`] if the callback makes another context current.
+    /// [`Status::WrongOrder`] if the callback fails or makes another context current.
     pub(super) fn enter(&mut self, host: &Api, switch: Switch) -> Result<()> {
         if host.GetString(VERSION).is_null() {
             self.last = None;

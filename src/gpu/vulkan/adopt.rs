@@ -19,7 +19,8 @@ use crate::gpu::device::Device;
 /// [`Status::InvalidArgument`], which names a null handle, a physical device or queue that does not belong to the rest,
 /// or properties that contradict each other; [`Status::Unsupported`], which names what the host's Vulkan lacks;
 /// [`Status::AlreadyWrapped`] if the queue already has a Welkin device; [`Status::NoAdapter`] if the instance's
-/// physical devices cannot be listed; [`Status::OutOfMemory`] and [`Status::DeviceLost`] from the driver.
+/// physical devices cannot be listed; [`Status::OutOfMemory`], [`Status::DeviceLost`] and [`Status::Internal`] from the
+/// driver.
 ///
 /// # Safety
 /// Every handle in `desc` must be live, belong to the others as Vulkan requires, and outlive the result and all wgpu

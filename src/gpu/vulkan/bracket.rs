@@ -27,10 +27,11 @@ pub(super) struct Brackets {
 }
 
 impl Brackets {
-    /// Returns the command buffers to run before (host's layouts to wgpu's) and after (wgpu's layouts to the host's).
+    /// Returns the two command buffers of a hand-over: the one to run before the commands changes the host's layouts to
+    /// wgpu's, the one to run after them changes wgpu's layouts to the host's.
     ///
     /// # Errors
-    /// [`Status::OutOfMemory`] or [`Status::DeviceLost`].
+    /// [`Status::OutOfMemory`], [`Status::DeviceLost`] or [`Status::Internal`] if the driver refuses a command buffer.
     ///
     /// # Safety
     /// `device` must be the host's live device, `family` the queue's, and the images' descriptions must be true.

@@ -10,7 +10,7 @@ use super::dispatch::{self, RealFunctions};
 use super::facts::EnabledFeatures;
 use crate::error::{Error, Result, Status};
 
-/// Loader function and version from a host's description that passed the checks which need no driver call.
+/// Loader function and instance version of a host's description, after the checks that need no driver call.
 pub(super) struct Handles {
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
     pub instance_api_version: u32,
@@ -199,7 +199,8 @@ pub(super) fn extensions(
 }
 
 /// Loads the device's functions, with two queue calls and the creation of descriptor set layouts redirected. Also
-/// returns the real functions that the substitutes call.
+/// returns the real functions that the substitutes call. A missing function of Vulkan 1.0, or of enabled timeline
+/// semaphores, is an error.
 ///
 /// # Safety
 /// The requirements of [`load_instance`]; `desc.device` must be live and made from `desc.physical_device`.

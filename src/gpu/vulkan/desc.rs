@@ -36,6 +36,6 @@ pub struct VulkanHostDesc<'a> {
     pub unlock_queue: Option<unsafe extern "C" fn(user: *mut c_void)>,
     /// Argument of both callbacks.
     pub user: *mut c_void,
-    /// wgpu features to enable if the host's device allows them; the others are left out.
+    /// wgpu features to enable; those that the host's device does not allow are left out.
     pub wanted_features: wgpu::Features,
 }

@@ -1,6 +1,6 @@
-//! Substitutes for a few Vulkan functions between wgpu and a host's device: capability queries, answered by what the
-//! host enabled; queue calls, made under the host's queue lock; and one creation call, without a structure that old
-//! hosts do not know.
+//! Substitutes for a few Vulkan functions between wgpu and a host's device. Capability queries are answered by what the
+//! host enabled. Queue calls are made under the host's queue lock. The creation of descriptor set layouts leaves out a
+//! structure that Vulkan before 1.2 does not know.
 //!
 //! Vulkan entry points have no user pointer, so a substitute finds its host's record by the handle in its first
 //! argument. Every other function goes straight to the driver.
@@ -138,8 +138,9 @@ pub(super) fn device_substitute(name: &CStr) -> Option<*const c_void> {
     })
 }
 
-/// Looks up an instance function by its extension's name, or by the name of the core function that replaced it (a host
-/// on Vulkan 1.1 need not enable `VK_KHR_get_physical_device_properties2`).
+/// Looks up an instance function by `name`. A name that ends in `KHR` and is not found is looked up without this
+/// suffix, as the core function that replaced the extension's (a host on Vulkan 1.1 need not enable
+/// `VK_KHR_get_physical_device_properties2`).
 ///
 /// # Safety
 /// `get` must be the host's `vkGetInstanceProcAddr`, and `instance` a live instance.
@@ -339,7 +340,7 @@ unsafe extern "system" fn queue_submit(
 unsafe extern "system" fn queue_wait_idle(queue: vk::Queue) -> vk::Result {
     let Some(host) = find(|h| h.queue == queue) else { return vk::Result::ERROR_DEVICE_LOST };
     let _held = QueueGuard::new(&host);
-    // SAFETY: as above.
+    // SAFETY: the argument is passed on unchanged, and the queue lock is held.
     unsafe { (host.real.queue_wait_idle)(queue) }
 }
 

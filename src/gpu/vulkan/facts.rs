@@ -124,7 +124,8 @@ impl EnabledFeatures {
         }
     }
 
-    /// Reads the single-feature structures that Vulkan 1.3 combined, and that of draw parameters.
+    /// Reads the structures with a single feature: those of Vulkan 1.3, that of draw parameters (1.1), and that of
+    /// separate depth and stencil layouts (1.2).
     ///
     /// # Safety
     /// The requirements of [`Self::read`].
@@ -268,8 +269,8 @@ impl EnabledFeatures {
         }
     }
 
-    /// Removes features as [`Self::narrow`] does, from the single-feature structures of Vulkan 1.1 to 1.3, and from
-    /// those that Welkin never uses.
+    /// Removes features as [`Self::narrow`] does, from further structures of Vulkan 1.1 to 1.3. Features of 64-bit
+    /// atomics, the memory model and subgroup sizes, which Welkin never uses, are always removed.
     ///
     /// # Safety
     /// The requirements of [`Self::narrow`].
@@ -349,7 +350,8 @@ pub(super) fn known_extensions(enabled: &[&CStr]) -> Vec<&'static CStr> {
     known.filter(|name| enabled.contains(name)).collect()
 }
 
-/// Whether wgpu sees the device extension `name`: the host enabled it, or it is part of the core version in force.
+/// Whether wgpu sees the device extension `name`: [`DEVICE_EXTENSIONS`] lists it, and the host enabled it or the core
+/// version in force includes it.
 pub(super) fn visible_extension(name: &CStr, enabled: &[&'static CStr], api_version: u32) -> bool {
     let row = DEVICE_EXTENSIONS.iter().find(|(known, _)| *known == name);
     row.is_some_and(|&(known, core_since)| enabled.contains(&known) || api_version >= core_since)

@@ -70,7 +70,7 @@ impl VulkanHost {
         // SAFETY: the caller vouches for the semaphores; they are staged for the submission right below.
         unsafe { self.stage(hand_over)? };
         let submitted = dispatch::with_bracket(self.record.queue, bracket, || self.device.queue.submit([commands]));
-        // SAFETY: the queue is only asked for the semaphores that are left.
+        // SAFETY: as for `stage`; only semaphores that are still staged are removed.
         unsafe { self.unstage(hand_over)? };
         drop(turn);
         if submitted { Ok(()) } else { Err(refused()) }

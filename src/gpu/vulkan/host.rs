@@ -41,8 +41,9 @@ impl VulkanHost {
     /// whether the host may now destroy its device.
     ///
     /// # Errors
-    /// [`Status::InUse`] if contexts, views or textures made from this device still exist: they keep it open, and it
-    /// closes with the last of them. [`Status::DeviceLost`] if the device was lost meanwhile.
+    /// [`Status::InUse`] if contexts, views or textures made from this device still exist: they keep the device open,
+    /// and it closes with the last of them. [`Status::DeviceLost`] if the device was lost meanwhile, or the first GPU
+    /// fault that was not yet reported.
     pub fn close(self) -> Result<()> {
         let waited = self.device.wait();
         let released = Arc::clone(&self.released);

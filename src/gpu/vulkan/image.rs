@@ -6,8 +6,8 @@ use wgpu::{TextureFormat, TextureUses};
 use super::names;
 use crate::error::{Error, Result};
 
-/// Features that let wgpu use the formats and sample counts that the host's images may have. None of them needs a
-/// Vulkan feature to be enabled.
+/// wgpu features that every host's device gets if it supports them: timestamps, and the formats and sample counts that
+/// the host's images may have. None of these features needs a Vulkan feature to be enabled.
 pub(super) const FORMAT_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
     .union(wgpu::Features::DEPTH32FLOAT_STENCIL8)
@@ -51,7 +51,7 @@ pub struct HostImage {
 }
 
 impl HostImage {
-    /// Whether two descriptions mean the same Vulkan image, in whatever layers and layouts.
+    /// Whether two descriptions agree in everything but the layer and the layouts, and so mean the same Vulkan image.
     pub(super) fn same_image(&self, other: &Self) -> bool {
         let rest =
             Self { layer: 0, layout: vk::ImageLayout::UNDEFINED, final_layout: vk::ImageLayout::UNDEFINED, ..*self };
@@ -112,7 +112,7 @@ pub(super) fn wgpu_format(format: vk::Format) -> Option<TextureFormat> {
     })
 }
 
-/// Returns the state in which wgpu finds and leaves an imported image between submissions.
+/// Returns the wgpu state of an imported image at the start and at the end of each submission.
 pub(super) fn home_state(role: ImageRole) -> TextureUses {
     match role {
         ImageRole::Colour => TextureUses::COLOR_TARGET,

@@ -11,8 +11,8 @@ use super::{layouts, names};
 use crate::error::{Error, Result, Status};
 
 impl VulkanHost {
-    /// Returns the texture of a host's image. The same image in the same role gives the same texture, as long as it is
-    /// among the 64 that were used last.
+    /// Returns the texture of a host's image. The same image in the same role gives the same texture as long as this
+    /// import is among the 64 that were used last. The texture of an older import is destroyed.
     ///
     /// `name` is the parameter's name in messages. The texture may be drawn to or read only between this call and the
     /// [`VulkanHost::submit`] of the same image. The host must call [`VulkanHost::forget_image`] before or after it
@@ -20,7 +20,7 @@ impl VulkanHost {
     ///
     /// # Errors
     /// [`Status::InvalidArgument`], which names the field of `image` that does not fit; [`Status::Unsupported`], which
-    /// names a format or sample count that this device or Welkin does not support.
+    /// names a format or sample count that this device or Welkin does not support; [`Status::DeviceLost`].
     ///
     /// # Safety
     /// The description `image` must be true, of a live image of the host's device.
@@ -42,11 +42,11 @@ impl VulkanHost {
 
     /// Waits until the GPU no longer uses `image`, and forgets it. The host must call this function for every image
     /// that it handed over and destroys. The call may come before or after the destruction, but must come before the
-    /// host hands over another image, because Vulkan may give a new image the old handle. After the destruction only
-    /// Welkin's views are left to be destroyed, for which the image need not exist. Not for use in a frame.
+    /// host hands over another image, because Vulkan may give a new image the old handle. A call after the destruction
+    /// destroys only Welkin's views of the image, for which the image need not exist. Not for use in a frame.
     ///
     /// # Errors
-    /// [`Status::DeviceLost`].
+    /// [`Status::DeviceLost`], or the first GPU fault.
     pub fn forget_image(&self, image: vk::Image) -> Result<()> {
         let mut images = self.images.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         images.0.retain(|i| {

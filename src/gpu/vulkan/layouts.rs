@@ -1,4 +1,5 @@
-//! Layouts that a host's image can have, and the usage, feature or extension that is missing where it cannot have one.
+//! Layouts that a host's image can have, and the reason why it cannot have a layout: its format, or a usage, feature or
+//! extension that is missing.
 
 use ash::vk;
 

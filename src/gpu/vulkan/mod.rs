@@ -11,7 +11,8 @@
 //! The host hands over an image, or one layer of an array, for one submission ([`VulkanHost::submit`]). The image comes
 //! in the layout that the host left it in, and goes back in the layout that the host asks for. On the *same queue* no
 //! semaphore and no barrier of the host's own is needed: Welkin's work waits for what the host submitted before, and
-//! what the host submits afterwards waits for Welkin's work. Work on other queues is ordered by semaphores.
+//! what the host submits afterwards waits for Welkin's work. The host orders work on other queues by semaphores
+//! ([`HandOver`]).
 //!
 //! # What the host must have enabled
 //! The host needs nothing beyond Vulkan 1.1 and a queue for graphics and compute, except `VK_KHR_swapchain` for images

@@ -7,7 +7,7 @@ pub(super) fn feature_text(name: &str) -> String {
     format!("{name} enabled on the device and listed in enabled_features of the wk_vulkan_host_desc")
 }
 
-/// Returns the layout's name in Vulkan's headers.
+/// Returns the layout's name in Vulkan's headers, or its number if the name is not known.
 pub(super) fn layout_name(layout: vk::ImageLayout) -> String {
     let text = format!("{layout:?}");
     if text.starts_with(|c: char| c.is_ascii_digit()) { text } else { format!("VK_IMAGE_LAYOUT_{text}") }

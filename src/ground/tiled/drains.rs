@@ -1,8 +1,9 @@
 //! Sink of each cell of a tile: the end of the cell's run-off within its block of cells. A sink is a pit, a cell of a
 //! neighbouring block, or a hole or edge of the terrain.
 //!
-//! Run-off takes the steepest of the eight directions down, as on a single grid. Paths are resolved within blocks of 32
-//! x 32 cells. A change of the ground therefore updates only the blocks that it touches, however far their water runs.
+//! Run-off takes the steepest of the eight directions down, as on the host's grid. Paths are resolved within blocks of
+//! 32 x 32 cells. A change of the ground therefore updates only the blocks that it touches, however far their water
+//! runs.
 
 use crate::terrain::{AROUND, CellId, CellRect, Terrain, TileKey};
 
@@ -55,8 +56,8 @@ pub(super) fn is_lower(terrain: &Terrain, a: CellId, b: CellId) -> bool {
     (ay, ax) < (by, bx)
 }
 
-/// Returns where a cell's run-off goes first: to the steepest lower neighbour, to the cell itself if it is a pit, or
-/// out of the terrain.
+/// Returns where a cell's run-off goes first: out of the terrain if the cell lies beside a hole or the edge, else to
+/// the steepest lower neighbour, or to the cell itself if it is a pit.
 fn below(terrain: &Terrain, cell: CellId) -> Sink {
     let height = f64::from(terrain.height(cell));
     let (mut steepest, mut down) = (f64::NEG_INFINITY, Sink::Pit(cell));
@@ -92,7 +93,7 @@ impl Drains {
         (y / BLOCK) * (side / BLOCK) + x / BLOCK
     }
 
-    /// Finds the sinks of all cells in the blocks of a tile that a rectangle touches.
+    /// Finds the sinks of all cells in those blocks of a tile that a rectangle touches.
     pub fn find(&mut self, terrain: &Terrain, (slot, key): (u32, TileKey), rect: CellRect) {
         let own = terrain.rect(key);
         let Some(part) = own.meets(rect) else { return };

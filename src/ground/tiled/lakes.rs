@@ -69,7 +69,7 @@ struct Hollow {
     held_at: Vec<f64>,
     /// Number of cells of the hollow's parts.
     below: f64,
-    /// Water that the hollow's parts hold, mm times cells.
+    /// Water that the hollow's parts hold when they are full, mm times cells.
     base: f64,
     /// Height at which the hollow begins, mm: that of its pit, or of the saddle where its parts meet.
     birth_mm: f64,
@@ -321,7 +321,7 @@ impl Lakes {
         }
     }
 
-    /// Fills water into a lake, mm times cells, until the lake is full. Returns the rest.
+    /// Fills `water`, mm times cells, into a lake until the lake is full. Returns the rest.
     fn fill(&mut self, terrain: &Terrain, lake: u32, water: f64) -> f64 {
         let short = |s: &Self| {
             s.of(lake).is_some_and(|(l, h)| {
@@ -425,7 +425,7 @@ impl Lakes {
         keeps
     }
 
-    /// Returns the first pit of a tree.
+    /// Returns the first of a tree's pits, counted row by row from the south-west.
     fn pit_of(&self, mut hollow: u32) -> Option<CellId> {
         loop {
             let h = self.hollows[hollow as usize].as_ref()?;

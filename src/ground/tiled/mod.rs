@@ -5,7 +5,8 @@
 //! pit by the end of the step ([`drains`]). Pits fill, spill and join ([`lakes`]). Water leaves at holes and at the
 //! edge of the terrain; no water runs in from there. Runs of cells on which nothing falls, flows or dries are skipped,
 //! and so are tiles in which all runs rest. The balance is: rain = (change of film, pores and standing water) +
-//! evaporated + leaked + drained. Drained water includes that of cells that were removed.
+//! evaporated + leaked + drained. Rain includes the water with which a tile's own state begins, and drained water
+//! includes that of cells that were removed.
 //!
 //! When the ground changes, only the blocks and lakes that the change touches are updated. The water of these lakes is
 //! poured again where it stood: it runs off a floor that was raised, and into a pit that was dug.

@@ -122,7 +122,8 @@ impl SavedTiles {
         }
     }
 
-    /// Checks that the terrain is the one of the state.
+    /// Checks that the terrain is the one of the state: the same lattice, and the same tiles with the same heights and
+    /// classes.
     fn check(&self, terrain: Option<&Terrain>) -> Result<()> {
         let unfit =
             |what: String| Err(Error::invalid("state", format!("holds the water of a terrain of tiles: {what}")));

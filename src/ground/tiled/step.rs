@@ -21,7 +21,7 @@ pub(crate) struct TiledStep<'a> {
     pub ground: GroundStep<'a>,
 }
 
-/// Water that a step added and removed, and whether any water changed.
+/// Water that a step added and removed, and whether any water may have changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SteppedTiles {
     pub flows: Flows,

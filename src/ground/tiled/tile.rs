@@ -50,7 +50,7 @@ fn rounded_down(v: f64) -> f32 {
 }
 
 impl TileWater {
-    /// Creates a dry tile.
+    /// Creates the water of a tile, without a state of its own and with all sinks unknown.
     pub fn new(terrain: &Terrain, slot: u32) -> Self {
         let tile = terrain.tile(slot);
         let runs = tile.heights_m.len().div_ceil(RUN);

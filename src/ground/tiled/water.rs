@@ -136,7 +136,8 @@ impl TiledWater {
         keys.filter_map(|key| Some((key, *self.keys.get(&key)?))).collect()
     }
 
-    /// Updates the water after a change of the ground. Returns the water that left with removed cells, mm times cells.
+    /// Updates the water after a change of the ground. Returns the water that left the terrain, mm times cells: with
+    /// removed cells, or when the water of the touched lakes was poured again.
     pub fn follow(&mut self, terrain: &Terrain, change: &Changed) -> f64 {
         let loose = self.let_loose(terrain, change);
         let mut drained = self.follow_tiles(terrain, change);
@@ -273,7 +274,7 @@ impl TiledWater {
         self.lakes.count > 0 && (self.lakes.has_any(terrain.split(cell).0) || terrain.is_at_border(cell))
     }
 
-    /// Returns the level of the water that covers a cell, mm.
+    /// Returns the level of the standing water that covers a cell, mm; `None` if there is none.
     pub fn level_mm(&self, terrain: &Terrain, cell: CellId) -> Option<f64> {
         let (slot, at) = terrain.split(cell);
         let level = self.lakes.level_mm(self.lakes.lake_of(slot, at)?);

@@ -136,7 +136,7 @@ impl Header {
         self.needed(name, 1.0, MAX_HEIGHT_SAMPLES as f64).map(|side| side as u32)
     }
 
-    /// Returns the distance between samples.
+    /// Returns the distance between samples to the east and to the north.
     fn cell(&self) -> Result<[f64; 2]> {
         let [low, high] = CELL_RANGE;
         if self.value("dx").is_none() && self.value("dy").is_none() {
@@ -145,7 +145,8 @@ impl Header {
         Ok([self.needed("dx", low, high)?, self.needed("dy", low, high)?])
     }
 
-    /// Returns the place of the south-western sample: half a cell from the corner, if that is given.
+    /// Returns the place of the south-western sample: half a cell from the corner if the header gives the corner, else
+    /// the centre that the header gives. `None` unless the header gives one of them in both directions.
     fn south_west(&self, cell: [f64; 2]) -> Result<Option<[f64; 2]>> {
         let side = |corner: &str, center: &str, cell: f64| {
             let moved = |(name, shift): (&str, f64)| {

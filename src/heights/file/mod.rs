@@ -15,7 +15,7 @@ use super::{
 };
 use crate::error::{Error, Result, Status, shown};
 
-/// Largest size of a file, bytes: an ESRI ASCII grid of the largest map with 15 characters for each height.
+/// Largest size of a file, bytes: an ESRI ASCII grid of the largest map with 15 characters and a space for each height.
 const MOST_BYTES: u64 = 16 * MAX_HEIGHT_SAMPLES;
 
 impl HeightMap {
@@ -23,7 +23,7 @@ impl HeightMap {
     ///
     /// # Errors
     /// [`Status::Io`] if the file cannot be read; [`Status::Unsupported`] for a file of more than 4 GiB; otherwise the
-    /// errors of [`HeightMap::from_bytes`], after the name of the file.
+    /// errors of [`HeightMap::from_bytes`], those about the file after its name.
     pub fn load(path: impl AsRef<Path>, settings: &HeightSettings) -> Result<Self> {
         settings.check().map_err(|e| e.within("settings"))?;
         let path = path.as_ref();

@@ -1,5 +1,6 @@
 //! Terragen terrains (Planetside 2003, *Terragen Terrain file specification*): chunks without lengths, little-endian,
-//! rows from the south. A height is `SCAL (base + number scale / 65536)`.
+//! rows from the south. A height is `SCAL (base + number scale / 65536)`, with the third scale of the chunk SCAL and
+//! the base and scale of the chunk ALTW.
 
 use super::{
     super::{
@@ -14,7 +15,7 @@ pub const MAGIC: &[u8] = b"TERRAGENTERRAIN ";
 
 /// Metres for each unit of a terrain whose file does not give its scale.
 const DEFAULT_SCALE: f32 = 30.0;
-/// Longest side that all programs read; some read it as a signed number.
+/// Longest side, in samples, that all programs read; some read it as a signed number.
 const LONGEST: u32 = 32_767;
 /// Markers of the chunks of fixed size, and the sizes of these chunks including the marker, bytes.
 const FIXED: [(&[u8], usize); 7] =
@@ -69,13 +70,13 @@ impl Fields {
         Some([side(self.x_points)?, side(self.y_points)?])
     }
 
-    /// Returns the bytes of the heights' chunk.
+    /// Returns the size of the heights' chunk, bytes; `None` if columns or rows are not known.
     fn heights_size(&self) -> Option<usize> {
         self.sides().map(|[columns, rows]| HEIGHTS.1 + 2 * columns as usize * rows as usize)
     }
 }
 
-/// Returns the chunk of fixed size with this marker.
+/// Returns the marker and the size of the chunk of fixed size with this marker; `None` for other markers.
 fn fixed(marker: &[u8]) -> Option<(&'static [u8], usize)> {
     FIXED.into_iter().find(|(name, _)| *name == marker)
 }

@@ -1,9 +1,9 @@
 //! Geometry of shadow maps, and when a map is drawn anew. The maps are squares around the eye, perpendicular to the
 //! light, one inside the other.
 //!
-//! Maps are centred at the eye and not fitted to its frustum: a camera that turns needs no new map, and the sphere
-//! around a slice of a wide frustum is no smaller. Half sides grow by one ratio, so that a texel covers about the same
-//! number of pixels where each map begins (Zhang et al. 2006, logarithmic splits).
+//! Maps are centred at the eye and not fitted to its frustum: a camera that turns needs no new map, and a map around a
+//! slice of a wide frustum would have to be about as large. Half sides grow by one ratio, so that a texel covers about
+//! the same number of pixels where each map begins (Zhang et al. 2006, logarithmic splits).
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -11,15 +11,15 @@ use crate::land::uniforms::{CASCADES, CascadeUniform};
 
 /// Least distance at which the finest map begins, m.
 const NEAREST_M: f64 = 1.0;
-/// Least ratio of half sides.
+/// Least ratio of a map's half side to that of the next finer map.
 const LEAST_RATIO: f64 = 2.0;
-/// Share of its half side by which a map reaches farther than it must, and by which the eye may move before the map is
-/// drawn anew.
+/// Share by which a map's half side is larger than needed, and share of the half side by which the eye may move before
+/// the map is drawn anew.
 const MARGIN: f64 = 0.125;
 /// Angle that the light may turn before a map is drawn anew, rad: a tenth of the light's disc, and so of any penumbra.
 const TURN: f64 = 9.3e-4;
-/// Distances along the light from a map's centre, half sides: how far the map reaches away from the light, and within
-/// what distance it is used.
+/// Distances along the light's direction from a map's centre, in half sides: how far the map reaches away from the
+/// light, and up to what distance, on both sides of the centre, the map is used.
 const BEHIND: f64 = 1.25;
 const BESIDE: f64 = 1.2;
 /// Tangent of the radius of the discs of sun and moon: 0.267 degrees.
@@ -35,22 +35,24 @@ pub(super) struct Cascade {
     eye: DVec3,
     centre: DVec3,
     half_m: f64,
-    /// Distance along the light from the centre to the ground that is nearest to the light.
+    /// Distance along the light's direction from the centre to the ground that is nearest to the light, at least
+    /// `half_m`.
     top_m: f64,
     /// Texels along a side.
     side: u32,
 }
 
-/// Returns the distance, m, at which the finest map begins, for an eye at a height above the ground around it. It is a
-/// power of two. It stays `kept_m` as long as this is between 0.4 and 1.25 times the height, so that an eye which bobs
-/// needs no new maps.
+/// Returns the distance, m, at which the finest map begins, for an eye at a height above the ground around it: the
+/// largest power of two up to the height. A height below 1 m is taken as 1 m. The distance so far, `kept_m`, remains if
+/// it is between 0.4 and 1.25 times the height, so that an eye which bobs needs no new maps.
 pub(super) fn nearest_m(above_m: f64, kept_m: f64) -> f64 {
     let above = above_m.max(NEAREST_M);
     if kept_m <= 1.25 * above && 2.5 * kept_m > above { kept_m } else { libm::exp2(libm::log2(above).floor()) }
 }
 
-/// Half sides that maps should have, m, from the distance at which the finest begins up to `reach_m`. They change in
-/// steps, because a map is drawn anew when its half side changes.
+/// Half sides that maps should have, m, if the finest begins at the distance `nearest_m` and the coarsest reaches at
+/// least `reach_m`. `reach_m` is rounded up in steps of a factor of sqrt 2, because a map is drawn anew when its half
+/// side changes.
 pub(super) fn half_sides_m(nearest_m: f64, reach_m: f64) -> [f64; CASCADES] {
     let reach = libm::exp2(0.5 * (2.0 * libm::log2(reach_m.max(1.0))).ceil());
     let ratio = libm::pow(reach / nearest_m, 1.0 / CASCADES as f64).max(LEAST_RATIO);
@@ -102,7 +104,7 @@ impl Cascade {
         .transpose()
     }
 
-    /// Constants with which places about an eye find their texels.
+    /// Constants with which the shader finds the texels of places about an eye.
     pub fn uniform(&self, eye: DVec3) -> CascadeUniform {
         let rows = self.clip(eye).transpose();
         let texture = |row: DVec4, turn: f64| (row * (0.5 * turn) + DVec4::W * 0.5).as_vec4().to_array();
@@ -117,7 +119,8 @@ impl Cascade {
         }
     }
 
-    /// Lateness of the map for an eye, a light and a half side: from 1 on the map is due to be drawn anew.
+    /// Lateness of the map for an eye, a light and a half side: the largest of their changes since the map was drawn,
+    /// each as a share of the change that is allowed. From 1 on the map is due to be drawn anew.
     pub fn lateness(&self, light: DVec3, eye: DVec3, half_m: f64) -> f64 {
         let moved = (eye - self.eye).length() / (MARGIN * self.half_m);
         let turned = light.cross(self.light()).length() / TURN;
@@ -187,8 +190,8 @@ mod tests {
         assert_eq!([4.9, 5.1].map(|above| nearest_m(above, 2.0)), [2.0, 4.0]);
     }
 
-    /// Side of a texel where the finest map begins and where it gives way to the next, in pixels of a picture of 1080
-    /// rows and 60 degrees, 2 m above the ground, for shadows up to a distance.
+    /// Side of a texel where the finest map begins and where the next map takes over, in pixels of a picture that is
+    /// 1080 rows and 60 degrees high, for an eye 2 m above the ground and shadows up to a distance.
     fn texel_px(reach_m: f64) -> [f64; 2] {
         let nearest = nearest_m(2.0, 0.0);
         let half_m = half_sides_m(nearest, reach_m)[0];

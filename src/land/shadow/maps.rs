@@ -16,7 +16,8 @@ use crate::{
 };
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Texels along a side of a block of `tops`; `shaders/land/shadow_block.wgsl` has the same.
+/// Texels of a map along a side of a block, which is one texel of [`ShadowMaps`]' `tops`;
+/// `shaders/land/shadow_block.wgsl` has the same.
 pub(super) const BLOCK: u32 = 16;
 
 /// Maps of a view.
@@ -27,6 +28,7 @@ pub(in crate::land) struct ShadowMaps {
     /// of texels.
     depths: wgpu::Texture,
     tops: wgpu::Texture,
+    /// Views of each map's layer, in `depths` and in `tops`.
     layers: [[wgpu::TextureView; 2]; CASCADES],
     block: [UniformBlock; CASCADES],
     draw: wgpu::RenderPipeline,
@@ -84,13 +86,13 @@ fn depth_layers(device: &wgpu::Device, side: u32, layers: u32) -> wgpu::Texture 
     })
 }
 
-/// Creates placeholders to bind where there are no maps: for the depths, and for the depths of blocks.
+/// Creates placeholders to bind where there are no maps, as [`ShadowMaps::views`] returns them.
 pub(in crate::land) fn no_maps(device: &wgpu::Device) -> [wgpu::TextureView; 2] {
     let nothing = bind::as_layers(&depth_layers(device, 1, CASCADES as u32));
     [nothing.clone(), nothing]
 }
 
-/// Begins a pass that writes the depth of a layer, cleared to the farthest from the light.
+/// Begins a pass that writes the depths of a layer. They are cleared to 0, the depth farthest from the light.
 fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("land shadows"),
@@ -107,7 +109,7 @@ impl ShadowMaps {
     /// Creates maps with `side` texels along a side.
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] if a shader file is missing.
     pub fn new(device: &Device, blocks: &Blocks, side: u32) -> Result<Self> {
         let gpu = &device.device;
         let depths = depth_layers(gpu, side, CASCADES as u32);
@@ -132,7 +134,7 @@ impl ShadowMaps {
         })
     }
 
-    /// Depths of the maps, and of their blocks, as the ground's shader reads them.
+    /// Depths of the maps, and the depths nearest to the light in their blocks, as the ground's shader reads them.
     pub fn views(&self) -> [wgpu::TextureView; 2] {
         [&self.depths, &self.tops].map(bind::as_layers)
     }
@@ -153,7 +155,7 @@ impl ShadowMaps {
         self.mesh.write(device, patches);
     }
 
-    /// Draws a range of the patches into a map.
+    /// Draws a range of the patches into a map, and finds the depths of the map's blocks.
     pub fn draw(
         &self,
         device: &Device,

@@ -1,9 +1,10 @@
 //! Shadows of the sun, or of the moon, on the drawn terrain: four shadow maps around the eye, each of which serves many
 //! frames.
 //!
-//! A frame draws at most one map anew, the one that is most overdue, unless maps are missing or far too late:
-//! `cascade.rs` says when a map is due. The ground is drawn into a map with the levels of detail of the picture, out to
-//! the farthest ground towards the light. `shaders/land/shadow_share.wgsl` reads the maps.
+//! A frame draws at most one map anew, the one that is most overdue, unless maps are missing or far too late. All maps
+//! are due after a change of the ground; `cascade.rs` says when else a map is due. The ground is drawn into a map with
+//! the levels of detail of the picture, out to the farthest ground towards the light.
+//! `shaders/land/shadow_share.wgsl` reads the maps.
 
 mod cascade;
 mod maps;
@@ -82,14 +83,14 @@ impl Shadows {
         self.stale = self.stale.map(|frames| frames.max(1));
     }
 
-    /// Frees the maps, if there are any.
+    /// Frees the maps and their pages, if there are maps.
     pub fn forget(&mut self) {
         if self.maps.is_some() {
             *self = Self::new(&self.blocks);
         }
     }
 
-    /// Maps that the ground's shader reads; `None` before the first.
+    /// Maps that the ground's shader reads; `None` until the first map is drawn.
     pub fn maps(&self) -> Option<&ShadowMaps> {
         self.maps.as_ref().filter(|_| self.drawn.iter().any(Option::is_some))
     }
@@ -99,7 +100,7 @@ impl Shadows {
         self.pages.bytes() + self.maps.as_ref().map_or(0, ShadowMaps::bytes)
     }
 
-    /// Constants for a picture.
+    /// Constants for a picture; all 0 without maps or without light of sun and moon.
     pub fn uniform(&self, picture: &LandPicture) -> LandShadowUniform {
         if self.maps().is_none() || picture.light.shaded().is_none() {
             return LandShadowUniform::default();
@@ -115,7 +116,7 @@ impl Shadows {
     /// Draws the maps that are due for a picture of `rows` rows.
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] if a shader file is missing.
     pub fn draw(
         &mut self,
         picture: &LandPicture,
@@ -155,8 +156,8 @@ impl Shadows {
         Ok(())
     }
 
-    /// Drops the maps for whose pages there was no room beside the pages of the first map: a later frame draws these
-    /// maps.
+    /// Drops the maps of this frame whose patches did not all get a page: a later frame draws these maps. The first map
+    /// is kept with the patches that got a page.
     fn leave_out(&mut self, ranges: &mut [Range<u32>; CASCADES]) {
         let placed = self.instances.len() as u32;
         for (range, drawn) in ranges.iter_mut().zip(&mut self.drawn) {
@@ -189,7 +190,7 @@ impl Shadows {
             Some(map) => map.lateness(light, eye, sides_m[i]).max(stale(self.stale[i])),
         });
         self.stale.iter_mut().filter(|frames| **frames > 0).for_each(|frames| *frames += 1);
-        // Among maps that are equally late, the finest.
+        // Of maps that are equally late, the finest is taken.
         let latest = (0..CASCADES).rev().max_by(|a, b| lateness[*a].total_cmp(&lateness[*b])).unwrap_or(0);
         std::array::from_fn(|i| lateness[i] > FAR_TOO_LATE || (i == latest && lateness[i] >= 1.0))
     }

@@ -55,7 +55,7 @@ pub fn bytes_of_level(size: [u32; 3], level: u32) -> u64 {
     texels(size_of_level(size, level))
 }
 
-/// Copies the bytes.
+/// Copies the bytes; [`Status::OutOfMemory`] if there is no room for them.
 pub fn copy(bytes: &[u8]) -> Result<Vec<u8>> {
     let mut room = empty(bytes.len() as u64)?;
     room.extend_from_slice(bytes);

@@ -12,7 +12,7 @@ pub const MAGIC: [u8; 4] = *b"DDS ";
 const HEADER: u32 = 124;
 const PIXEL_FORMAT: u32 = 32;
 const BEFORE_DATA: usize = 128;
-/// Size of the extended header that follows the pixel format [`DX10`], bytes.
+/// Size of the extended header, bytes. It follows the header if the pixel format is [`DX10`].
 const MORE: usize = 20;
 const DX10: [u8; 4] = *b"DX10";
 

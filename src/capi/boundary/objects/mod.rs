@@ -1,5 +1,5 @@
-//! Objects behind the handles. Each file holds the opaque C type of one kind of handle, the object in Rust, and the
-//! lock that orders the object's calls.
+//! Objects behind the handles. Each file holds the opaque C type of one kind of handle and the object in Rust, with the
+//! lock that orders the object's calls if it needs one.
 
 pub(in crate::capi) mod context;
 pub(in crate::capi) mod device;

@@ -224,7 +224,7 @@ impl Bindings {
         for indexed in &self.indexed {
             indexed.restore(api);
         }
-        // The vertex array comes first, because the element buffer belongs to it; wgpu's own array is no longer bound.
+        // The element buffer belongs to the vertex array and comes back with it, so `buffers` does not list it.
         api.BindVertexArray(self.vertex_array);
         for (target, _, name) in &self.buffers {
             api.BindBuffer(*target, *name);

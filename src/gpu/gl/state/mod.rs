@@ -7,7 +7,7 @@
 //! sample coverage, no colour clamping. `normalise` sets this rest. *wgpu state that would affect the host*: everything
 //! that wgpu sets. The saved state is the union of the two.
 //!
-//! Conditional rendering and active queries are not in the list, because they cannot be suspended;
+//! Conditional rendering and active queries are not part of the saved state, because they cannot be suspended;
 //! `src/gpu/gl/counting.rs` refuses them.
 
 mod bind;
@@ -20,11 +20,11 @@ use super::{
     names::*,
 };
 
-/// One `glEnable` switch, and its value in a fresh context.
+/// One `glEnable` switch, with the value that wgpu assumes and the host's value.
 struct Toggle {
     /// Name of the switch.
     cap: u32,
-    /// Value in a fresh context.
+    /// Value that wgpu assumes: that of a fresh context, except for sRGB encoding and seamless cube maps, which are on.
     fresh: bool,
     /// Value that the host had set.
     was: bool,
@@ -69,7 +69,7 @@ impl HostState {
         self.toggles.iter().any(|t| t.cap == cap && t.was)
     }
 
-    /// Sets the state of a fresh context, with wgpu's vertex array `vao` bound.
+    /// Sets the state that wgpu assumes, with its vertex array `vao` bound.
     pub(super) fn normalise(&self, api: &Api, vao: u32) {
         self.bindings.normalise(api, vao);
         for t in self.toggles.iter().filter(|t| t.was != t.fresh) {
@@ -79,7 +79,8 @@ impl HostState {
         self.pixels.normalise(api);
     }
 
-    /// Restores the host's saved state. Returns the first error that OpenGL has raised since the save.
+    /// Restores the host's saved state. Returns the first error flag that OpenGL has raised since its flags were last
+    /// read.
     pub(super) fn restore(&self, api: &Api) -> u32 {
         self.bindings.restore(api);
         self.raster.restore(api);
@@ -95,7 +96,8 @@ impl HostState {
     }
 }
 
-/// Raises the error that was pending when the state was saved, so that the host still finds it.
+/// Raises the error that was pending when the state was saved, so that the host still finds it. Only the three kinds
+/// below can be raised at will; an error of another kind is lost.
 fn raise(api: &Api, error: u32, read_framebuffer: u32) {
     match error {
         INVALID_ENUM => api.Enable(NONE),

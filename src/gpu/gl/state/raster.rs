@@ -16,7 +16,8 @@ struct GlViewport {
     depth: [f64; 2],
 }
 
-/// Blending and mask of one colour buffer: source and destination factors of colour, then of alpha; two equations.
+/// Blending and mask of one colour buffer. `func` has the source and destination factors of colour, then those of
+/// alpha; `equation` has that of colour, then that of alpha.
 #[derive(Clone, Copy, Default)]
 struct Target {
     blend: bool,
@@ -144,7 +145,7 @@ impl Raster {
             self.polygon_offset[2] = api.floats::<1>(POLYGON_OFFSET_CLAMP)[0];
         }
         if self.desktop {
-            // Core profiles have one polygon mode and may write one value; older drivers write two.
+            // A core profile has one polygon mode, of which a driver writes one value or, if it is older, two.
             let modes = api.ints::<4>(POLYGON_MODE);
             let back = if self.compatibility { modes[1] } else { modes[0] };
             self.polygon_mode = [modes[0] as u32, back as u32];

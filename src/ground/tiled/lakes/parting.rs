@@ -1,4 +1,5 @@
-//! Loss of standing water: lakes sink, part at saddles, and are released where the ground changes.
+//! Loss of standing water: lakes sink, part at saddles, and are removed where the ground changes, with their water set
+//! loose.
 
 use super::{Hollow, Lake, Lakes, NONE, put};
 use crate::terrain::{CellId, Terrain};
