@@ -22,8 +22,8 @@ pub(crate) struct SlopeInputs<'a> {
     pub size: [usize; 2],
     /// Heights in units, `(size[0] + 2) * (size[1] + 2)` of them; NaN where there is no ground.
     pub heights: &'a [f64],
-    /// Drop over one cell, in units, at which the material on top of each cell rests; infinite where nothing can move.
-    /// As many as the heights.
+    /// Largest drop over one cell, in units, at which the material on top of each cell rests; infinite where nothing
+    /// can move. As many as the heights.
     pub grades: &'a [f64],
 }
 

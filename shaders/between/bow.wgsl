@@ -1,4 +1,5 @@
-// Rainbow and fogbow in the light that drops scatter once. src/bow describes the model and has the f64 twin.
+// Rainbow and fogbow in the light that drops scatter once. src/bow/mod.rs describes the model; the f64 reference of
+// `bow_phase` is `phase_in` in src/bow/table.rs.
 //!include "common/frame.wgsl"
 
 // Whether any bow may be visible.

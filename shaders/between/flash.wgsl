@@ -1,5 +1,5 @@
 // Glow of the clouds and of the air in the light of lightning flashes. The clouds' face is the level plane in which the
-// camera sees the clouds: their base from below, or their tops from above. The f64 twins are in src/lightning/glow.rs.
+// camera sees the clouds: their base from below, or their tops from above. The f64 reference is src/lightning/glow.rs.
 //!include "common/frame.wgsl"
 
 // Whether any flash shines.

@@ -11,15 +11,15 @@ struct CloudLayer {
     shape: vec4f,
     // Position of the camera on the map's first and second sheet, in their periods.
     sheets: vec4f,
-    // Position of the camera in the solid noise, in its period (up: from the layer's base); share of the cellular
-    // pattern.
+    // Position of the camera in the solid noise, east and north, in periods; 0, because the noise begins at the layer's
+    // base; share of the cellular pattern.
     solid: vec4f,
     // Illuminance by the sun or moon on a surface that faces it, lux times exposure.
     sun: vec4f,
     // Radiance of sky and higher clouds above the layer, cd/m^2 times exposure.
     above: vec4f,
-    // Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled width of a cloud from side to
-    // side.
+    // Radiance of ground and lower clouds below the layer, cd/m^2 times exposure; scaled optical depth of a cloud from
+    // side to side.
     below: vec4f,
     // Index of the medium; ratio of scaled extinction to extinction; share of the layer that is drawn as a volume;
     // 1/side of the solid noise, 1/m.

@@ -1,10 +1,11 @@
-// A box of even cloud, and the origin of the probe's ray in it.
+// Box of even cloud for the probe (probe.wgsl), and the origin of the probe's ray in the box. The probe's block has one
+// layer, the box: `sheets.xy` are its two level sides, m, and `size.y` is 1/thickness, 1/m.
 //!include "clouds/block.wgsl"
 
-// Origin of the ray, m from the box's low corner.
+// Origin of the ray, m from the corner of the box where x, y and height are least.
 var<private> box_origin: vec3f;
 
-// Sides of the box, m (x, y, thickness).
+// Sides of the box along x, along y and upwards, m.
 fn box_sides(layer: CloudLayer) -> vec3f {
     return vec3f(layer.sheets.xy, 1.0 / layer.size.y);
 }

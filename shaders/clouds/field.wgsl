@@ -1,5 +1,5 @@
-// Field of clouds: where there is cloud in a layer. Twin of src/clouds/field/extinction.rs, where the model is
-// described.
+// Field of clouds: where there is cloud in a layer. The f64 reference is src/clouds/field/extinction.rs;
+// src/clouds/field/mod.rs describes the model.
 //!include "clouds/block.wgsl"
 //!include "clouds/placed.wgsl"
 

@@ -9,7 +9,8 @@ struct CloudLamp {
     radius: f32,
     // Ratio of the mean intensity over all directions to that in the middle of the beam.
     even: f32,
-    // Above 0 for a source that counts as inside a cloud, whatever lies between the source and the lit place.
+    // Above 0 for a source inside a cloud. The path from the source to a lit place is then taken as all cloud, and the
+    // cloud on it is not measured.
     buried: f32,
     // Padding.
     pad: f32,

@@ -1,5 +1,5 @@
-// Light that a place in a cloud scatters towards the eye. Twin of src/clouds/light/sources.rs, which describes the
-// model.
+// Light that a place in a cloud scatters towards the eye. The f64 reference is src/clouds/light/sources.rs;
+// src/clouds/light/mod.rs describes the model.
 //!include "clouds/block.wgsl"
 
 // Tables of source terms. Side by side lie the terms for a beam on the top of a box of cloud, for a beam on its side,

@@ -1,5 +1,5 @@
 // Light of the host's lamps and of lightning flashes that a place in a cloud scatters to the eye; replaces lit.wgsl.
-// Twin of src/clouds/light/lamp_light.rs, which describes the model.
+// The f64 reference is src/clouds/light/lamp_light.rs, which describes the model.
 //!include "clouds/about.wgsl"
 //!include "clouds/lamps.wgsl"
 

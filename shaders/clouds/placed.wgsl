@@ -1,4 +1,5 @@
-// Local cloud cover that overrides a layer's own. Twin of src/clouds/field/placed.rs, which describes the model.
+// Local cloud cover that overrides a layer's own. The f64 reference is src/clouds/field/placed.rs, which describes the
+// model.
 //!include "clouds/block.wgsl"
 
 // Host's maps of layers, one below the other: threshold, dome, extinction, 1/m, distance within which the threshold

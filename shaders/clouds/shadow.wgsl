@@ -1,6 +1,6 @@
-// Draws the clouds' shadow map: the share of the direct light that clouds let through to a level plane. Twin of
-// src/clouds/light/shadow.rs. The texels move with the air that carries the clouds, and the map repeats. A texel covers
-// one place in each period of the map, and is drawn for the place nearest to the camera.
+// Draws the clouds' shadow map: the share of the direct light that clouds let through to a level plane. The f64
+// reference is src/clouds/light/shadow.rs. The texels move with the air that carries the clouds, and the map repeats. A
+// texel covers one place in each period of the map, and is drawn for the place nearest to the camera.
 //!include "common/fullscreen.wgsl"
 //!include "clouds/about.wgsl"
 //!include "clouds/shadow_map.wgsl"

@@ -1,4 +1,4 @@
-// Mapping of a place to the clouds' shadow map: CloudShadows of src/clouds/drawn/uniforms.rs.
+// Mapping of a place to the clouds' shadow map. The block is ShadowUniform of src/clouds/drawn/uniforms.rs.
 
 // Placement of the shadow map, and the light that casts the shadows.
 struct CloudShadows {
@@ -8,7 +8,7 @@ struct CloudShadows {
     plane: f32,
     // Position of the camera in the map, in periods.
     camera: vec2f,
-    // Side of the map, m; it repeats with this period.
+    // Side of the map, m; the map repeats with this period.
     period: f32,
     // Height of the camera above the plane, m.
     eye: f32,
@@ -29,7 +29,7 @@ fn cloud_shadow(shadows: CloudShadows, map: texture_2d<f32>, between: sampler, a
     let height = shadows.eye + at.z;
     let away = (at.xy - shadows.to_light.xy / shadows.to_light.z * height) / shadows.period;
     let here = textureSampleLevel(map, between, shadows.camera + away, 0.0).r;
-    // Far from the camera, and within clouds, the mean is used.
+    // The map gives way to the mean from 0.4 to 0.46 of a period from the camera, and over the last 100 m below `top`.
     let far = max(abs(away.x), abs(away.y));
     let weight = shadows.map_weight * clamp((0.46 - far) / 0.06, 0.0, 1.0) * clamp((shadows.top - height) / 100.0, 0.0, 1.0);
     return mix(shadows.mean, here, weight);

@@ -11,16 +11,19 @@ const BANK_RECTANGLE: u32 = 0u;
 const BANK_ELLIPSE: u32 = 1u;
 // Value of FogBank.kind for a convex polygon. Kind 3 is any other polygon.
 const BANK_CONVEX: u32 = 2u;
-// Smallest absolute value of a direction's component by which a chord divides.
+// Least absolute value of the component of a ray's direction across an edge. box_chord and convex_chord divide by this
+// component and replace a smaller one by LEAST_WAY.
 const LEAST_WAY: f32 = 1e-7;
 
-// Ray, with its projection onto the plan of the bank `bank`.
+// Ray, with its projection onto the plan of a bank; `bank` is the bank's index.
 struct BankRay {
     bank: u32,
-    // Position of the ray's start, m (east, north) from the camera, and its change per metre of the ray.
+    // Position of the ray's start, m (east, north) from the camera (`origin`), and how far the ray goes east and north
+    // per metre of its length (`direction`).
     origin: vec2f,
     direction: vec2f,
-    // Position of the start on the bank's plan, m (right, ahead), and its change per metre of the ray.
+    // Position of the ray's start on the bank's plan, m (right, ahead), and how far the ray goes right and ahead per
+    // metre of its length (`way`).
     start: vec2f,
     way: vec2f,
     // Altitude of the ray's start, m, cosine of the ray with the vertical there, and length of the ray, m.
@@ -103,8 +106,9 @@ fn is_sampled(k: u32) -> bool {
     return (BANK_SHAPES & 8u) != 0u && low_air.banks[k].kind > BANK_CONVEX;
 }
 
-// Distances along a ray, m, between which it is inside the bank's shape, grown outwards by `grown` metres. An ellipse
-// grows by its half axes. For a polygon that is not convex, the distances are those of a circle about the polygon.
+// Distances along a ray, m, between which it is inside the bank's shape, grown outwards by `grown` metres: an ellipse
+// has half axes longer by `grown`. For a polygon that is not convex, the distances are those of a circle about the
+// polygon, grown likewise.
 fn bank_chord(ray: BankRay, grown: f32) -> vec2f {
     let half = low_air.banks[ray.bank].half + grown;
     let kind = low_air.banks[ray.bank].kind;

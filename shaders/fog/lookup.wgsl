@@ -1,6 +1,6 @@
-// Effect of fog on a pixel, in closed form: no texture, and no loop except over the waves of patterns.wgsl. The f64
-// twin and the derivations are in src/fog/reference.rs (ray and light), src/fog/light.rs (the layer's light, solved on
-// the CPU) and src/fog/phase.rs.
+// Effect of fog on a pixel, in closed form: no texture, and no loop except those of patterns.wgsl. The f64 references,
+// with the derivations, are src/fog/path.rs (path of a ray), src/fog/reference.rs (light along the ray) and
+// src/fog/phase.rs. src/fog/light.rs solves the layer's light on the CPU.
 //
 // Axes: east, north, up at the camera. In the composition, `behind` is the pixel with the sky's aerial perspective over
 // the pixel's full distance:
@@ -81,7 +81,7 @@ struct LayerPath {
     last: f32,
 }
 
-// Altitudes along a ray, split at its lowest point: twin of RayCourse in src/fog/path.rs.
+// Altitudes along a ray, split at its lowest point: the fields of `RayCourse` in src/fog/path.rs.
 struct RayCourse {
     // Altitude of the end, m.
     end_altitude: f32,
@@ -107,9 +107,9 @@ struct RayCourse {
     bend: f32,
 }
 
-// Returns the share of the delta-scaled beam that is really unscattered after the optical path s = `slant`: (1 - e^(-f
-// s)) / (f s). f = `forward` is the share of scattering that counts as going straight on. src/fog/phase.rs has the
-// derivation.
+// Returns the mean, over the optical path from 0 to s = `slant`, of the share of the delta-scaled beam that is really
+// unscattered. After the path x this share is e^(-f x), so the mean is (1 - e^(-f s)) / (f s). f = `forward` is the
+// share of scattering that counts as going straight on. src/fog/phase.rs says how the mean is used.
 fn share_unscattered(forward: f32, slant: f32) -> f32 {
     let fs = min(forward * slant, 1e4);
     return select((1.0 - exp(-fs)) / max(fs, 1e-9), 1.0 - 0.5 * fs, fs < 1e-3);
@@ -197,8 +197,8 @@ fn flank(bend: f32, reach: vec2f, knots: vec2f, inverse: f32, low: f32, high: f3
 
 // Returns the optical depth of a part of a ray in a slab, divided by the slab's extinction, m. The part rises from
 // altitude `low` to `high` over `length` metres. It passes the knots of the lower flank at the distances `base`, those
-// of the upper flank at `top`. Without a lower edge the whole part lies above the lower flank. Twin of slab_part in
-// src/fog/path.rs.
+// of the upper flank at `top`. Without a lower edge the whole part lies above the lower flank. The f64 reference is
+// `slab_part` in src/fog/path.rs.
 fn slab_part(u: FogUniform, bend: f32, base: vec2f, top: vec2f, length: f32, low: f32, high: f32) -> f32 {
     let t = min(top, vec2f(length));
     let upper = flank(bend, t, u.knots.zw, u.pair.y, low, high);
@@ -225,8 +225,8 @@ fn scaled_erfc(z: f32) -> f32 {
     return t * exp(-1.26551223 + t * p);
 }
 
-// Returns the optical depth of an upward path through an exponential layer, divided by the extinction at its start, m:
-// twin of exponential_up in src/fog/path.rs.
+// Returns the optical depth of an upward path through an exponential layer, divided by the extinction at its start, m.
+// The f64 reference is `exponential_up` in src/fog/path.rs, which describes `mu` and `rise`.
 fn exponential_up(k: f32, scale: f32, mu: f32, rise: f32) -> f32 {
     let z = mu / sqrt(2.0 * k * scale);
     let x = rise / scale;
@@ -437,8 +437,8 @@ struct LayerLight {
     once: vec3f,
 }
 
-// Returns the light that is scattered into a ray: twin of layer_radiance in src/fog/reference.rs, which describes the
-// parameters.
+// Returns the light that is scattered into a ray. The f64 reference is `layer_radiance` in src/fog/reference.rs, which
+// describes the parameters.
 fn layer_radiance(u: FogUniform, mu: f32, entry_mu: f32, versine: f32, ends: vec2f, depth: f32) -> LayerLight {
     let above = select(ends, max(2.0 * u.depth_total - ends, vec2f(0.5 * u.depth_total)), ends > vec2f(u.depth_total));
     let scaling = fog_channels(u.scaling);

@@ -1,8 +1,10 @@
-// Patches of fog and curtains of rain. The functions read the bound `low_air`, because indexing a copy would copy the
-// whole block. src/fog/patterns.rs has the f64 twin and the derivation.
+// Patches of fog and curtains of rain. The functions read the bound `low_air` and do not take the block as a parameter,
+// because indexing a parameter would copy the whole block. The f64 references, with the derivations, are
+// src/fog/patterns.rs (patches) and src/fog/curtains.rs (curtains, and the mean of a wave).
 //!include "fog/binding.wgsl"
 
-// Half-length of a path over which a wave of a pattern fades to one half, in units of the wave's wavelength / (2 pi).
+// Half-length of a path along a row of the pattern at which the mean of a wave has fallen to one half (wave_mean), in
+// units of the wavelength / (2 pi).
 const PATCH_ROW: f32 = 8.0;
 // Whether patches flow round obstacles to the wind.
 override FOG_DETOUR: bool = false;
@@ -17,12 +19,13 @@ fn wave_sinc(x: f32) -> f32 {
     return select(sin(x) / select(x, 1.0, near), 1.0 - x * x / 6.0, near);
 }
 
-// Returns the mean of a wave's cosine along a ray, and the square of the amplitude of this mean.
+// Returns the mean of a wave's cosine along a ray between the distances `middle` - `half` and `middle` + `half`, m.
+// Also returns the square of the amplitude of this mean.
 fn wave_mean(wave: vec4f, origin: vec3f, direction: vec3f, middle: f32, half: f32) -> vec2f {
     let along = dot(wave.xyz, direction);
     let x = along * half;
-    // Rows of the pattern are of finite length: a long ray along one row meets other rows, so its mean fades with
-    // length.
+    // Rows of the pattern are of finite length: a long ray along one row meets other rows. The mean therefore fades
+    // with the length of the ray.
     let size = wave_sinc(x) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * half);
     return vec2f(cos(wave.w + dot(wave.xyz, origin) + along * middle) * size, size * size);
 }
@@ -74,7 +77,8 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
         for (var n = 0u; n < DETOUR_PARTS; n++) {
             part += cos(phase + along * f32(2u * n + 1u) * h + dot(wave.xy, lags[n]));
         }
-        // Subtracts the wave without detours. Waves fade with the length of the whole ray, not of this part.
+        // Subtracts the wave without detours. A wave fades with the length of the whole path from `first` to `last`,
+        // not only of its part over the map of detours.
         let half = 0.5 * (end - start);
         let free = cos(phase + along * half) * wave_sinc(along * half) * f32(DETOUR_PARTS);
         sum += (part * wave_sinc(along * h) - free) * PATCH_ROW / (PATCH_ROW + length(wave.xyz) * 0.5 * (last - first));
@@ -82,9 +86,9 @@ fn detoured(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     return sum * 2.0 * h / (last - first);
 }
 
-// Returns the mean of the patches' pattern along a ray. Here and in curtain_mean, the number of waves comes from the
-// block, so that no compiler unrolls the loop. A software driver would take longer to compile the sines of an unrolled
-// loop than all the rest of the shader.
+// Returns the mean of the patches' pattern along a ray between the distances `first` and `last`, m: 1 for an even
+// layer. Here and in curtain_mean, the number of waves comes from the block, so that no compiler unrolls the loop. A
+// software driver would take longer to compile the sines of an unrolled loop than all the rest of the shader.
 fn patch_mean(origin: vec3f, direction: vec3f, first: f32, last: f32) -> f32 {
     let m = 0.5 * (first + last);
     let h = 0.5 * (last - first);

@@ -22,7 +22,7 @@ struct FogUniform {
     sky_band: f32,
     // 1 if the compatibility laws measure from the camera's plane, otherwise 0.
     plane_distance: u32,
-    // Phase function: ln of Henyey-Greenstein g, ln of Draine g, Draine alpha, weight of Draine.
+    // Phase function: ln of Henyey-Greenstein |g|, ln of Draine |g|, Draine alpha, weight of Draine.
     lobes: vec4f,
     // Distance of the camera from the planet's centre, m; 1e30 for a flat world.
     radius: f32,
@@ -127,8 +127,8 @@ struct LowAir {
     detour_fade: f32,
     // Numbers of all banks, and of those that the camera may see.
     bank_count: vec2u,
-    // Lags of the air, m east and north. Each vector has two nodes; nodes are in order from west to east, then south to
-    // north.
+    // Lags of the air behind free air at the nodes, m east and north. Each vector has two nodes; nodes are in order
+    // from west to east, then south to north.
     lags: array<vec4f, 288>,
     // Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
     // lowest bits.

@@ -1,5 +1,5 @@
 // Hollows of a ground whose heights are unknown, and rings of drops on the water in them. Both are functions of the
-// place in the host's world that repeat every 10 km. The f64 twin of the hollows is src/ground/hollows.rs.
+// place in the host's world that repeat every 10 km. The f64 reference of the hollows is src/ground/hollows.rs.
 //!include "ground/binding.wgsl"
 
 // Side of a cell of the rings' grid, m.

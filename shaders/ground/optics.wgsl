@@ -1,4 +1,5 @@
-// Reflection by a film of water, and how the film darkens the ground below it. The f64 twin is src/ground/reference.rs.
+// Reflection by a film of water, and how the film darkens the ground below it. The f64 reference is
+// src/ground/reference.rs.
 
 // Refractive index of water relative to air, for visible light at 20 C (Hale & Querry 1973, rounded).
 const WATER_INDEX: f32 = 1.333;

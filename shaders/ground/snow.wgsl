@@ -1,5 +1,5 @@
 // Lying snow on the surface that a pixel shows: the share of the pixel that it covers, and its light. The depth of snow
-// is simulated on the CPU (src/snowpack). `snow_level` is the twin of snow_cover in src/weather/surface.rs.
+// is simulated on the CPU (src/snowpack). `snow_level` has the formula of `snow_cover` in src/weather/surface.rs.
 //!include "common/guarded.wgsl"
 //!include "ground/spot.wgsl"
 

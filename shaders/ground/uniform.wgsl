@@ -3,7 +3,7 @@
 // Number of surface classes (src/ground/class.rs).
 const SURFACE_CLASSES: u32 = 7u;
 
-// Look of water on a surface class; twin of `SurfaceLook` in src/ground/class.rs.
+// Look of water on a surface class, in the layout of `SurfaceLook` of src/ground/class.rs.
 struct SurfaceLook {
     // Share of the darkening of wet ground that the class shows.
     soaks: f32,
@@ -11,7 +11,8 @@ struct SurfaceLook {
     film: f32,
     // Root mean square slope, along one axis, of the ground under the film, beyond the film's own slope.
     slope: f32,
-    // Depth at which standing water covers most of the ground's relief, mm; with 0 no standing water is drawn.
+    // Scale of the ground's relief, mm: standing water begins to cover the relief at 0.2 of this depth and covers all
+    // of it at twice this depth. With 0 no standing water is drawn.
     relief_mm: f32,
     // Upper limit of the albedo estimated from the host's colour.
     most_albedo: f32,
@@ -19,7 +20,7 @@ struct SurfaceLook {
     hollows: f32,
     // Confidence that the ground is level, 0 to 1, used if neither terrain, normals nor depth give its slope.
     level: f32,
-    // Share of the ground on which snow lies.
+    // Factor on the share of the ground that lying snow covers: 0 on water, 1 on other classes.
     snow: f32,
 }
 

@@ -1,4 +1,4 @@
-// Water and clear ice on a surface seen by the camera: the host's colour times transmittance plus light.
+// Water and clear ice on the surface that a pixel shows, as a veil: the host's colour times transmittance, plus light.
 //!include "common/guarded.wgsl"
 //!include "between/sky.wgsl"
 //!include "ground/spot.wgsl"
@@ -15,12 +15,13 @@ fn mirrored_light(d: vec3f) -> vec3f {
     return mix(ground.ground_light, sky, smoothstep(-0.1, 0.02, d.z));
 }
 
-// Returns the share of the rain's water that a surface catches: 1 on level ground, less on walls, 0 on undersides.
+// Returns the share of the rain's water that a surface catches: 1 on slopes up to 45 degrees, 0.3 on walls, 0 on
+// undersides.
 fn caught(up_cosine: f32) -> f32 {
     return clamp(up_cosine + 0.3, 0.0, 1.0);
 }
 
-// Water surface as a mirror: its normal, and its root mean square slope.
+// Water surface as a mirror: its normal, and its root mean square slope along one axis.
 struct Film {
     normal: vec3f,
     slope: f32,
@@ -30,7 +31,7 @@ struct Film {
 struct Mirror {
     // Share of the light from `direction` that is reflected.
     share: f32,
-    // Unit vector towards the reflected part of the sky.
+    // Unit vector from the surface towards where the reflected light comes from, for the mean facet that the eye sees.
     direction: vec3f,
     // Reflected light of the sun or moon, cd/m^2.
     lamp: vec3f,
@@ -50,14 +51,14 @@ fn mirror(film: Film, to_eye: vec3f) -> Mirror {
     return Mirror(share, reflect(-to_eye, facet), ground.lamp_lux * lamp);
 }
 
-// Root mean square slope, along one axis, of a film so thin that it covers none of the ground. Twin in
+// Root mean square slope, along one axis, of a film so thin that it covers none of the ground; the same as in
 // src/ground/uniform.rs.
 const THIN_FILM_SLOPE: f32 = 0.3;
-// Root mean square slope, along one axis, of a closed film, which covers all of the ground. Twin in
+// Root mean square slope, along one axis, of a closed film, which covers all of the ground; the same as in
 // src/ground/uniform.rs.
 const CLOSED_FILM_SLOPE: f32 = 0.15;
 
-// Root mean square slope of the clear ice that freezing rain leaves.
+// Root mean square slope, along one axis, of the clear ice that freezing rain leaves.
 const GLAZE_SLOPE: f32 = 0.04;
 
 // Slope up to which ground holds the pattern's puddles in full: the slope of the cosine 0.997, the upper end of the
@@ -138,8 +139,8 @@ fn water_at(spot: Spot) -> Water {
         film_slope = mix(film_slope, mix(THIN_FILM_SLOPE, CLOSED_FILM_SLOPE, here.water.film), here.share);
     }
     pool *= spot.gets;
-    // In the hollows the film is deeper and smoother. Ice lies evenly on all of the ground; it is nearly as clear and
-    // as bright as water.
+    // In the hollows the film is deeper and smoother. Ice lies evenly on all of the ground. It is nearly as clear as
+    // water and reflects nearly as much.
     let ice = ground.glaze * spot.gets;
     let own = mix(film_slope * (1.2 - 0.4 * normal_share(hollow.x)), GLAZE_SLOPE, ice);
     let film = Film(facing.normal, sqrt(own * own + look.slope * look.slope));
@@ -166,7 +167,7 @@ fn water_on(spot: Spot) -> Veil {
     var sky = mirrored_light(mirrored);
     if SHELTER {
         // Objects that keep rain off also hide the sky. Their undersides are taken to be as bright as the ground that
-        // they face.
+        // they face, and no brighter than the sky that they hide.
         let shines = thin_share + deep_share > 1e-3;
         let p = off_surface(spot.at, spot.ground.facing.normal, spot.range);
         let hidden = time_in_standing(p, -mirrored, shines) >= 0.0 || mapped_ground(p, -mirrored, shines);

@@ -1,4 +1,5 @@
-// Vertices of the drawn terrain. A patch has 8 x 8 squares of its page's level. The CPU twin is src/land/reference.rs.
+// Vertices of the drawn terrain. A patch has 8 x 8 squares of its page's level. The twin of `patch_vertex` on the CPU
+// is `vertex` in src/land/reference.rs.
 //!include "land/uniform.wgsl"
 
 // Slots in a row of the pages' textures, and vertices and texels along a side of a slot.

@@ -1,5 +1,5 @@
-// Columns of rain under rain areas: the share of each column in the rain at a place. src/rain/shaft.rs has the f64 twin
-// and the derivation.
+// Columns of rain under rain areas: the share of each column in the rain at a place. The f64 reference is
+// src/rain/shaft.rs, which has the derivation.
 
 // Largest number of rain areas.
 const MAX_AREAS: u32 = 16u;

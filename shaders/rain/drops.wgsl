@@ -1,5 +1,5 @@
-// Drops without a state: the place of each drop is a function of (seed, id, time), and one quad draws its streak.
-// src/rain/lattice.rs has the f64 twin and the derivation.
+// Drops without a state: the place of each drop is a function of (seed, id, time), and one quad draws its streak. The
+// f64 reference is src/rain/lattice.rs, which has the derivation.
 //!include "common/depth.wgsl"
 //!include "surroundings/lights_binding.wgsl"
 //!include "common/hash.wgsl"

@@ -1,5 +1,5 @@
-// Columns of rain seen from afar: one quad over each, blended as a veil in front of the picture. src/rain/shaft.rs has
-// the f64 twin of the optical depth along a ray. The fragment entry point, which reads the depth, is in
+// Columns of rain seen from afar: one quad over each, blended as a veil in front of the picture. The f64 reference of
+// the optical depth along a ray is src/rain/shaft.rs. The fragment entry point, which reads the depth, is in
 // shaft_view.wgsl.
 //!include "between/veil.wgsl"
 //!include "between/bow.wgsl"
@@ -8,13 +8,13 @@
 
 // Number of waves of the pattern of curtains.
 const SHAFT_WAVES: u32 = 12u;
-// Amplitude of each wave of the pattern. Twin of AMOUNT in src/falling/curtain.rs.
+// Amplitude of each wave of the pattern: AMOUNT of src/falling/curtain.rs.
 const PATTERN_AMOUNT: f32 = 0.2;
-// Distance at which the pattern begins to fade in, m. Twin of PATTERN_M[0] in src/falling/curtain.rs.
+// Distance at which the pattern begins to fade in, m: PATTERN_M[0] of src/falling/curtain.rs.
 const PATTERN_FIRST: f32 = 30.0;
-// Distance from which the pattern shows in full, m. Twin of PATTERN_M[1].
+// Distance from which the pattern shows in full, m: PATTERN_M[1].
 const PATTERN_FULL: f32 = 300.0;
-// Depth of the columns below the level of their plan, m. Twin of BELOW_M in src/rain/shaft.rs.
+// Depth of the columns below the level of their plan, m: BELOW_M of src/rain/shaft.rs.
 const BELOW: f32 = 1000.0;
 // Distance into a dense column from which most of its light comes, m.
 const FRONT: f32 = 500.0;

@@ -1,4 +1,4 @@
-// Vertices of the sea's mesh at rest; src/sea/mesh.rs describes the mesh and has a twin of this file.
+// Vertices of the sea's mesh at rest. src/sea/mesh.rs describes the mesh; its tests have the twin of `rest_of`.
 //!include "sea/uniform.wgsl"
 
 // Length of the finest cells, m, and cells along a block's side.

@@ -1,4 +1,4 @@
-// Probe of the drawn sea for tests: one place at rest a pixel.
+// Probe of the drawn sea for tests: each pixel probes one place of the sea at rest.
 //!include "common/fullscreen.wgsl"
 //!include "sea/light.wgsl"
 
@@ -15,7 +15,7 @@ fn probed_place(position: vec4f) -> vec2f {
     return vec4f(vertex.shift, vertex.height, 0.0);
 }
 
-// Slope that a pixel shows, variance of the slopes that it does not show, and compression.
+// Slope that a pixel shows, variance of the slopes that it does not show (the sum over both axes), and compression.
 @fragment fn slopes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let here = sea_vertex(at, 1.0);
@@ -23,7 +23,7 @@ fn probed_place(position: vec4f) -> vec2f {
     return vec4f(shown.slope, shown.left.x + shown.left.z, shown.compression);
 }
 
-// Height of the wakes at a place, their slope, and their share under foam.
+// Height of the wakes at a place, their slope, and the share of the place under their foam.
 @fragment fn wakes(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let shapes = wakes_at(at, WakeFilter(1e9, vec2f(0.0), vec2f(0.0), 0.0));
@@ -31,7 +31,7 @@ fn probed_place(position: vec4f) -> vec2f {
     return vec4f(shapes.height, shapes.slope, shown.foam);
 }
 
-// Reflectance towards the eye, the share under foam, and how much of the light of dense foam there is.
+// Reflectance towards the eye, the share under foam, and the light of the foam as a share of the light of dense foam.
 @fragment fn reflectances(@builtin(position) position: vec4f, @location(0) uv: vec2f) -> @location(0) vec4f {
     let at = probed_place(position);
     let here = sea_vertex(at, 1.0);

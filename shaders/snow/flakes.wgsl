@@ -1,6 +1,6 @@
-// Flakes without a state: the place of each flake is a function of (seed, id, time), and one quad draws it.
-// src/snow/lattice.rs and src/snow/reference.rs have the f64 twin and the derivation. The entry points read the depth:
-// flakes_view.wgsl.
+// Flakes without a state: the place of each flake is a function of (seed, id, time), and one quad draws it. The f64
+// references, with the derivations, are src/snow/lattice.rs (places) and src/snow/reference.rs (light). The entry
+// points that read the depth are in flakes_view.wgsl.
 //!include "common/depth.wgsl"
 //!include "common/guarded.wgsl"
 //!include "common/hash.wgsl"

@@ -1,7 +1,7 @@
 // Shape of a flake: a clump of crystals, each different. The clump is a disc whose edge and inside are eroded by noise.
-// Its opacity at the distance r from the middle, in radii, is 1 - exp(-5 W) with W = offset + weight * noise - r^2.
-// src/snow/shape.rs has the f64 twin and the source of the formula; its tests check that the mean over the disc is the
-// flake's share of ice.
+// Its opacity at the distance r from the middle, in radii, is max(1 - exp(-5 W), 0) with W = offset + weight * noise -
+// r^2. The f64 reference is src/snow/shape.rs, which has the source of the formula; a test there checks that the mean
+// opacity, over the disc and over many flakes, is the share of a disc that ice covers.
 //!include "common/hash.wgsl"
 
 // Number of octaves of the noise; each is twice as fine and half as strong as the one before.

@@ -1,5 +1,5 @@
-// Tests for shelter, which rain does not pass: the host's boxes (f64 twin in src/surroundings/shelter.rs) and the
-// surfaces in its occluder maps. Each test follows a drop's path back from where it is now.
+// Tests for shelter, which rain does not pass: the host's boxes (f64 reference: src/surroundings/shelter.rs) and the
+// surfaces in its occluder maps. Each test follows a drop's path back from where the drop is now.
 //!include "surroundings/occluders.wgsl"
 
 // Whether there is any shelter. Shaders that run in every pixel read it to leave the tests out.

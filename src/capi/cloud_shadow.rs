@@ -30,7 +30,7 @@ include!(concat!(env!("OUT_DIR"), "/init_cloud_shadow.rs"));
 
 /// Map of the clouds' shadows, and its placement in the view's last frame. The map is a level plane at the altitude of
 /// the weather's station (station_altitude_m of wk_weather). It moves with the air that carries the clouds, and repeats
-/// every 20 km.
+/// every 20.48 km.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct wk_cloud_shadows {

@@ -88,8 +88,8 @@ pub struct wk_terrain_drawing {
     /// Ground so rough that it would need a longer distance is drawn with a larger error.
     pub error_px: f64,
     /// Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
-    /// [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to 34 MB
-    /// more.
+    /// [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to about 36
+    /// MB more: the shadow maps, and the heights of the ground that is drawn into them.
     pub shadows_to_m: f64,
 }
 

@@ -117,10 +117,10 @@ impl Context {
 
     /// Returns the water on the tiles around a place as textures for the host's own materials, up to date, with the
     /// snow where it is simulated. They cover a window of 512 x 512 cells, one texel a cell, which moves in steps of 64
-    /// cells so that `center` stays in its middle quarter. Changes since the last call are uploaded and submitted;
-    /// after a move that is the whole window. Both textures stay the same objects as long as the context lives. Where
-    /// no tile has ground there is neither water nor snow. A host with several cameras calls this function before it
-    /// draws the picture of each camera.
+    /// cells so that `center` stays within the middle 64 x 64 cells of the window. Changes since the last call are
+    /// uploaded and submitted; after a move that is the whole window. Both textures stay the same objects as long as
+    /// the context lives. Where no tile has ground there is neither water nor snow. A host with several cameras calls
+    /// this function before it draws the picture of each camera.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if `center` is invalid; [`crate::Status::WrongOrder`] where no tile reaches

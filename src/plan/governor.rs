@@ -2,9 +2,9 @@
 //!
 //! The time of a picture is modelled as its work times a factor, the median of the last five reported times per unit of
 //! work. The rooms' constants (`StepWork`) give the work of each part relative to a plain pixel, but the true ratio
-//! differs from machine to machine. Whenever a part appears or disappears, the change in the reported times corrects
-//! that part's cost. A part that is dearer on this machine than the constants say therefore does not return into a
-//! picture that has no time for it.
+//! differs from machine to machine. Whenever parts appear while none disappears, or the reverse, the change in the
+//! reported times corrects the cost of these parts. A part that is dearer on this machine than the constants say
+//! therefore does not return into a picture that has no time for it.
 //!
 //! A part returns only if the picture with it is predicted to take at most [`ROOM`] of the budget. The part therefore
 //! does not come and go in every frame of a picture whose time is close to the budget.
@@ -20,10 +20,11 @@ pub enum GaveWay {
     /// None: by the estimates the picture keeps all limits.
     #[default]
     Nothing,
-    /// The tolerance: the time allows no better picture.
+    /// The tolerance: the time or the pinned parts allow no better picture. If the budget has no tolerance, parts are
+    /// left out to keep the time.
     Tolerance,
-    /// The time, and perhaps the tolerance too: the picture takes longer than the budget even with nothing but the
-    /// parts that the host pinned.
+    /// The time, and perhaps the tolerance too: the picture takes longer than the budget even if every part that the
+    /// host did not pin is at its last rung.
     Time,
 }
 
@@ -42,7 +43,7 @@ pub(super) struct WorkAmount {
 }
 
 impl WorkAmount {
-    /// Returns the amount that is left after the steps of `set`.
+    /// Returns the amount that is left once the steps of `set` are taken.
     pub fn without(mut self, set: Set) -> Self {
         (0..MOST_STEPS).filter(|i| set & (1 << i) != 0).for_each(|i| self.steps[i] = 0.0);
         if self.together.0.iter().any(|i| set & (1 << i) != 0) {
@@ -79,7 +80,7 @@ const HALF_BELIEVED: f64 = 0.1;
 pub(super) struct Governor {
     /// Recent times for a unit of work, ms.
     recent: [f64; SEEN],
-    /// Number of times recorded so far.
+    /// Number of frame times recorded so far.
     reports: usize,
     /// Ratios of the work that steps save on this machine to the work that the constants give.
     ratios: [f64; MOST_STEPS],
@@ -87,7 +88,8 @@ pub(super) struct Governor {
     absent: Set,
     /// Number of reports since `absent` changed.
     since: u32,
-    /// Steps taken before parts came or went, and the time for a unit of work then.
+    /// Steps taken before the last change of parts, and the time for a unit of work then. `None` once that change has
+    /// settled.
     before: Option<(Set, f64)>,
 }
 
@@ -254,8 +256,7 @@ mod tests {
             }
             assert_eq!(gave_way == GaveWay::Nothing, set == 0, "{frame}");
         }
-        // Parts go in two or three steps as the median follows, and come back in two or three steps, without
-        // oscillation.
+        // The set changes at most five times: parts go as the median follows, and come back, without oscillation.
         assert!((2..=5).contains(&switches.len()), "{switches:?}");
         assert!(switches.iter().all(|f| (30..40).contains(f) || (90..100).contains(f)), "{switches:?}");
     }
@@ -358,7 +359,7 @@ mod tests {
             let (ms, late) = (between(0.2, 30.0), between(0.0, 4.99) as usize);
             let mut machine = Machine { ms, ratios, late, noise: 0.05, drawn: Vec::new() };
             let mut governor = Governor::default();
-            // Every part comes and goes, with 24 frames for each set, in scenes with more or less of it.
+            // Every part comes and goes, with 24 frames for each set, in scenes with different shares of objects.
             for step in 0..12 {
                 let objects = between(0.3, 0.9);
                 let steps = steps([0.4 * objects, 0.27, 0.07 * (1.0 - objects)]);

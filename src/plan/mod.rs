@@ -1,11 +1,11 @@
 //! Plan of a picture: how much each part of the weather matters in it, and which parts are drawn in less detail.
 //!
 //! Each way to draw an effect has its [`Work`], a deterministic model of its cost, and its [`Difference`] from the
-//! truth (`src/candidates.rs`). A view with a [`Budget`] gauges its own picture: it composes a coarse grid of its
-//! pixels and reads the grid back without waiting. From the gauge it chooses the rung at which each [`Part`] of the
-//! weather is drawn ([`parts`]), and fades between rungs so that nothing pops. [`Plan`] says what was chosen and why,
-//! and which error to expect. [`Prediction`] compares the predicted error with the measured one. A plan can be saved
-//! and pinned in other views ([`View::save_plan`](crate::frame::View::save_plan)).
+//! truth (`src/candidates.rs`). A view whose [`Budget`] limits error or time gauges its own picture: it composes a
+//! coarse grid of its pixels and reads the grid back without waiting. From the gauge the view chooses the rung at which
+//! each [`Part`] of the weather is drawn ([`parts`]), and fades between rungs so that nothing pops. [`Plan`] says what
+//! was chosen and why, and which error to expect. [`Prediction`] compares the predicted error with the measured one. A
+//! plan can be saved and pinned in other views ([`View::save_plan`](crate::frame::View::save_plan)).
 
 mod budget;
 mod choice;

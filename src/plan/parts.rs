@@ -25,7 +25,8 @@ pub struct Part {
     pub worth: Worth,
 }
 
-/// Way in which the gauge finds the change of a picture due to leaving a part out.
+/// Way in which the gauge finds the change of a picture due to leaving a part out. Except with [`Worth::Unseen`], every
+/// rung but the first gets this change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
     /// The gauge composes the picture without the part, in this channel. Where several parts share a channel, each gets
@@ -44,10 +45,10 @@ pub enum Worth {
 pub enum Reason {
     /// The host pinned the part.
     Pinned,
-    /// No tolerance was given: everything is drawn.
+    /// No tolerance was given: all of the part is drawn.
     #[default]
     EverythingAsked,
-    /// This picture has not been gauged yet, or must not depend on earlier ones: everything is drawn.
+    /// This picture has not been gauged yet, or must not depend on earlier ones: all of the part is drawn.
     NotGauged,
     /// The weather does not have the part, or the recorded stages do not draw it.
     Absent,
@@ -74,7 +75,7 @@ impl Reason {
     }
 }
 
-/// Work of one step of a part in a picture, in units of the work of a pixel in which no part is drawn.
+/// Work that one step of a part saves in a picture, in units of the work of a pixel in which no part is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepWork {
     /// Work for each pixel in which the host drew something.
@@ -133,7 +134,7 @@ impl Ladder {
         (set & self.whole(part)).count_ones() as usize
     }
 
-    /// Returns the set with `part` moved to another rung.
+    /// Returns the set with `part` moved to `rung`.
     pub fn with(&self, set: Set, part: usize, rung: usize) -> Set {
         set & !self.whole(part) | self.set(part, rung)
     }

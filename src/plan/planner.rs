@@ -21,8 +21,8 @@ use crate::{
 pub struct PartPlan {
     /// Part that this entry plans.
     pub part: &'static Part,
-    /// Rung at which the part is drawn once its fade has ended. It is 0, the rung with all of the part, if the part is
-    /// absent from the picture.
+    /// Rung at which the part is drawn once its fade has ended. For a part that was absent when the picture was gauged
+    /// it is 0, the rung with all of the part, unless the host pinned the part.
     pub rung: usize,
     /// Share of the part that is drawn: 1 on its first rung, 0 on its last. It lies between them during a fade and on
     /// middle rungs.
@@ -54,11 +54,13 @@ pub struct Plan {
     pub parts: Vec<PartPlan>,
     /// Estimated error of everything that is left out together.
     pub error: Estimate,
-    /// Work of the picture as planned, in units of the work of a pixel in which no part is drawn.
+    /// Work of the picture as planned, in units of the work of a pixel in which no part is drawn. It is 0 until the
+    /// picture has been gauged.
     pub work: f64,
-    /// Work of the picture with everything.
+    /// Work of the picture with everything, in the units of `work`. It is 0 until the picture has been gauged.
     pub work_of_everything: f64,
-    /// Predicted time of the picture, ms, by the times reported so far; `None` before the first report.
+    /// Predicted time of the picture, ms, by the times reported so far; `None` before the first report, and until the
+    /// picture has been gauged.
     pub milliseconds: Option<f64>,
     /// Limit of the budget that could not be kept.
     pub gave_way: GaveWay,
@@ -86,14 +88,13 @@ impl Plan {
         }
     }
 
-    /// Forgets everything about the picture.
+    /// Resets what the plan says about the picture as a whole. The entries of the parts are kept.
     fn forget(&mut self) {
         (self.error, self.work, self.work_of_everything) = (Estimate::default(), 0.0, 0.0);
         (self.milliseconds, self.gave_way) = (None, GaveWay::Nothing);
     }
 
-    /// Returns the rung of every part once its fade has ended. It is 0, the rung with all of the part, for a part that
-    /// is absent from the picture.
+    /// Returns the rung of every part once its fade has ended ([`PartPlan::rung`]).
     pub fn rungs(&self) -> Vec<usize> {
         self.parts.iter().map(|p| p.rung).collect()
     }
@@ -105,9 +106,10 @@ pub struct Prediction {
     /// Predicted time of the weather in this frame, ms; `None` before the first gauge, and before the first reported
     /// time.
     pub milliseconds: Option<f64>,
-    /// Error of what this frame leaves out. A part that still fades is taken as drawn. `None` before the first gauge.
+    /// Error of what this frame leaves out. A step that still fades counts as not taken. `None` before the first gauge.
     pub error: Option<Estimate>,
-    /// For the newest gauged picture: the predicted bound of the error, and the error that the gauge measured.
+    /// For the newest gauged picture: the predicted bound of the error, and the error that the gauge measured. `None`
+    /// if no error was predicted for that picture.
     pub checked: Option<[f64; 2]>,
 }
 
@@ -145,9 +147,9 @@ impl Presence {
 
 /// Source of changes that the gauge cannot see, in closed form.
 pub(crate) trait Unseen {
-    /// Returns the relative changes due to the first steps of a part at pixel number `pixel` of the gauge, at `ndc`.
-    /// `picture` is the exposed luminance there (1 = white), and the optical depth of the drops and flakes drawn one by
-    /// one.
+    /// Returns the relative change due to each step of a part, taken together with the steps above it, at pixel number
+    /// `pixel` of the gauge, at `ndc`. Entries beyond the part's last step are ignored. `picture` is the exposed
+    /// luminance there (1 = white), and the optical depth of the drops and flakes drawn one by one.
     fn change(&self, part: &Part, pixel: usize, ndc: DVec2, picture: [f64; 2]) -> [f32; MOST_RUNGS - 1];
 }
 
@@ -178,7 +180,8 @@ impl Situation {
             && self.conditions.is_near(&other.conditions, NEAR)
     }
 
-    /// Whether the next frame is a cut to a very different picture. Parts then change without a fade.
+    /// Whether the next frame is a cut to a very different picture. All parts are then drawn in full at once, without a
+    /// fade.
     fn is_cut(&self, next: &Self) -> bool {
         let (a, b) = (self.conditions.visibility_m(), next.conditions.visibility_m());
         self.position.distance(next.position) > (0.05 * a.min(b)).max(100.0)
@@ -201,7 +204,8 @@ struct Gauging<U> {
 }
 
 /// Shares of a build of the sky's tables (default settings) that one frame does. The first is the least share: tables
-/// are not built in finer strips. The second is the usual share, for frames with time to spare.
+/// are not built in finer strips. The second is the usual share, for frames with time to spare. Such a frame does more
+/// only if [`SLICE`] allows more.
 const SHARE: (f64, f64) = (1.0 / 256.0, 1.0 / 80.0);
 /// Largest work on the sky's tables in a frame, as a share of the picture's own work. If the usual share of a build
 /// ([`SHARE`]) is more work, the usual share is the limit instead. A frame that works on tables takes less than 1.5
@@ -210,7 +214,7 @@ const SLICE: f64 = 0.3;
 
 /// Largest relative change of a pixel in one frame while a part fades.
 const FADE_STEP: f64 = 0.005;
-/// Fewest and most frames of a fade.
+/// Fewest and most frames in which a part fades by one step.
 const FADE_FRAMES: (f64, f64) = (8.0, 128.0);
 
 /// Planner of a view's pictures. `U` gives the changes that the gauge cannot see.
@@ -221,7 +225,8 @@ pub(crate) struct Planner<U> {
     demands: PlanDemands,
     /// Work of building the sky's default tables, in units of the work of a pixel in which no part is drawn.
     pub rebuild: f64,
-    /// Work of the last picture with everything, in the same units; 0 before the first.
+    /// Work that the last picture with everything has if the host draws something in every pixel, in the units of
+    /// `rebuild`; 0 before the first picture.
     work: f64,
     /// Gauge, created once a budget needs one.
     gauge: Option<Gauge>,
@@ -315,7 +320,10 @@ impl<U: Unseen> Planner<U> {
         self.prediction
     }
 
-    /// Takes the time of the last frame, ms.
+    /// Takes the time of the last frame, ms, in (0, 1e5]. The time is not used until the picture has been gauged.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] for a time outside this range.
     pub fn report_time(&mut self, milliseconds: f64) -> Result<()> {
         if !(milliseconds.is_finite() && milliseconds > 0.0 && milliseconds <= 1e5) {
             return Err(Error::range("milliseconds", "in (0, 1e5] ms", milliseconds));
@@ -410,12 +418,12 @@ impl<U: Unseen> Planner<U> {
             if pure {
                 part.depth = 0.0;
             } else if part.depth != wanted {
-                // The step under way: the present one, or the next one down.
+                // Rung to which the step under way leads down.
                 let lower = if wanted > part.depth { part.depth.floor() + 1.0 } else { part.depth.ceil() } as usize;
                 let worth = part.worth[lower.min(MOST_RUNGS - 1)];
                 let p99 = worth.worst.min(2.0 * worth.p95);
-                // If a pixel loses half of its light, the same step is relatively twice as large at the end of the
-                // fade.
+                // If a pixel loses half of its light, the same change of its light is relatively twice as large at the
+                // end of the fade.
                 let frames = p99 / (FADE_STEP * (1.0 - p99).max(0.2));
                 let step = 1.0 / frames.clamp(FADE_FRAMES.0, FADE_FRAMES.1) as f32;
                 part.depth += (wanted - part.depth).clamp(-step, step);
@@ -460,7 +468,7 @@ impl<U: Unseen> Planner<U> {
         share as f32
     }
 
-    /// Returns the drawn share of what a part has at `rung` but not at the next rung.
+    /// Returns the drawn share of what a part has at `rung` but not at the next lower rung.
     pub fn drawn_share(&self, part: usize, rung: usize) -> f32 {
         1.0 - (self.plan.parts[part].depth - rung as f32).clamp(0.0, 1.0)
     }

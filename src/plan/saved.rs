@@ -39,8 +39,8 @@ pub(crate) fn write(parts: &[Part], rungs: &[usize], sky: &PlanSettings<'_>) -> 
 /// Reads the rungs of a saved plan whose sky settings are those of this context.
 ///
 /// # Errors
-/// [`Status::Parse`] for text that is not a plan or is of another version, by line and column or by the field's name;
-/// [`Status::InvalidArgument`] if the plan's sky settings differ from `sky`.
+/// [`Status::Parse`] for text that is too long, is not a plan or is of another version. The message names line and
+/// column, or the field. [`Status::InvalidArgument`] if the plan's sky settings differ from `sky`.
 pub(crate) fn read(bytes: &[u8], parts: &[Part], sky: &PlanSettings<'_>) -> Result<Vec<usize>> {
     if bytes.len() > MOST_BYTES {
         return Err(fault("", format_args!("must have at most {MOST_BYTES} bytes, got {}", bytes.len())));
@@ -94,7 +94,8 @@ fn unread(why: &dyn std::fmt::Display) -> Error {
     Error::new(Status::Parse, why.to_string()).within("plan")
 }
 
-/// Returns a value as the end of a message: at most 40 characters of it, and dots if there are more.
+/// Returns a value as the end of a message: at most 40 characters of it, and dots if there are more. A missing value is
+/// "nothing".
 fn shown(value: Option<&Value>) -> String {
     value.map_or("nothing".into(), |v| beginning(&v.to_string(), 40).into_owned())
 }

@@ -1,10 +1,11 @@
 //! Search for the steps to take: the set that saves the most work within a tolerance, or the set with the least loss
 //! within the time.
 //!
-//! If there are few sets of steps, all are tried. Otherwise a limited number of sets is tried in order of increasing
-//! work, and the first one that keeps the tolerance is the best. If none of these keeps it, steps are added one at a
-//! time to the few best sets, and then exchanged as long as that saves more. The number of trials grows with the square
-//! of the number of steps.
+//! If there are few sets of steps, all are tried. Otherwise the search within a tolerance tries a limited number of
+//! sets in order of increasing work, and the first one that keeps the tolerance is the best. If none of these keeps it,
+//! steps are added one at a time to the few best sets, and then exchanged as long as that saves more. The number of
+//! trials grows with the square of the number of steps. The search within the time takes the step with the least loss
+//! for the work that it saves, one step after another, until the picture fits.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
@@ -12,7 +13,7 @@ use super::parts::{Ladder, Set};
 
 /// Number of sets up to which all are tried.
 const WHOLE: usize = 64;
-/// Number of trials in order of increasing work, for each pair of steps.
+/// Number of trials in order of increasing work, divided by the square of the number of steps.
 const TRIALS: usize = 3;
 /// Number of sets to which further steps are added, by each of the two criteria of [`Search::downwards`].
 const FRONT: usize = 3;
@@ -69,8 +70,8 @@ impl Free<'_> {
     }
 }
 
-/// Candidate set: its work as bits (whose order is that of positive numbers), its steps, and the first part that may
-/// still be raised in it.
+/// Candidate set: its work as bits (which are in the order of the works, as no work is negative), its steps, and the
+/// first part that may still be raised in it.
 type Next = Reverse<(u64, Set, usize)>;
 
 /// A set, the work that it saves, and its strain: the share of the tolerance that it uses up.
@@ -143,6 +144,7 @@ impl Search {
 
     /// Adds one step at a time to several sets at once: to the sets that save most, and to the sets that save most
     /// relative to their strain. The strain may exceed 1 on the way, since the change by another part may compensate.
+    /// Returns the set of least work among those that kept the tolerance.
     fn downwards(
         &mut self,
         free: Free<'_>,

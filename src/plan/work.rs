@@ -11,7 +11,7 @@ pub struct Listed<M> {
     pub work: Work,
 }
 
-/// Amounts of work. A sample is one point of a march or one closed-form column: densities, exponentials, a sum.
+/// Amounts of work. A sample is one point of a march or one integral in closed form: densities, exponentials, a sum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Units {
     /// Points at which the medium is evaluated.
@@ -59,9 +59,10 @@ impl Default for Price {
 pub struct Work {
     /// Work whenever the air changes, once for all views.
     pub rebuild: Units,
-    /// Work whenever a view's altitude, its sun or the air changes, per view and lamp.
+    /// Work for each view, whatever the number of its pixels. The sky does it per lamp (sun or moon), whenever the
+    /// view's altitude, the lamp or the air changes. Other effects do it in every frame.
     pub view: Units,
-    /// Work for every pixel of every frame, per lamp.
+    /// Work for every pixel of every frame; for the sky, per lamp.
     pub pixel: Units,
     /// Memory held once for all views, bytes.
     pub shared_bytes: u64,
@@ -70,8 +71,8 @@ pub struct Work {
 }
 
 impl Work {
-    /// Returns the work of one view's frame under one lamp. `follows` says whether the view's altitude, the sun or the
-    /// air changed.
+    /// Returns the work of one view's frame under one lamp (sun or moon). `follows` says whether the work of
+    /// [`Work::view`] is done in this frame.
     pub fn frame(&self, pixels: u64, follows: bool) -> Units {
         let view = if follows { self.view } else { Units::default() };
         view.plus(self.pixel, pixels as f64)

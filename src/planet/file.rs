@@ -15,9 +15,9 @@ impl Planet {
     ///
     /// # Errors
     /// [`crate::Status::Parse`] for a text that is not TOML, and for a key that is missing, unknown or of the wrong
-    /// kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range. The message names the
-    /// key, its unit and the accepted range. It also names line and column, unless a key is missing or two values
-    /// contradict each other.
+    /// kind; [`crate::Status::InvalidArgument`] for a value that is not finite or out of range, and for two values that
+    /// contradict each other. The message names the key, its unit and the accepted range, or for an unknown key the
+    /// known ones. It also names line and column, unless a key is missing or two values contradict each other.
     pub fn from_toml(text: &str) -> Result<Self> {
         parse(text)
     }

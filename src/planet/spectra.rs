@@ -37,7 +37,7 @@ fn tabulated(table: &[f64; 48], wavelength_nm: f64) -> Option<f64> {
 }
 
 /// Returns the sun's spectral irradiance at 1 au above the air, W m^-2 nm^-1. From 365 to 835 nm it is ASTM G173-03,
-/// means over 10 nm, interpolated; outside, a black body of 5772 K that continues the table's ends.
+/// means over 10 nm, interpolated. Outside it is that of a black body of 5772 K, scaled to continue the table's ends.
 pub fn solar_irradiance(wavelength_nm: f64) -> f64 {
     tabulated(&SOLAR_IRRADIANCE, wavelength_nm).unwrap_or_else(|| {
         let last = SOLAR_IRRADIANCE.len() - 1;

@@ -50,8 +50,8 @@ pub struct SpectralSet {
 }
 
 impl SpectralSet {
-    /// Creates the set of `count` wavelengths, `[2, 200]`, from 390 to 710 nm. Beyond the ends, where the eye's
-    /// response is less than 0.1 % of white, the end values are used.
+    /// Creates the set of `count` wavelengths, `[2, 200]`, evenly spaced from 390 to 710 nm. Beyond the ends, which
+    /// contribute about 0.1 % of white or less, the end values are used.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for another count.
@@ -124,10 +124,10 @@ pub(crate) struct SpectralTriple {
 
 /// Splits `planet` into planets for a set of `count` wavelengths, a multiple of 3. The sum of all transfers, each times
 /// its column, is a triple of transfers at the planet's own wavelengths. The conversion of the planet's own wavelengths
-/// turns this triple into the set's colour. With a count of 3 the result is the planet itself.
+/// turns this triple into the set's colour. With a count of at most 3 the result is the planet itself.
 ///
 /// # Errors
-/// As [`SpectralSet::new`].
+/// [`crate::Status::InvalidArgument`] for a count above 200.
 pub(crate) fn parts(planet: &Planet, count: u32) -> Result<Vec<SpectralTriple>> {
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     if count <= 3 {
@@ -172,8 +172,8 @@ impl Conversion {
         Self { matrix }
     }
 
-    /// Creates the conversion of a planet's wavelengths: fitted, or per channel if two of them are too close to tell
-    /// colours apart.
+    /// Creates the conversion of a planet's wavelengths: fitted, or per channel if [`Conversion::fitted`] refuses them,
+    /// for example because two of them are too close to tell colours apart.
     pub fn of(planet: &Planet) -> Self {
         Self::fitted(&planet.wavelengths_nm).unwrap_or_else(|_| Self::per_channel())
     }
@@ -233,7 +233,7 @@ impl Conversion {
 struct AirSample {
     /// Vertical optical depth of the haze at 550 nm.
     haze: f64,
-    /// Air masses of gas and haze between the sun and the point.
+    /// Air masses of gas and haze that direct sunlight crosses.
     sun_masses: f64,
     /// Air masses of ozone.
     ozone_masses: f64,
@@ -273,7 +273,7 @@ impl AirSample {
 /// Returns the sun's limb darkening: brightness relative to the disc's centre at a point where the line of sight meets
 /// the photosphere at an angle of cosine `mu` (1 at the centre, 0 at the limb). The law is 1 - u - v + u mu + v mu^2.
 /// Its coefficients u and v are those of Cox 2000 (Allen's Astrophysical Quantities, section 14.7), interpolated
-/// linearly between wavelengths.
+/// linearly between wavelengths and constant outside 380 to 1000 nm.
 pub fn limb_darkening(wavelength_nm: f64, mu: f64) -> f64 {
     const TABLE: [(f64, f64, f64); 8] = [
         (380.0, 0.92, -0.05),

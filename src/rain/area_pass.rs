@@ -141,7 +141,8 @@ pub(super) struct Columns<'a> {
 }
 
 impl Columns<'_> {
-    /// Returns the blocks, and the number of columns in the picture.
+    /// Returns the blocks, in which the columns in the picture are ordered from the farthest to the nearest, and the
+    /// number of these columns.
     fn blocks(&self) -> (AreaBlocks, u32) {
         let mut blocks: AreaBlocks = bytemuck::Zeroable::zeroed();
         let field = self.field;

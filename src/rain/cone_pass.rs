@@ -131,7 +131,7 @@ pub(super) struct ConeKind {
     pub over: bool,
     /// Whether the innermost cone is drawn, because not all near drops are drawn one by one.
     pub innermost: bool,
-    /// Whether one set of streaks is replacing another.
+    /// Whether one set of streaks is replacing another in a drawn cone.
     pub growing: bool,
 }
 

@@ -5,9 +5,10 @@
 //! a drop at distance r move with velocity V relative to the camera, and let theta be its angle from V. Its azimuth
 //! about V stays the same. Its coordinate s = ln tan(theta / 2), the latitude of Mercator's projection, changes at the
 //! constant speed |V| / r. Its streak has the length |V| t / r in s for any theta, where t is the exposure time. The
-//! texture is therefore mapped to (azimuth, s) and moves along s. Streaks then converge in the directions V and -V, as
-//! those of drops do. Towards these directions the number of tiles around the azimuth is halved each time sin theta is
-//! halved, so streaks keep their width. Wang and Wade narrowed the cone to a tip, where all streaks met in a point.
+//! texture is therefore mapped to (azimuth, s), where it repeats in tiles, and moves along s. Streaks then converge in
+//! the directions V and -V, as those of drops do. Towards these directions the number of tiles in a turn of azimuth is
+//! halved each time sin theta is halved, so streaks keep their width. Wang and Wade narrowed the cone to a tip, where
+//! all streaks met in a point.
 //!
 //! A cone shows as many streaks as there are drops in its band. The texture's four channels hold streaks in the ratio
 //! 1:4:16:64, and as many channels are summed as are needed. If a band has more drops than the texture has streaks, the

@@ -30,9 +30,9 @@ use crate::{
 /// chart's error.
 const CONES_MISS: f64 = 0.3;
 
-/// Returns the variance, from pixel to pixel, of the share of a pixel that drops between two distances (m) cover.
-/// `pixel_angle` is the angle of a pixel, rad, `along_m` the distance that drops move across the line of sight during
-/// the exposure, m, and `gain` the contrast gain.
+/// Returns the variance, from pixel to pixel, of the share of a pixel that is covered by the drops between two
+/// distances (m). `pixel_angle` is the angle of a pixel, rad, `along_m` the distance that drops move across the line of
+/// sight during the exposure, m, and `gain` the contrast gain.
 pub fn cover_variance(
     classes: &Classes,
     pixel_angle: f64,

@@ -66,7 +66,7 @@ impl CullPass {
         device.caps().tier > 0
     }
 
-    /// Creates the state for the drops in the rain's block `rain` and in the block `local` of rain areas.
+    /// Creates the state. `rain` is the rain's block, `local` the buffer of [`LocalUniform`].
     pub fn new(device: &wgpu::Device, (rain, local): (&BlockView, &wgpu::Buffer), counts: bool) -> Self {
         let slots = [
             (0, Slot::Uniform(size_of::<RainUniform>())),

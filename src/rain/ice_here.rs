@@ -1,4 +1,5 @@
-//! Hail and ice pellets around a view's camera, recounted only when the precipitation changes.
+//! Hail and ice pellets around a view's camera, recounted only when the precipitation, the fall speeds or the largest
+//! number of stones change.
 
 use super::{
     settings::{RainModel, RainSettings},

@@ -1,5 +1,5 @@
 //! Inputs for stepping the drops of the lattice through a wind that varies in space (`particles::stepping` has the
-//! model). `cull_pass` draws them.
+//! model). `cull_pass` draws the stepped drops.
 
 use glam::DVec3;
 
@@ -30,8 +30,8 @@ pub(super) struct SteppedDrops<'a> {
     pub classes: &'a Classes,
     /// Number of drawn shells of the lattice.
     pub shells: usize,
-    /// Number of drops in all shells for which memory is allocated. More than are drawn now, because their number may
-    /// soon grow, for example at the rim of a rain area.
+    /// Number of drops for which memory is allocated at least, in all drawn shells together. It may exceed the number
+    /// of drops that are drawn now, because that number may soon grow, for example at the rim of a rain area.
     pub most: u32,
 }
 

@@ -1,5 +1,5 @@
-//! Places of drops without a state: a lattice of cells that moves with the air. Each drop has one place in its cell and
-//! falls through it at its own speed.
+//! Places of drops without a state: a lattice of cells that moves with the air. Each drop has a start of its own in its
+//! cell and falls through the cell at its own speed.
 //!
 //! A shell is a cube of side L, filled with drops at random places and repeated in all directions; each drop is drawn
 //! at the copy nearest to the camera. Positions are whole numbers of 2^-32 L. Their 32-bit sums wrap as the lattice

@@ -11,7 +11,7 @@ pub use crate::moment::LightAround as DropLight;
 /// scattering angle: 1 for light from straight behind the drop. The function is 0.93 h(0.9) + 0.07 h(-0.35) with the
 /// lobe h(g) = (1 - g^2) / (1 + g^2 - 2 g c)^1.5 of Henyey and Greenstein (1941). The first lobe is that of the rays
 /// through the sphere, the second that of the backward share that makes rainbows. The asymmetry is 0.93 x 0.9 - 0.07 x
-/// 0.35 = 0.81. Twin of `drop_phase` in `shaders/rain/phase.wgsl`.
+/// 0.35 = 0.81. `drop_phase` in `shaders/rain/phase.wgsl` computes the same in f32.
 pub fn phase(c: f64) -> f64 {
     let lobe = |g: f64| (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     0.93 * lobe(0.9) + 0.07 * lobe(-0.35)
@@ -22,8 +22,8 @@ pub fn phase(c: f64) -> f64 {
 ///
 /// Most of a drop's disc shows the surroundings near the ray's own direction, upside down: half of the disc turns rays
 /// by less than 26 degrees, its rim by 83 degrees. A drop slightly above the horizon therefore already shows more sky
-/// than ground. Fitted to rays refracted and reflected by the laws of Snell and Fresnel, within 0.01
-/// (`tests/rain/photometry.rs`). Twin of `sky_share` in `shaders/rain/phase.wgsl`.
+/// than ground. The formula is fitted to rays refracted and reflected by the laws of Snell and Fresnel, within 0.01
+/// (`tests/rain/photometry.rs`). `sky_share` in `shaders/rain/phase.wgsl` computes the same in f32.
 pub fn sky_share(z: f64) -> f64 {
     let level = 1.0 - z.abs().min(1.0);
     0.5 + z.signum() * 0.4415 * (1.0 - level * level * level.sqrt())

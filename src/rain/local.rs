@@ -93,7 +93,8 @@ impl Local {
 }
 
 impl Classes {
-    /// Returns classes that have, in each class, the larger of the numbers of `self` and `other`.
+    /// Returns classes that have, in each class, the larger number of drops and the larger flux of `self` and `other`.
+    /// Weight and extinction are those of `self`.
     pub(crate) fn enveloped(&self, other: &Self) -> Self {
         let (mut upto, mut envelope) = (0.0, *self);
         for k in 0..CLASSES {
@@ -149,7 +150,7 @@ impl LocalUniform {
                 block.counts[k * ROWS + row][at] = (classes.count(k) * begun) as f32;
             }
             block.weights[row][at] = classes.weight as f32;
-            // Stores the rate, which is divided by the largest rate below.
+            // Stores the rate. The last loop of this function divides it by the rate of the envelope.
             block.splashes[row][at] = (Splashes::new(classes).drawn_per_m2_s * begun) as f32;
             block.cones[row][at] = (classes.extinction_per_m * begun) as f32;
         };

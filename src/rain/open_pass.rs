@@ -1,6 +1,6 @@
-//! Shares of the rain that reach the cones past shelters, on a coarse grid over the picture. Each cell is tested once
-//! for every stretch of its ray, and every pixel looks the result up. The grid is drawn only if a box or an occluder
-//! map near the camera keeps rain off.
+//! Share of the rain that reaches the cones past shelters, on a coarse grid over the picture. For each cell of the grid
+//! the four quarters of every stretch of its ray are tested, and every pixel looks the results up. The grid is drawn
+//! only if a box or an occluder map near the camera keeps rain off.
 
 use std::sync::Arc;
 

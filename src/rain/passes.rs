@@ -164,8 +164,8 @@ impl RainLayer {
         Ok(())
     }
 
-    /// Draws the drops for a picture of the size of `color` with the host's `depth`, and their splashes if there is
-    /// depth.
+    /// Draws the cones, the drops and the stones for a picture of the size of `color` with the host's `depth`. Splashes
+    /// and stones on the ground are drawn only if there is depth.
     ///
     /// # Errors
     /// A missing shader file.
@@ -219,9 +219,9 @@ impl RainLayer {
         self.draw_into(recording.encoder, drawn.over, surroundings, |pass, layer| {
             if drawn.cones.is_some() {
                 layer.cones.iter().for_each(|c| c.draw(pass, cone_kind));
-                // The drops' pipeline layout has no group before this one. On OpenGL the group then has other binding
-                // points. wgpu 30 does not notice this, and it ignores a group that is set already, so the group is
-                // first removed.
+                // The drops' pipeline layout lacks group 1, which the cones' layout has. On OpenGL group 2 then has
+                // other binding points. wgpu 30 does not notice this, and it ignores a group that is set already, so
+                // group 2 is first removed.
                 pass.set_bind_group(2, None, &[]);
                 pass.set_bind_group(2, surroundings, &[]);
             }

@@ -10,9 +10,9 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RainModel {
     /// Single drops up to 1.9 m from the camera, and cones from there to 14.8 m. Rain farther away is extinction, drawn
-    /// with the fog. Near a wind that varies in space the drops are stepped, as with [`RainModel::Integrated`]. Under a
-    /// budget ([`crate::plan`]) the drops, or the drops and the cones, are left out if the picture changes little
-    /// without them.
+    /// with the fog. On devices with compute shaders the drops are stepped near a wind that varies in space, as with
+    /// [`RainModel::Integrated`]. Under a budget ([`crate::plan`]) the drops, or the drops and the cones, are left out
+    /// if the picture changes little without them or there is no time for them.
     #[default]
     Automatic,
     /// No drops: all rain is extinction. This costs nothing in addition to the fog.
@@ -24,8 +24,8 @@ pub enum RainModel {
     /// Single drops only, up to 4 m from the camera. Each drop's place follows from (seed, number, time), without a
     /// state ([`super::lattice`]). If lamps light the rain, cones show it beyond 4 m.
     Drops,
-    /// Drops stepped through a wind that varies in space (`particles::stepping`), up to 4 m from the camera. This model
-    /// needs compute shaders.
+    /// Drops stepped through a wind that varies in space (`particles::stepping`), up to 4 m from the camera. If lamps
+    /// light the rain, cones show it beyond 4 m. This model needs compute shaders.
     Integrated,
 }
 
@@ -90,6 +90,10 @@ impl RainSettings {
     }
 
     /// Checks the settings, also against the limits of `device`.
+    ///
+    /// # Errors
+    /// The errors of [`RainSettings::validate`]; [`crate::Status::Unsupported`] if the model is
+    /// [`RainModel::Integrated`] and the device lacks compute shaders or the memory for so many drops.
     pub(crate) fn validate_on(&self, device: &Device) -> Result<()> {
         self.validate()?;
         if self.model != RainModel::Integrated {

@@ -1,5 +1,5 @@
-//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. This file is the f64
-//! twin of `shaders/rain/shaft.wgsl` and `shaders/rain/area.wgsl`.
+//! Rain areas seen from a camera: the columns of their rain, and their optical depth along a ray. This file has the
+//! formulas of `shaders/rain/shaft.wgsl` and `shaders/rain/area.wgsl` in f64.
 //!
 //! A column is the area's plan carried up to its cloud along the slant of the falling drops. The segment of a ray
 //! inside the column is found exactly: the intersection with an ellipse or a convex polygon in the plan and with two
@@ -26,7 +26,7 @@ use crate::{
 
 /// Depth of the columns below the level of their plan, m: they reach into valleys.
 pub(crate) const BELOW_M: f64 = 1000.0;
-/// Length of the front stretch of a dense column, from which most of the column's light comes, m.
+/// Length of the front stretch of a column, m. Most of the light of a dense column comes from this stretch.
 const FRONT_M: f64 = 500.0;
 
 /// Structure `Column` of the block in `shaders/rain/area.wgsl`, which describes the fields.
@@ -325,8 +325,8 @@ impl AreaField {
     }
 
     /// Returns the optical depth that column `i` adds to a ray from `origin` (relative to the camera) along `d`, up to
-    /// the distance `range`, m. If `patterned` is set, the depth includes the pattern of curtains. `None` if the ray
-    /// misses the column.
+    /// the distance `range`, m. It is below 0 where the weather's own rain, which the column replaces, is denser. If
+    /// `patterned` is set, the depth includes the pattern of curtains. `None` if the ray misses the column.
     pub fn met(&self, i: usize, origin: DVec3, d: DVec3, range: f64, patterned: bool) -> Option<f64> {
         let c = &self.columns[i];
         let lean = c.shaft.lean;

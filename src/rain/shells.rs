@@ -77,7 +77,8 @@ impl Moment {
 }
 
 /// Returns the share of each drop of `shell` that is shown at `distance_m`, 0 to 1. The shell fades in where the next
-/// smaller shell fades out, and fades out where the next larger shell fades in.
+/// smaller shell fades out, and fades out where the next larger shell fades in. The innermost shell fades in from 0.125
+/// to 0.25 m.
 pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
     let reach = 0.5 * side_m(shell);
     let outer = 1.0 - smoothstep(FADE * reach, reach, distance_m);

@@ -12,7 +12,7 @@ const CELLS: u32 = 40;
 /// Lifetime of a splash, s. It covers the crown, which lasts some milliseconds per millimetre of the drop's diameter,
 /// and the flight of the crown's droplets.
 pub const LIFE_S: f64 = 0.08;
-/// Distance at which splashes have faded, m.
+/// Distance from the camera at which splashes have faded out, m.
 pub const REACH_M: f64 = 0.5 * SIDE_M * CELLS as f64;
 /// Largest number of slots in a cell.
 const MOST_SLOTS: u32 = 8;
@@ -110,8 +110,8 @@ impl Splashes {
 
     /// Returns the drops that may have landed and whose splash is visible at `time_s`, within ten metres to each side
     /// of a camera at `position_m` (east, north and up from a point fixed to the world). They include drops that land
-    /// only on slopes that get more drops than level ground. Twin of `arrival_of` in `shaders/rain/splash.wgsl`: the
-    /// height of the ground is not yet known.
+    /// only on slopes that get more drops than level ground. `arrival_of` in `shaders/rain/splash.wgsl` computes the
+    /// same in f32. The height of the ground is not yet known here.
     pub fn landings(&self, seed: u64, position_m: DVec3, time_s: f64) -> impl Iterator<Item = Landing> {
         let (u, seed) = (self.uniform((position_m, 0.0), time_s, 1.0, [0.0; 2]), short_seed(seed));
         let sizes = self.sizes;

@@ -80,7 +80,8 @@ impl StonePass {
         self.pipelines.prepare(kind, |_| Ok([make("falling_vertex")?, make("hopping_vertex")?]))
     }
 
-    /// Draws the prepared stones in a pass whose group 0 is that of the drops.
+    /// Draws the prepared stones in a pass whose group 0 is that of the drops. Stones on the ground are drawn only if
+    /// there is depth.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, kind: StoneKind, drawn: &StoneDraw) {
         let Some([falling, hopping]) = self.pipelines.get(&kind) else { return };
         pass.set_bind_group(1, &self.group, &[]);

@@ -2,9 +2,9 @@
 //! their landings on the ground, where they hop.
 //!
 //! Stones have a lattice of their own, a repeated cube of air as for drops ([`super::lattice`]). Each shell is twice as
-//! wide as the one before and holds all stones of its volume, because hail is rare and seen from afar. Pellets are too
-//! many for that, so each drawn pellet represents several. Shells in which a pellet would represent more than
-//! `MOST_WEIGHT` are not drawn: their pellets are extinction, drawn with the fog.
+//! wide as the one before and holds all stones of its volume, because hail is rare and seen from afar. Where stones are
+//! too many for that, as pellets often are, each drawn stone represents several. Outer shells in which a stone would
+//! represent more than `MOST_WEIGHT` are not drawn: their stones are extinction, drawn with the fog.
 
 use glam::DVec3;
 
@@ -78,7 +78,7 @@ struct StoneClass {
 }
 
 impl StoneClass {
-    /// Creates class `i`; the classes of the first kind come first.
+    /// Creates class `i`: the classes of pellets come before those of hail, each from small to large.
     fn new(sizes: &StoneSizes, i: usize) -> Self {
         let stone = Stone::ALL[i / CLASSES];
         let (low, high) = stone.range_mm();

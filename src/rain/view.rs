@@ -118,7 +118,7 @@ impl RainView {
         RainPresence { drops: presence.drops && self.shares[0] > 0.0, ..presence }
     }
 
-    /// Returns the number of drops drawn around the camera.
+    /// Returns the number of drops of the weather's own rain that are drawn around the camera.
     fn drops(&mut self, device: &Device, scene: &Scene) -> u32 {
         self.classes(device, scene, &{ self.own }).per_shell * self.shells() as u32
     }
@@ -142,12 +142,14 @@ impl RainView {
         }
     }
 
-    /// Returns whether the plan decides how much of the rain is drawn: with the automatic model only.
+    /// Returns whether the plan decides how much of the rain is drawn: only with the automatic model, and only if drops
+    /// fall.
     pub fn is_planned(&self) -> bool {
         self.settings.model == RainModel::Automatic && self.presence().drops
     }
 
-    /// Sets the drawn share of all rain, and the share of near rain drawn as single drops.
+    /// Sets the drawn share of all rain, and the share of near rain drawn as single drops. Both are 1 if the plan does
+    /// not decide.
     fn set_shares(&mut self, shares: [f32; 2]) {
         self.shares = if self.is_planned() { shares } else { [1.0; 2] };
     }

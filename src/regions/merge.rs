@@ -98,7 +98,7 @@ impl<'a> RegionsHere<'a> {
             std::array::from_fn(|_| singles.next())
         };
         // The weighted mean of several weathers is computed by blends of two: the mean so far, and the next region's
-        // weather. The weight of the latter is its share over the sum of all shares up to and including it.
+        // weather. The weight of the latter is its share divided by the sum of the shares so far, its own included.
         let mut before = parts.map(|part| part.map_or(0.0, |(_, shares)| shares.base));
         let mut merged = *c;
         for (k, acting) in self.list.iter().flatten().enumerate() {
@@ -122,7 +122,8 @@ mod tests {
         weather::{Weather, Wind},
     };
 
-    /// Regions over all of the origin that merge or cover the temperature, each with a weight and a temperature.
+    /// Returns regions around the origin. Each entry of `list` says whether the region merges its parts or covers
+    /// others, its weight and its temperature.
     fn held(list: &[(bool, f64, f64)]) -> Vec<HeldRegion> {
         let one = |(merges, strength, temperature_c): &(bool, f64, f64)| WeatherRegion {
             plan: RegionPlan { strength: *strength, ..RegionPlan::default() },

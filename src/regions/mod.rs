@@ -30,10 +30,11 @@
 //! # Along a path
 //! The optical depth between two points is the integral of the sum of a_k(s) e_k(s), where e_k is the extinction of the
 //! medium k with its own heights. The path (`RegionWay`) is divided into pieces. Where all weights are constant, pieces
-//! are long. In a perimeter a piece is at most P / 32 long, or longer if the weight changes by less than 1e-3 from its
-//! middle to either end. Within a piece the shares are those of its middle, and the optical depth of each medium has a
-//! closed form. The midpoint rule is of fourth order for a whole perimeter, because the weight has no slope at the
-//! perimeter's edges. The error is below 1e-3 of the optical depth in the perimeter (`tests/weather/regions.rs`).
+//! are long. In a perimeter a piece is at most P / 32 long, or longer if the weight changes by less than 1e-3 from the
+//! middle of the piece to either end. At a border with P = 0 it is at most 1 mm long. Within a piece the shares are
+//! those of its middle, and the optical depth of each medium has a closed form. The midpoint rule is of fourth order
+//! for a whole perimeter, because the weight has no slope at the perimeter's edges. The error is below 1e-3 of the
+//! optical depth in the perimeter (`tests/weather/regions.rs`).
 
 mod field;
 mod merge;

@@ -29,8 +29,8 @@ pub(super) const FARTHEST_M: f64 = 3e5;
 pub struct RegionPlan {
     /// Shape around the centre. Default: a circle with a radius of 2000 m.
     pub shape: RegionShape,
-    /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
-    /// matter.
+    /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. The height of the
+    /// position does not matter. Default: the origin.
     pub center_m: [f64; 3],
     /// Heading of the axis along which the shape's second extent is measured: degrees clockwise from true north,
     /// \[-360, 360\]. Default 0.

@@ -147,7 +147,7 @@ fn polygon_distance(corners: &[[f64; 2]], p: DVec2) -> f64 {
         let (side, away) = (corner - before, p - before);
         let along = (away.dot(side) / side.length_squared()).clamp(0.0, 1.0);
         nearest = nearest.min((away - side * along).length());
-        // A ray to the right of the point crosses this side.
+        // A ray from the point to the right crosses this side.
         if (corner.y > p.y) != (before.y > p.y) && p.x < before.x + side.x * (p.y - before.y) / side.y {
             inside = !inside;
         }
@@ -207,7 +207,7 @@ mod tests {
         polygon(&[[0.0, 0.0], [0.0, 3000.0], [1000.0, 3000.0], [1000.0, 1000.0], [2500.0, 1000.0], [2500.0, 0.0]])
     }
 
-    /// Points of the border of a shape, densely.
+    /// Returns points that lie densely along the border of a shape.
     fn border(shape: &RegionShape) -> Vec<DVec2> {
         let on_side = |a: DVec2, b: DVec2| (0..4000).map(move |i| a.lerp(b, f64::from(i) / 4000.0));
         match shape {

@@ -35,7 +35,7 @@ pub(crate) struct RegionWay<'a> {
 struct PlanStretch {
     /// Distances of the stretch's start, middle and end from the border, m, negative inside.
     distances_m: [f64; 3],
-    /// Half length on the plan, m.
+    /// Half length on the plan times [`BENT`], m.
     reach_m: f64,
 }
 

@@ -50,11 +50,12 @@ pub enum DepthKind {
     Perspective,
     /// Parallel rays; depth is linear.
     Orthographic,
-    /// d = ln(c w + 1) / ln(c far + 1) with w = clip w, written by the host's shader (Kemen, Outerra, 2009).
+    /// d = ln(c w + 1) / ln(c far + 1) with w = clip w, written by the host's shader (Kemen, Outerra, 2009). If
+    /// [`DepthMapping::reversed`] is set, the shader writes 1 - d.
     Logarithmic {
         /// Resolution near the camera, 1/m, \[1e-9, 1e6\]; 1 or 0.001 are usual.
         c: f64,
-        /// Distance at depth 1, m, \[1e-3, 1e12\].
+        /// Distance at depth 1, or at depth 0 if reversed, m, \[1e-3, 1e12\].
         far_m: f64,
     },
 }
@@ -153,8 +154,8 @@ impl ViewRays {
     /// Computes the rays of `camera`, whose depth buffer follows `mapping`.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] naming the field, if the matrix cannot be inverted or contradicts the
-    /// mapping.
+    /// [`crate::Status::InvalidArgument`] naming the field, if [`Camera::validate`] or [`DepthMapping::validate`]
+    /// refuses it, or if the projection cannot be inverted or contradicts the mapping.
     pub fn new(camera: &Camera, mapping: &DepthMapping) -> Result<Self> {
         camera.validate()?;
         mapping.validate()?;

@@ -34,21 +34,21 @@ pub(crate) struct LightUniform {
     pub end: f32,
     /// Unit vector of the beam, (east, north, up).
     pub direction: [f32; 3],
-    /// 1 / (cosine of `inner_deg` - `end`).
+    /// 1 / (cosine of `inner_deg` - `end`), at most 1e4.
     pub steepness: f32,
     /// Luminous intensity in the middle of the beam, cd per channel, times the picture's exposure.
     pub intensity: [f32; 3],
     pub pad: f32,
 }
 
-/// Light of a lightning flash in a frame, as a lamp that lights what is near the camera.
+/// Light of a lightning flash in a frame, as a lamp that lights the clouds and what is near the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FlashLamp {
     /// Position relative to the camera, (east, north, up), m.
     pub position: DVec3,
     /// Luminous flux, lm per channel of linear Rec. 709, as a mean over the frame's time.
     pub flux_lm: [f64; 3],
-    /// Distance from `position` to which the light reaches, m.
+    /// Radius of the source around `position`, m. It keeps the light close to the source finite.
     pub radius_m: f64,
     /// Share of the light that leaves through the base of the cloud, for a flash inside a cloud. `None` for one that is
     /// open to all sides.
@@ -160,7 +160,8 @@ mod tests {
         assert!(bulb.illuminance_lux(DVec3::new(0.0, -10.0, 3.0))[1] > 99.0);
     }
 
-    /// The law of `light_beam` in `shaders/common/light.wgsl`, for the numbers that shaders read.
+    /// Computes the law of `light_beam` in `shaders/common/light.wgsl` from the numbers that shaders read, and compares
+    /// it with the query.
     #[test]
     fn shaders_and_queries_have_the_same_beam_at_every_angle() {
         let share = |lamp: &HostLight, degrees: f64| {

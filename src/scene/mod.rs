@@ -1,4 +1,5 @@
-//! Cameras, depth conventions and world frames: the geometry between the host's world and the planet.
+//! Cameras, depth conventions and world frames: the geometry between the host's world and the planet. The host's lamps
+//! are here too.
 //!
 //! The host's coordinates stay as they are: rooms obtain up, altitude, north and place only through
 //! [`WorldFrame::frame_at`]. Positions are f64 in the host's frame; everything on the GPU is relative to the camera.

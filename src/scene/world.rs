@@ -10,8 +10,9 @@ const WGS84_A: f64 = 6_378_137.0;
 /// First eccentricity squared of the WGS 84 ellipsoid (NIMA TR8350.2, 2000).
 const WGS84_E2: f64 = 6.694_379_990_141_4e-3;
 
-/// Largest difference between mean sea level and the ellipsoid, m: it is -107 m south of India and 86 m at New Guinea
-/// (EGM2008, Pavlis et al. 2012). The rest is a margin for other reference surfaces.
+/// Largest magnitude of [`WorldFrame::geoid_height_m`], m. The height of mean sea level above the ellipsoid lies
+/// between -107 m south of India and 86 m at New Guinea (EGM2008, Pavlis et al. 2012). The rest is a margin for other
+/// reference surfaces.
 const GEOID_M: f64 = 120.0;
 /// Lowest and highest altitude of a place, m.
 const ALTITUDES_M: [f64; 2] = [-1e4, 1e9];
@@ -96,14 +97,15 @@ pub enum Axes {
 /// Relation of the host's world to the planet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum WorldKind {
-    /// A plane: up is the same everywhere, and altitude is the up coordinate plus the origin's altitude.
+    /// A plane: up is the same everywhere, and altitude is the up coordinate plus the origin's altitude. Latitude and
+    /// longitude are the origin's everywhere.
     #[default]
     Flat,
     /// A tangent plane: axes east, north and up at the origin's place, with the curved planet below.
     Tangent,
     /// Earth-centred, Earth-fixed (WGS 84). The axes are not used. The origin is used for the sunlight on simulated
-    /// ground, and as the zero point of the maps of local cloud cover, waves and lightning. Altitudes count from mean
-    /// sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
+    /// ground, and as the zero point of the map on which clouds, patches of fog, waves and lightning have their places.
+    /// Altitudes count from mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 
@@ -120,8 +122,8 @@ pub struct WorldFrame {
     /// and tangent worlds.
     pub grid_bearing_deg: f64,
     /// Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place, m, [-120, 120]: 47.8 m at
-    /// Frankfurt, -30 m at New York. It varies by some metres over 100 km; one value holds for all of the world. Used
-    /// only by Earth-centred worlds, whose coordinates refer to the ellipsoid. Default 0.
+    /// Frankfurt, -30 m at New York. It varies by some metres over 100 km, but this one value holds for all of the
+    /// host's world. Used only by Earth-centred worlds, whose coordinates refer to the ellipsoid. Default 0.
     pub geoid_height_m: f64,
 }
 
@@ -156,7 +158,7 @@ impl WorldFrame {
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming `name` if the position is not finite, farther than 1e12 m from the
-    /// world's origin, or not at an altitude in \[-1e4, 1e9\] m.
+    /// world's origin, or not at an altitude in \[-1e4, 1e9\] m, with a tolerance of 1 mm.
     pub fn place_at(&self, name: &str, position: DVec3) -> Result<LocalFrame> {
         if !(position.is_finite() && position.length() <= FARTHEST_M) {
             return Err(Error::range(name, "finite and within 1e12 m of the world's origin", position));
@@ -196,8 +198,8 @@ impl WorldFrame {
         }
     }
 
-    /// Returns the position of a place on the planet in a tangent or Earth-centred host's world: the inverse of
-    /// [`WorldFrame::frame_at`].
+    /// Returns the position in the host's world of a place on the planet: the inverse of [`WorldFrame::frame_at`]. The
+    /// world must be tangent or Earth-centred.
     pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
         match self.kind {
             WorldKind::Ecef => Place { altitude_m: place.altitude_m + self.geoid_height_m, ..*place }.to_ecef(),
@@ -260,7 +262,7 @@ mod tests {
             assert!((local.place.altitude_m - 111.0).abs() < 1e-6, "{local:?}");
             assert_eq!(world.place_at("position", above).unwrap(), local);
             assert!((world.position_of(&frankfurt) - above).length() < 1e-6);
-            // Where the host gives altitudes itself, the ellipsoid does not matter.
+            // Flat and tangent worlds count altitudes from that of the origin, so the ellipsoid does not matter.
             for kind in [WorldKind::Flat, WorldKind::Tangent] {
                 let world = WorldFrame { kind, origin: frankfurt, ..world };
                 let without = WorldFrame { geoid_height_m: 0.0, ..world };

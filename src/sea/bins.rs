@@ -28,7 +28,7 @@ const HANDOVER: [f64; 2] = [3.0, 4.0];
 /// Ratio of the tiles' highest wave number to the wave number at which they begin. At most three tiles of the ladder
 /// then have energy.
 const TILED_RANGE: f64 = 45.0;
-/// Highest wave number of the tiles, 1/m: the finest tile has no higher one.
+/// Highest wave number at which tiles have energy, 1/m: just below that of the finest tile's shortest waves, 565.
 const FINEST_PER_M: f64 = 560.0;
 /// Ratio of the two wave numbers between which the tiles' energy fades to 0.
 const END_RATIO: f64 = 1.5;
@@ -50,7 +50,7 @@ pub(super) struct WaveSystem {
     pub peak_rad_s: f64,
     pub gamma: f64,
     /// Direction in which the system travels (east, north). The vector's length, at most 1, is the share of the waves
-    /// that travel in this direction; the rest is spread over all directions.
+    /// that `spreading` puts around this direction. The rest is even over all directions.
     pub toward: DVec2,
     pub spreading: Spreading,
     /// Share of the variance that is given for deep water, 0 to 1. The depth takes some of this share away (TMA).
@@ -81,7 +81,8 @@ impl WaveSystem {
     }
 }
 
-/// Share of a system's waves that travel in the system's direction, and this direction, rad from east to north.
+/// Share of a system's waves that is spread around the system's direction, and this direction, rad from east to north.
+/// The rest of the waves is even over all directions.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Heading {
     certain: f64,
@@ -239,8 +240,8 @@ impl Bins {
         level * whole
     }
 
-    /// Returns the wave number at which the tiles' energy ends: the end of their range, or a lower one at which the
-    /// slopes reach `most_slope`.
+    /// Returns the wave number at which the tiles' energy ends: the end of the tiles' range, or a lower one if the mean
+    /// square slope of all waves reaches `most_slope` before it.
     fn end(&self, most_slope: f64) -> f64 {
         let begin = wave_number(HANDOVER[0] * self.peak_rad_s, self.depth_m);
         let range = (TILED_RANGE * begin).min(FINEST_PER_M);
@@ -249,8 +250,8 @@ impl Bins {
             let k = self.k_per_m[b];
             let more: f64 = k * k * self.waves_m2[b].iter().sum::<f64>();
             if slope + more > most_slope {
-                // The wave number is interpolated, so that the end moves continuously. It lies in the middle of the
-                // range in which the energy fades.
+                // The wave number is interpolated, so that the end moves continuously. This wave number lies in the
+                // middle of the range in which the energy fades.
                 let part = (most_slope - slope) / more;
                 let next = self.k_per_m.get(b + 1).copied().unwrap_or(k);
                 return range.min((k + part * (next - k)) * END_RATIO.sqrt());
@@ -305,7 +306,7 @@ mod tests {
             bins.fill(&[wind_sea(hs, tp)], f64::INFINITY);
             assert!((4.0 * bins.variance_m2().sqrt() / hs - 1.0).abs() < 1e-12, "{hs}");
             let tiled: f64 = bins.tiles_m2.iter().flatten().sum();
-            // Above 3 and 4 peaks lie 1.0 and 0.32 % of the variance in deep water.
+            // In deep water 1.0 % of the variance lies above 3 times the peak's frequency, and 0.32 % above 4 times.
             let share = tiled / bins.variance_m2();
             assert!(depth < 1000.0 || (0.0032..0.010).contains(&share), "{share}");
         }

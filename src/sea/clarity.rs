@@ -26,7 +26,7 @@ impl Default for WaterClarity {
 }
 
 impl WaterClarity {
-    /// Checks the number.
+    /// Checks the percentage. A type is always valid.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming `clarity.percent`.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// Acceleration of gravity in all of the sea's laws, m/s^2. It is 9.780 at the equator and 9.832 at the poles.
+/// Acceleration of gravity in all of the sea's laws, m/s^2. The Earth's is 9.780 at the equator and 9.832 at the poles.
 pub const GRAVITY_M_S2: f64 = 9.81;
 /// Surface tension of sea water over its density, m^3/s^2 (0.0742 N/m over 1025 kg/m^3).
 pub const TENSION_M3_S2: f64 = 7.24e-5;

@@ -60,7 +60,7 @@ pub(super) struct DrawnTiles {
     pub slopes: [HalfTexels; MIPS],
     /// Covariances of the slopes that a filtering look-up finds at each mip level, along the tile's axes: xx, xy, yy.
     covariances: [[[f64; 3]; MIPS]; TILES],
-    /// One mip level of a tile, and the next.
+    /// One mip level of a tile, and the next coarser one.
     work: [Vec<Vec4>; 2],
     /// Slopes of a tile at its samples.
     finest: Vec<Vec4>,
@@ -187,8 +187,8 @@ fn fill_slopes(shapes: &[Vec4], length_m: f64, slopes: &mut [Vec4]) {
     }
 }
 
-/// Mip levels by which the compression of tiles is smoother than their slopes: foam is made by waves that are some
-/// times longer than the shortest ripples.
+/// Number of mip levels by which the compression of tiles is smoother than their slopes: the waves that make foam are
+/// longer than the shortest ripples.
 pub(super) const FOAM_MIPS: f32 = 0.8;
 
 /// Makes the compression of a level's texels smoother, by mixing in that of the next coarser level, which has `side`
@@ -261,7 +261,7 @@ pub(super) fn fill_waves(
             height: wave.height_m as f32,
             turns_per_m: turns.length() as f32,
             length: (1.0 / turns.length()) as f32,
-            // Water moves along the wave vector.
+            // The displacement is along the wave vector, so that one factor gives it.
             shift: (wave.shift_m.dot(turns) / turns.length_squared()) as f32,
             age_step: packed_turn(wave.frequency_hz * AGE_STEP_S),
         });

@@ -61,7 +61,8 @@ impl SeaPasses {
 }
 
 impl SeaView {
-    /// Returns what an entry of the probe finds in the last frame that was drawn, at places from its anchor.
+    /// Returns what an entry of the probe finds in the last frame that was drawn, at places, m from that frame's
+    /// anchor.
     pub(crate) fn probe(&self, device: &Device, entry: &str, places: &[[f32; 2]]) -> Vec<[f32; 4]> {
         self.passes.as_ref().expect("a frame with a sea").probe(device, entry, places)
     }

@@ -82,7 +82,8 @@ impl Lines {
         }
     }
 
-    /// Transforms four samples from `first` on, which need no products.
+    /// Transforms the four samples from `first` on. The factors of such a transform are 1 and i, so that it needs no
+    /// products.
     #[inline(always)]
     fn first_four(&mut self, first: usize) {
         for l in 0..LINES {

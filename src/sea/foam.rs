@@ -34,17 +34,18 @@ pub fn whitecap_share(wind_m_s: f64) -> f64 {
     (3.84e-6 * libm::pow(wind_m_s.max(0.0), 3.41)).min(1.0)
 }
 
-/// Returns the share of Callaghan et al. (2008): 3.18e-5 (U - 3.7)^3, from 10.2 m/s on 4.82e-6 (U + 1.98)^3.
+/// Returns the share of the sea under whitecaps for a wind U, m/s, at 10 m (Callaghan et al. 2008): 0 up to 3.7 m/s,
+/// then 3.18e-5 (U - 3.7)^3, and from 10.2 m/s on 4.82e-6 (U + 1.98)^3, at most 1.
 pub fn callaghan_share(wind_m_s: f64) -> f64 {
     let cube = |v: f64| v * v * v;
     if wind_m_s < 10.2 { 3.18e-5 * cube((wind_m_s - 3.7).max(0.0)) } else { (4.82e-6 * cube(wind_m_s + 1.98)).min(1.0) }
 }
 
 /// Returns the compression c such that the surface is compressed by more than c on `share` of its area, for a sum of
-/// waves whose compression has the variance `variance`. If their horizontal motion is that of Gerstner's waves, this is
-/// the mean square slope of the drawn waves. A compressed place covers 1 - c of its area at rest. Therefore the share
-/// is Q(c / s) - s q(c / s) with the root s of the variance, and the tail Q and the density q of the normal
-/// distribution.
+/// waves whose compression has the variance `variance`. If the waves' horizontal motion is that of Gerstner's waves,
+/// this variance is the mean square slope of the drawn waves. A compressed place covers 1 - c of its area at rest.
+/// Therefore the share is Q(c / s) - s q(c / s) with the root s of the variance, and the tail Q and the density q of
+/// the normal distribution. Returns infinity if `share` or `variance` is 0 or less.
 pub fn fold_threshold(share: f64, variance: f64) -> f64 {
     let s = variance.max(0.0).sqrt();
     if s <= 0.0 || share <= 0.0 {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::numerics::smoothstep;
 
-/// Twins of the constants of `shaders/sea/foam.wgsl`.
+/// Copies of constants of `shaders/sea/foam.wgsl`: lengths of the patterns, m, and the turn of the coarse one.
 const LACE_FINE_M: f64 = 6.4;
 const LACE_COARSE_M: f64 = 17.3;
 const LACE_TURN: DVec2 = DVec2::new(0.8, 0.6);
@@ -17,10 +17,10 @@ const STREAK_WIDE_M: f64 = 12.0;
 /// Angle between two directions of streaks. Streaks fade from one fixed direction to the next. If they turned about the
 /// world's origin instead, they would sweep over places far from the origin.
 const STREAK_STEP_DEG: f64 = 22.5;
-/// Winds, m/s, between which foam that waves left is gathered in patches along the wind: streaks show from Beaufort's 7
-/// on, which begins at 14 m/s.
+/// Winds, m/s, between which the gathering of the foam that waves left, in streaks along the wind, grows from 0 to
+/// [`MOST_GATHERED`]. At 14 m/s, where Beaufort's 7 with its streaks begins, nine tenths of that value are reached.
 const STREAK_WINDS_M_S: [f64; 2] = [6.0, 16.0];
-/// Value of [`FoamUniform::gathered`] in the strongest winds.
+/// Value of [`FoamUniform::gathered`] from the second of these winds on.
 const MOST_GATHERED: f64 = 0.9;
 
 /// Block of foam in a frame.
@@ -35,12 +35,13 @@ pub(super) struct FoamUniform {
     pub pad: [f32; 2],
 }
 
-/// Returns texture coordinates, which repeat after 1.
+/// Returns a place in periods of a texture as coordinates within one period.
 fn repeated(place: DVec2) -> [f32; 2] {
     [place.x - place.x.floor(), place.y - place.y.floor()].map(|v| v as f32)
 }
 
-/// Returns the streaks of a direction, given by its number, around an anchor on the map.
+/// Returns the streaks of a direction, given by its number: texture coordinates of an anchor on the map, and cosine and
+/// sine of the direction.
 fn streak(number: f64, anchor_m: DVec2) -> [f32; 4] {
     let (sin, cos) = libm::sincos((number * STREAK_STEP_DEG).to_radians());
     let turn = DVec2::new(cos, sin);
@@ -93,7 +94,7 @@ mod tests {
         // Wind from west blows along the first direction.
         let west = at(270.0);
         assert_eq!((west.streaks[0][2..].to_vec(), west.second), (vec![1.0, 0.0], 0.0));
-        // Beside a border of two directions one of them has all.
+        // Close to a direction that streaks can have, on both sides of it, that direction has all the weight.
         let [before, after] = [at(270.0 - 22.499), at(270.0 - 22.501)];
         assert_eq!((before.second, after.second), (1.0, 0.0));
         assert_eq!(before.streaks[1], after.streaks[0]);

@@ -29,9 +29,9 @@ const OPEN_REGION_M: f64 = 5e5;
 const PEAKS_RAD_S: [f64; 2] = [0.2, 6.0];
 /// Wind up to which the sea is taken as calm, m/s.
 const CALM_M_S: f64 = 0.5;
-/// Times, s, in which the sea's difference from the weather falls to 1/e: for the peak and a given height, for the mean
-/// direction, and for the shortest waves. These times keep every amplitude continuous when the weather changes
-/// abruptly.
+/// Times, s, in which the sea's difference from the weather falls to 1/e: for the peak, a given height and the swell,
+/// for the mean direction, and for the shortest waves. These times keep every amplitude continuous when the weather
+/// changes abruptly.
 const PEAK_TIME_S: f64 = 600.0;
 const TURNING_TIME_S: f64 = 3600.0;
 const SHORT_TIME_S: f64 = 60.0;
@@ -111,7 +111,7 @@ pub fn gamma_of_variance(m0_m2: f64, wind_m_s: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WaveForcing {
     pub wind_m_s: f64,
-    /// Unit vector in which the wind blows, east and north; zero without wind.
+    /// Unit vector along which the wind blows, east and north; zero without wind.
     pub toward: DVec2,
     pub fetch_m: Option<f64>,
     /// Share, 0 to 1, by which a height that the weather gives replaces the height that the wind raises, and the
@@ -159,8 +159,8 @@ pub(super) struct GrowthState {
     /// Peak of the wind sea, rad/s, and its peak enhancement.
     pub peak_rad_s: f64,
     pub gamma: f64,
-    /// Direction in which the wind sea travels (east, north). The vector's length is the share of the waves that travel
-    /// in this direction; the rest is spread over all directions.
+    /// Direction in which the wind sea travels (east, north). The vector's length is the share of the waves that
+    /// spreads around this direction. The rest is even over all directions.
     pub toward: DVec2,
     /// Wind to which the shortest waves have adapted, m/s.
     pub short_wind_m_s: f64,
@@ -188,8 +188,9 @@ impl GrowthState {
     }
 
     /// Returns the state after `dt_s` more seconds under a constant weather, in closed form. Two steps in succession
-    /// give the same state as one step of both lengths together, except that a fading sea takes the group speed at the
-    /// start of a step.
+    /// give the same state as one step of both lengths together, with two exceptions. A fading sea takes the group
+    /// speed at the start of a step. Where a height is given only in part, the variance that is given and the one that
+    /// the wind raises both start each step from their mixture.
     pub fn after(&self, f: &WaveForcing, dt_s: f64) -> Self {
         let left = |time_s: f64| libm::exp(-dt_s / time_s);
         let toward = |now: f64, aim: f64, time_s: f64| aim + (now - aim) * left(time_s);
@@ -198,7 +199,7 @@ impl GrowthState {
         let law = |m0: f64| libm::log(peak_of_variance_rad_s(m0, f.wind_m_s));
         let off = (libm::log(self.peak_rad_s) - law(self.m0_m2)) * left(PEAK_TIME_S);
         let gamma_off = (self.gamma - gamma_of_variance(self.m0_m2, f.wind_m_s)) * left(PEAK_TIME_S);
-        // Weak wind turns no waves.
+        // Wind below 2 m/s turns waves more slowly, and a calm turns none.
         let turning = TURNING_TIME_S / smoothstep(0.0, 2.0, f.wind_m_s).max(1e-9);
         Self {
             m0_m2,
@@ -264,7 +265,7 @@ mod tests {
             let fetch = fetch_of_variance_m(12.0, m0);
             assert!((fetch_variance_m2(12.0, fetch) / m0 - 1.0).abs() < 1e-12);
         }
-        // Pierson and Moskowitz cap it: 20 m/s over 5000 km.
+        // Pierson and Moskowitz's sea is the cap: 20 m/s over 5000 km.
         let capped = height(kept_variance_m2(20.0, Some(5e6)));
         assert_eq!(capped, height(developed_variance_m2(20.0)));
         assert!(height(fetch_variance_m2(20.0, 5e6)) > capped);

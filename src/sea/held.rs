@@ -37,7 +37,8 @@ pub(crate) struct HeldSea {
     wakes: Mutex<KeptWakes>,
     /// Revision of the settings: a number that no other settings have had.
     revision: u64,
-    /// States of growth at the ends of changes that the timeline has forgotten or may forget next.
+    /// States of growth at the beginnings and ends of changes, written down because the timeline forgets changes that
+    /// have ended.
     kept: Vec<DatedGrowth>,
     /// Values that follow from the settings, from `kept` and from the timeline; empty until the first query.
     workshop: Mutex<Option<Box<SeaWorkshop>>>,
@@ -272,7 +273,9 @@ impl HeldSea {
     /// Removes the sea's keys from a saved state and reads them.
     ///
     /// # Errors
-    /// [`Status::Parse`] for a value of another form, [`Status::InvalidArgument`] naming a field that is out of range.
+    /// [`Status::Parse`] for a value of another form, for more than one source of the wave height, for a number that is
+    /// not finite, and for tracks that are too many or out of order. [`Status::InvalidArgument`] naming a field that is
+    /// out of range.
     pub fn read(world: &World, state: &mut toml::Table) -> Result<Self> {
         let (regions, tracks) = (read_regions(world, state)?, read_tracks(state)?);
         let Some(value) = state.remove(KEY) else { return Ok(Self { regions, tracks, ..Self::default() }) };
@@ -361,7 +364,8 @@ impl HeldSea {
         &self.regions
     }
 
-    /// Returns the water at a position and time; `None` where there is no water, nor a dry region with water around it.
+    /// Returns the water at a position and time; in a dry region, the water that would be there without the region.
+    /// `None` if there is no such water.
     pub fn water_at(&self, position: DVec3, time_s: f64) -> Option<WaterBody> {
         let is_sea = self.settings().is_some_and(|settings| !settings.only_in_regions);
         water_at(&self.regions, is_sea, position, time_s)

@@ -46,7 +46,8 @@ fn led(timeline: &Timeline, fetch_m: Option<f64>, start: &DatedGrowth, until_s: 
     state
 }
 
-/// States at the beginnings and ends of all known changes, in order.
+/// States at the time from which the timeline is known, and at the beginnings and ends of the changes after it, in
+/// order. Ends of changes that a later change hides are left out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrowthHistory {
     pub dated: Vec<DatedGrowth>,
@@ -169,7 +170,7 @@ mod tests {
         for (time, state) in times.iter().zip(&whole).filter(|(t, _)| **t >= 23_600.0) {
             assert_eq!(at(&timeline, &kept, *time), *state, "{time}");
         }
-        // Without what was kept, the sea counts as lasting: a smaller one.
+        // Without the kept states, the weather is taken to have lasted for ever, which gives a smaller sea.
         assert_ne!(at(&timeline, &[], 30_000.0), *whole.last().unwrap());
     }
 

@@ -21,7 +21,7 @@ pub struct SeaHull {
     /// Draught, m. Range [0.05, 30], default 2.5.
     pub draught_m: f64,
     /// Position of the middle of the waterline in the host's world at the time `at_s`, m, within 1e12 of the origin.
-    /// Its height does not matter.
+    /// Default (0, 0, 0). Its height does not matter.
     pub position_m: [f64; 3],
     /// Heading at `at_s`, degrees clockwise from true north. Range [-360, 360], default 0. The hull moves in the
     /// direction of its heading.

@@ -2,8 +2,9 @@
 //!
 //! Two laws act together. Energy fades along the way through the ice at the rate of Meylan, Bennetts and Kohout (2014).
 //! The rate was measured where floes covered nearly all of the sea; here it is multiplied by the share that floes
-//! cover. A thin rigid floe follows the mean of the waves under it: over a disc of radius r the mean of a wave is 2
-//! J1(k r) / (k r) of its height (the force of Froude and Krylov), so waves shorter than a floe do not lift it.
+//! cover. A thin rigid floe follows the mean of the waves under it: over a disc of radius r the mean of a wave of the
+//! wave number k is 2 J1(k r) / (k r) of its height (the force of Froude and Krylov), so waves shorter than a floe do
+//! not lift it.
 
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,8 @@ impl SeaIce {
     }
 }
 
-/// Returns the mean of a wave over a disc, over the wave's height, for x = k r; 0 from the first zero on.
+/// Returns the ratio of the mean of a wave over a disc to the wave's height, for x = k r. It is taken as 0 from its
+/// first zero on.
 fn floe_share(x: f64) -> f64 {
     const FIRST_ZERO: f64 = 3.831_705_970_207_512;
     if x < 1e-4 {
@@ -62,7 +64,8 @@ mod tests {
 
     #[test]
     fn full_ice_fades_waves_as_measured() {
-        // Small floes follow the surface: what is left is the law's. T 6, 8, 10, 12 s after 10 km.
+        // Small floes follow the surface, so that only the rate of fading acts: periods of 6, 8, 10 and 12 s, 10 km
+        // into the ice.
         let ice = SeaIce { cover: 1.0, floe_m: 0.1, width_m: 1e4 };
         for (period, share) in [(6.0f64, 0.624), (8.0, 0.801), (10.0, 0.879), (12.0, 0.919)] {
             let w = std::f64::consts::TAU / period;

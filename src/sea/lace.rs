@@ -2,13 +2,14 @@
 //!
 //! The value of a texel is its rank among all texels of its mip level, from 0 to 1. Where foam covers a share of the
 //! water, the texels of lower rank are white: their area is that share. Holes are around the points of three scattered
-//! lattices (Worley 1996), as bubbles leave them; a bent grid and a rough noise keep them from looking like cells.
+//! lattices (Worley 1996), as bubbles leave them. The lattices are bent, and a rough noise is added, so that the holes
+//! do not look like cells.
 
 use crate::chance::RandomStream;
 
 /// Texels along a side.
 pub(super) const LACE_SIDE: usize = 256;
-/// Mip levels; the coarsest have no foam to show.
+/// Number of mip levels. Shaders fade the patterns out towards the coarsest ones.
 pub(super) const LACE_MIPS: usize = 6;
 /// Stream of the pattern's random numbers, the same for all seas.
 const LACE_SEED: u64 = 0x6c61_6365;

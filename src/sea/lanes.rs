@@ -76,7 +76,7 @@ pub(super) struct WaveLanes {
     length_m: Vec<f64>,
 }
 
-/// The longest waves of a list, as far as a query sums them.
+/// Number of the waves that a query sums, from the longest on, and the sums over them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncludedLanes {
     waves: usize,
@@ -187,7 +187,7 @@ impl WaveLanes {
         Displacement { shift: DVec2::new(x, y), slopes: [xx, xy, xy, yy] }
     }
 
-    /// Returns the compression around a particle at each age of foam before now, from its phases now.
+    /// Returns the compression around a particle at each age of foam before now, from the waves' phases there now.
     pub fn past_compression(&self, included: &IncludedLanes, phases: &Phases) -> [f64; AGES] {
         let mut sums = [Vec4::ZERO; AGES];
         let groups = self.groups.iter().take(included.waves.div_ceil(LANES));

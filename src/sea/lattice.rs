@@ -27,7 +27,7 @@ use crate::{
 
 /// Bins of a half octave.
 const ROOT_BINS: usize = BINS_PER_OCTAVE / 2;
-/// Directions of the finest cells.
+/// Number of directions into which the finest cells divide the circle.
 const DIRECTIONS: usize = 512;
 /// Depth in the tree from which on cells are halved in frequency too.
 const FIRST_FREQUENCY_HALVING: usize = 3;
@@ -95,7 +95,7 @@ impl LatticeCell {
         Some([Self { directions, ..next }, Self { directions, direction: self.direction + directions, ..next }])
     }
 
-    /// Returns the wave of the cell with an energy.
+    /// Returns the cell's wave, of the energy `energy_m2`.
     fn wave(&self, seed: u64, energy_m2: f64, depth_m: f64) -> SeaWave {
         let numbers = [self.bin, self.bins, self.direction, self.directions];
         let name = numbers.into_iter().fold(0u64, |name, number| (name << 16) | number as u64);
@@ -175,7 +175,7 @@ impl Lister<'_> {
         }
     }
 
-    /// Adds the wave of a cell with an energy.
+    /// Adds a cell's wave, of the energy `energy_m2`, unless that is 0.
     fn push(&mut self, cell: &LatticeCell, energy_m2: f64) {
         if energy_m2 > 0.0 {
             self.waves.push(cell.wave(self.seed, energy_m2, self.depth_m));

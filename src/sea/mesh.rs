@@ -4,7 +4,7 @@
 //! level is a square of 8 by 8 blocks with a hole where the finer level lies (geometry clipmaps, Losasso and Hoppe
 //! 2004). Towards its outer edge every second vertex moves onto its even neighbour, until the level has the vertices of
 //! the next coarser one (continuous distance-dependent level of detail, Strugar 2010). How far vertices have moved
-//! depends on their distance from the camera. This distance is the largest of the two horizontal coordinates and the
+//! depends on their distance from the camera. This distance is the largest of the differences east and north and of the
 //! camera's height, so that a camera that rises leaves the finest level without a jump.
 //!
 //! Coordinates of vertices are whole multiples of the finest cell. Two levels that meet therefore have the same bits at
@@ -20,8 +20,8 @@ pub(super) const CELLS: u32 = 8;
 /// Blocks from the middle of a level to its edge.
 const HALF: i64 = 4;
 /// Distances from the camera, in sides of a level's blocks, between which its vertices move onto those of the next
-/// coarser one. The hole of a level ends before the first of these distances, at 2.5 sides. The level itself ends
-/// beyond the second, at 3 sides.
+/// coarser one. The hole of a level ends before the first of these distances, at 2.5 sides at most. The level itself
+/// ends beyond the second, at 3 sides at least.
 pub(super) const MORPH: [f64; 2] = [2.52, 2.98];
 /// Levels, at most: the coarsest has cells of 32 km.
 pub(super) const LEVELS: u32 = 21;
@@ -30,7 +30,8 @@ pub(super) const MOST_BLOCKS: usize = 64 + 48 * (LEVELS as usize - 1);
 /// Step of the anchor, m. Places on the lattice are relative to an anchor near the camera, whose coordinates are
 /// multiples of this step.
 const ANCHOR_M: f64 = 16.0;
-/// Least ratio of the distance of a cell to its length; the shaders' twin is `SEA_CELLS_TO_DISTANCE`.
+/// Least ratio of a cell's distance to its length, for all cells but the finest. The shaders' twin is
+/// `SEA_CELLS_TO_DISTANCE`.
 pub(super) const CELLS_TO_DISTANCE: f64 = 11.9;
 
 /// Marks of blocks.
@@ -92,7 +93,7 @@ impl MeshEye {
     }
 
     /// Writes the blocks that are near enough and visible into `blocks`, from fine to coarse. `is_visible` takes the
-    /// middle of a block from the camera, m on the map, and half its side.
+    /// middle of a block, m on the map relative to the camera, and half the block's side.
     pub fn blocks(&self, is_visible: impl Fn(DVec2, f64) -> bool, blocks: &mut Vec<MeshBlock>) {
         blocks.clear();
         let anchor = self.anchor_m();
@@ -166,7 +167,7 @@ mod tests {
         [x - odd(0) * moved, y - odd(1) * moved]
     }
 
-    /// Edges of triangles with an area that belong to one triangle only, away from the mesh's outer rim.
+    /// Counts the edges, away from the mesh's outer rim, that belong to only one of the triangles that have an area.
     fn open_edges(eye: &MeshEye) -> usize {
         let mut blocks = Vec::new();
         eye.blocks(|_, _| true, &mut blocks);

@@ -14,8 +14,9 @@
 //!   and directions, 250 to 310 at a time. They do not repeat.
 //! * Shorter waves are in up to three square tiles of a fixed ladder, summed by Fourier transforms. The tiles hold
 //!   about 0.6 % of the variance, and half of the slopes. Their waves end where the mean square slope of all drawn
-//!   waves reaches that of Cox and Munk (1954) for the wind, at the latest at 45 times the wave number at which they
-//!   begin. Of shorter waves only the variance of the slopes is known.
+//!   waves reaches that of Cox and Munk (1954) for the wind, unless the settings give the height. They end at the
+//!   latest at 45 times the wave number at which they begin, and at 560 1/m. Of shorter waves only the variance of the
+//!   slopes is known.
 //! * Every wave has a fixed frequency, direction and phase, and an amplitude that follows the spectrum. No amplitude is
 //!   random, so every seed gives the same significant height. The weather moves no phase.
 //! * [`SingleWave`]s of the host are added to the waves of the spectrum.
@@ -42,21 +43,22 @@
 //!
 //! # Settings
 //! [`SeaSettings`]: level and tide, fetch, depth, source of the wave height, swells, single waves, ice, water. Without
-//! settings there is no sea. Regions are set by a call of their own, since hulls move.
+//! settings there is no sea. Regions and hulls have calls of their own, since hosts that move them set them again and
+//! again.
 //!
 //! # Cost
 //! There is no cost without a query. The first query of a time costs some milliseconds (15 transforms of 128^2 in f64).
 //! Each further query of that time costs some microseconds. While the weather changes, each time costs some more
-//! milliseconds for its spectrum. The sums of two times are kept: 7 MB. A view holds 2 MB of textures, and computes
+//! milliseconds for its spectrum. The sums of two times are kept: 7 MB. A view holds 1.3 MB on the GPU, and computes
 //! nothing while no sea is seen.
 //!
 //! # Error
 //! Over a square of 100 wave lengths the significant height is within 1 % and the mean level within 5 mm. The variance
-//! of each half octave of frequency is exact, except for the strengthening by less than 1 % that makes up for narrow
-//! crests. The particle of a query is within 1 mm of the queried place. [`SeaPoint::height_error_m`] bounds the error
-//! of the height. The correlation of heights 300 m to 5 km apart differs by at most 0.26 from that of the spectrum
-//! itself. Waves are linear: crests of steep seas are some percent too low, and the surface's heights are hardly
-//! skewed.
+//! of each half octave of frequency is exact, except for the strengthening that makes up for narrow crests: some 1 % or
+//! less, more only in seas close to breaking, and never more than 6 %. The particle of a query is within 1 mm of the
+//! queried place. [`SeaPoint::height_error_m`] bounds the error of the height. The correlation of heights 300 m to 5 km
+//! apart differs by at most 0.26 from that of the spectrum itself. Waves are linear: crests of steep seas are some
+//! percent too low, and the surface's heights are hardly skewed.
 //!
 //! # What is not here
 //! No shore: its laws are here, but the surface does not use them yet. Wakes are those of deep water. A lake has the

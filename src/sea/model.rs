@@ -53,7 +53,8 @@ pub struct SeaStatistics {
     pub drawn_square_slope: f64,
     /// Height of the largest wave expected in an hour, m, crest to trough, plus the heights of all single waves.
     pub highest_in_hour_m: f64,
-    /// Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980), less under ice.
+    /// Share of the sea under whitecaps, 0 to 1 (Monahan and O'Muircheartaigh 1980), less under ice. 0 if the settings
+    /// exclude whitecaps.
     pub whitecap_share: f64,
     /// Temperature of the water, degrees Celsius.
     pub water_temperature_c: f64,
@@ -82,7 +83,7 @@ pub(super) struct PreparedSea {
     swells: [WaveSystem; MAX_SWELLS],
     /// Single waves of the settings, as ice leaves them.
     singles: Vec<SeaWave>,
-    /// The weather's swell, except for height, period and direction.
+    /// Form of the weather's swell. The state of growth gives its height, period and direction.
     weathers_swell: WaveSystem,
 }
 
@@ -251,7 +252,7 @@ impl SeaWorkshop {
         &self.history
     }
 
-    /// Brings the waves to a time.
+    /// Updates the waves' amplitudes, the statistics and the foam to the weather of a time.
     fn follow(&mut self, sea: &PreparedSea, past: &WeatherPast<'_>, time_s: f64) {
         let grown = self.history(sea, past).at(past.timeline, sea.settings.fetch_m, time_s);
         let systems = sea.systems(&grown);
@@ -278,7 +279,7 @@ impl SeaWorkshop {
     /// narrows crests. Let a, b and c be the sums over the waves of k coth(k h) times variance times cos^2, sin^2 and
     /// cos sin of the direction. The variance at fixed places is then m0 - a^2 - b^2 - 2 c^2 to second order: the mean
     /// of z^2 J less the square of the mean of z J, with the height z and the Jacobian J. Returns the factor on the
-    /// variance, at most some 1.01.
+    /// variance: some 1.01 or less, more only in seas close to breaking, and never more than 1.06.
     fn strengthen(&mut self) -> f64 {
         let mut variance = self.tiles.tiles.iter().map(|t| t.variance_m2).sum::<f64>();
         let mut sums = [0.0; 3];

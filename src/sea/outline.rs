@@ -1,4 +1,5 @@
-//! Outlines of regions on the ground plan: whether they cross themselves, what they hold, how far inside a place lies.
+//! Outlines of regions on the ground plan: whether they cross themselves, whether a place lies inside, and how far it
+//! is from the outline.
 
 use glam::DVec2;
 
@@ -44,7 +45,8 @@ fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 /// Checks the corners of an outline.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] naming `corner_count` or `corners_m`.
+/// [`crate::Status::InvalidArgument`] naming `corner_count`, a corner such as `corners_m[2]` that is out of range, or
+/// `corners_m` for an outline that crosses or touches itself or is too small.
 pub(super) fn validate(corners: &[[f64; 2]]) -> Result<()> {
     check_range("corner_count", corners.len() as f64, 3.0, MAX_OUTLINE_CORNERS as f64, "")?;
     for (i, corner) in corners.iter().enumerate() {

@@ -59,7 +59,7 @@ pub(super) struct SeaPasses {
     shapes: wgpu::Texture,
     slopes: wgpu::Texture,
     reflectance: wgpu::Texture,
-    /// Slopes of single waves that pixels show, by place.
+    /// Table of the slopes that pixels show, by distance and direction from the camera.
     seen: wgpu::Texture,
     /// Texels of `seen`.
     seen_texels: Vec<[u16; 4]>,
@@ -94,7 +94,7 @@ impl SeaDraw<'_> {
 
 /// Distance between two bands in the buffer, bytes: the largest alignment that a device may require.
 const BAND_STRIDE: usize = 256;
-/// Bands of all levels.
+/// Number of bands of all levels.
 const BANDS: usize = MARKS * LEVELS as usize;
 
 /// Values of each band, and values with all waves for probes: `sea_band` of `shaders/sea/uniform.wgsl`.
@@ -369,7 +369,7 @@ impl SeaPasses {
     /// Draws the sea.
     ///
     /// # Errors
-    /// A missing shader file.
+    /// [`crate::Status::Internal`] for a missing shader file.
     pub fn draw(
         &mut self,
         device: &Arc<Device>,

@@ -35,8 +35,8 @@ impl SeaProbe {
         Ok(Self { sea, timeline: Timeline::new(derive(weather)?), workshop })
     }
 
-    /// Returns all waves, single ones and those of tiles, as they are drawn: strengthened by less than 1 % of variance,
-    /// which makes up for what narrow crests take from the heights at fixed places.
+    /// Returns all waves, single ones and those of tiles, as they are drawn. Their variance is strengthened to make up
+    /// for what narrow crests take from the heights at fixed places: mostly by 1 % or less, and never by more than 6 %.
     pub fn modes(&mut self) -> Vec<SeaMode> {
         let past = WeatherPast { timeline: &self.timeline, revision: 0, kept: &[] };
         let (waves, tiles) = self.workshop.waves(&self.sea, &past, 0.0);
@@ -50,7 +50,7 @@ impl SeaProbe {
         modes
     }
 
-    /// Returns the statistics.
+    /// Returns the statistics at time 0.
     pub fn statistics(&mut self) -> SeaStatistics {
         let past = WeatherPast { timeline: &self.timeline, revision: 0, kept: &[] };
         self.workshop.statistics(&self.sea, &past, 0.0)

@@ -43,7 +43,7 @@ pub struct SeaRegion {
     /// Kind of water inside.
     pub kind: SeaRegionKind,
     /// Corners of the outline, m to the right and ahead of the centre, in order, either way around. 3 to 64 corners,
-    /// each coordinate within 1e6 m. The outline must not cross or touch itself.
+    /// each coordinate within 1e6 m. The outline must not cross or touch itself, and must hold at least 0.01 m^2.
     pub corners_m: Vec<[f64; 2]>,
     /// Position of the centre in the host's world at the time `at_s`, m, within 1e12 of the origin. Its height does not
     /// matter.
@@ -56,7 +56,8 @@ pub struct SeaRegion {
     pub turn_deg_s: f64,
     /// Simulation time at which the centre is at `center_m`, s. Range [-1e10, 1e10], default 0.
     pub at_s: f64,
-    /// Ratio of the height of waves inside to that on the open sea. Range [0, 1], default 1. Not used by dry regions.
+    /// Ratio of the height of waves inside to that on the open sea; for a sheltered region that lies in earlier ones of
+    /// the list, to the height there. Range [0, 1], default 1. Not used by dry regions.
     pub wave_share: f64,
     /// Width of the band inside the outline over which the waves of a sheltered region become lower, m. Range [0, 1e4],
     /// default 0: at once.
@@ -81,7 +82,7 @@ impl Default for SeaRegion {
 }
 
 impl SeaRegion {
-    /// Checks all fields.
+    /// Checks all fields but the centre.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field.
@@ -182,9 +183,9 @@ impl PlacedRegion {
     }
 }
 
-/// Returns the water at a position and time; `None` where there is no water, nor a dry region with water around it.
-/// `is_sea` says whether there is sea outside all regions. Later regions are applied to the water of earlier ones, and
-/// dry ones after all others.
+/// Returns the water at a position and time; in a dry region, the water that would be there without the region. `None`
+/// if there is no such water. `is_sea` says whether there is sea outside all regions. Later regions are applied to the
+/// water of earlier ones, and dry ones after all others.
 pub(super) fn water_at(regions: &[PlacedRegion], is_sea: bool, position: DVec3, time_s: f64) -> Option<WaterBody> {
     let mut water = is_sea.then_some(WaterBody::OPEN);
     let mut is_dry = false;

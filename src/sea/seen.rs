@@ -1,5 +1,5 @@
-//! Share of the waves that pixels show: the slopes' covariances by place, as a table for the shaders, and the single
-//! waves that the pixels of a level of the mesh have to sum.
+//! Share of the waves that pixels show: the slopes' covariances by distance and direction, as a table for the shaders,
+//! and the single waves that the pixels of a level of the mesh have to sum.
 
 use std::f32::consts::TAU;
 
@@ -15,7 +15,7 @@ use super::{
 /// Sides of the table: distances, and directions over half a circle (covariances are the same in opposite directions).
 pub(super) const SEEN_SIDES: [usize; 2] = [32, 16];
 
-/// Twins of the constants of `shaders/sea/surface.wgsl`.
+/// Copies of constants of `shaders/sea/surface.wgsl`, where they have the prefix `SEA_` and are described.
 pub(super) const LEAST_CELLS: f32 = 1.5;
 pub(super) const SMOOTH_CELLS: f32 = 3.0;
 pub(super) const PIXEL_DEVIATION: f32 = 0.4;

@@ -39,11 +39,12 @@ pub(super) struct StateUniform {
     pub ahead: [f32; 2],
 }
 
-/// Most states of all hulls: a block of 16 kB, which every device has. Hulls that turn all the time have up to
-/// [`MOST_NODES`] states, others few.
+/// Most states of all hulls. They fill a uniform block of 16 kB, the largest that every device supports. Hulls that
+/// turn all the time have up to [`MOST_NODES`] states, others few.
 pub(super) const MOST_TRACK_STATES: usize = 8 * MOST_NODES;
 
-/// Returns the indices, in rising order, of the wakes that a camera may see, and their number.
+/// Returns the indices, in rising order, of the wakes that a camera may see, and their number. Where there are too
+/// many, wakes are taken from near to far, each if it still fits.
 fn nearest(wakes: &[Wake], eye: &MeshEye) -> ([usize; MAX_SEA_HULLS], usize) {
     // Each with its distance from the camera, from near to far.
     let (mut near, mut count) = ([(f64::INFINITY, 0); MOST_TRACKS], 0);

@@ -1,4 +1,4 @@
-//! Settings with which a host describes the sea: level, tide, fetch, depth, waves, water.
+//! Settings with which a host describes the sea: level, tide, fetch, depth, waves, ice, water.
 
 use super::{
     clarity::WaterClarity,
@@ -34,7 +34,7 @@ pub enum WindSea {
         /// Peak enhancement of JONSWAP. Range [1, 10]; `None` is 3.3 with a peak period, else 1.
         gamma: Option<f64>,
     },
-    /// WMO sea state (code 3700), 0 to 9: the middle of its range of heights, fully developed.
+    /// WMO sea state (code 3700), 0 to 9: the middle of its range of heights, 16 m for 9, fully developed.
     SeaState(u8),
     /// Beaufort number B. Range [0, 12]: the sea that a wind of 0.836 B^1.5 m/s keeps up over the fetch.
     Beaufort(f64),
@@ -49,7 +49,7 @@ pub struct SeaSwell {
     pub period_s: f64,
     /// Direction that it comes from, degrees clockwise from true north. Range [0, 360].
     pub from_deg: f64,
-    /// Directional width, degrees. Range [1, 60]; `None` is 15: the width of Donelan and Banner's spreading at the
+    /// Directional width, degrees. Range [1, 60]; `None` is 15.07: the width of Donelan and Banner's spreading at the
     /// peak, narrowed by Horvath's swell parameter 1.
     pub spread_deg: Option<f64>,
 }
@@ -72,8 +72,8 @@ pub struct SeaSettings {
     pub tide: Option<Tide>,
     /// Distance over which the wind raises waves, m. Range [10, 2e7]; `None`, the default, is the open sea.
     pub fetch_m: Option<f64>,
-    /// Depth of the water below the mean level, m. Range [0.5, 12000], default 4000. It is the same everywhere in this
-    /// version.
+    /// Depth of the water below the mean level, m. Range [0.5, 12000], default 4000. Waves are computed for this depth
+    /// everywhere in this version.
     pub depth_m: f64,
     /// Salinity, g/kg. Range [0, 45], default 35.
     pub salinity_g_kg: f64,

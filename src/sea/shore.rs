@@ -28,7 +28,8 @@ pub fn shoaling(period_s: f64, depth_m: f64) -> f64 {
     (deep_m_s / group_speed_m_s(wave_number(w, depth_m), depth_m)).sqrt()
 }
 
-/// Returns the ratio of heights at two depths of shallow water by Green's law (1838): (h1 / h2)^(1/4).
+/// Returns the ratio of the height of waves at the shallow depth h2, `to_depth_m`, to that at the shallow depth h1,
+/// `from_depth_m`, by Green's law (1838): (h1 / h2)^(1/4).
 pub fn green_ratio(from_depth_m: f64, to_depth_m: f64) -> f64 {
     libm::sqrt(libm::sqrt(from_depth_m / to_depth_m))
 }
@@ -67,8 +68,9 @@ pub fn breaking(height_m: f64, period_s: f64, deep_angle: f64) -> Breaking {
     Breaking { depth_m, height_m: BREAKING_INDEX * depth_m }
 }
 
-/// Returns how waves of a height break on a slope (its tangent): by the number of Iribarren, slope over the square root
-/// of the steepness H / L0, with limits 0.4 and 2.0 for the height at breaking (Battjes 1974).
+/// Returns how waves break on a slope, given as its tangent, by the number of Iribarren: the slope over the square root
+/// of H / L0, with the height H at breaking and the length L0 in deep water. Waves spill below 0.4 and surge from 2.0
+/// on (Battjes 1974).
 pub fn breaker(slope: f64, breaking_height_m: f64, period_s: f64) -> Breaker {
     let deep_length_m = GRAVITY_M_S2 * period_s * period_s / (2.0 * PI);
     let iribarren = slope / (breaking_height_m / deep_length_m).sqrt();

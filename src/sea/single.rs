@@ -30,8 +30,8 @@ pub enum WaveScale {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SingleWave {
-    /// Height from trough to crest, m. Range [0, 40]. The steepness of a wave is its height over its length times
-    /// tanh(k h). The steepnesses of all single waves together are at most 0.142 (Miche 1944).
+    /// Height from trough to crest, m. Range [0, 40]. The steepness of a wave is its height over the product of its
+    /// length and tanh(k h). The steepnesses of all single waves together are at most 0.142 (Miche 1944).
     pub height_m: f64,
     /// Length or period.
     pub scale: WaveScale,
@@ -77,7 +77,7 @@ impl SingleWave {
 /// Checks a list of waves over a depth.
 ///
 /// # Errors
-/// [`crate::Status::InvalidArgument`] naming the wave and its field.
+/// [`crate::Status::InvalidArgument`] naming the wave and its field, or `waves` if there are too many.
 pub(super) fn validate(waves: &[SingleWave], depth_m: f64) -> Result<()> {
     if waves.len() > MAX_SINGLE_WAVES {
         return Err(Error::range("waves", &format!("at most {MAX_SINGLE_WAVES} waves"), waves.len()));

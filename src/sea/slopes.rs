@@ -58,8 +58,9 @@ pub fn slope_density(crosswind: f64, upwind: f64, wind_m_s: f64) -> f64 {
 }
 
 /// Returns the reflectance factor of sun glint in the mirror plane, for slopes of the same variance in all directions:
-/// pi p R / (4 cos sun cos view cos^4 tilt) (Cox and Munk 1954). Angles are from the vertical, on opposite sides; a
-/// negative view is on the sun's side.
+/// pi p R / (4 cos sun cos view cos^4 tilt), with the density p of the slopes, Fresnel's reflectance R and the tilt of
+/// the facets that mirror (Cox and Munk 1954). Angles are from the vertical, on opposite sides; a negative view is on
+/// the sun's side.
 pub fn glint_reflectance(sun: f64, view: f64, mean_square: f64, index: f64) -> f64 {
     let tilt = 0.5 * (view - sun);
     let tan = libm::tan(tilt);
@@ -71,8 +72,8 @@ pub fn glint_reflectance(sun: f64, view: f64, mean_square: f64, index: f64) -> f
 }
 
 /// Returns the half-widths of the glitter, rad, in elevation and in azimuth, where its density has fallen to e^-1/2: 2
-/// atan(s) and 2 asin(s tan h) with s = sqrt(`mean_square` / 2) and the sun's height h = `sun_height`, rad. The rays
-/// meet the eye at the same angle.
+/// atan(s) and 2 asin(s tan h) with s = sqrt(`mean_square` / 2) and the sun's height h = `sun_height`, rad. The width
+/// in azimuth is that of rays that rise to the eye at the angle h.
 pub fn glitter_half_widths(mean_square: f64, sun_height: f64) -> [f64; 2] {
     let s = (0.5 * mean_square).sqrt();
     [2.0 * libm::atan(s), 2.0 * libm::asin((s * libm::tan(sun_height)).min(1.0))]

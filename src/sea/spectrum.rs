@@ -95,8 +95,8 @@ pub fn developed_peak_rad_s(m0_m2: f64) -> f64 {
     libm::sqrt(libm::sqrt(level / m0_m2.max(1e-12)))
 }
 
-/// Returns the expected height of the highest of `waves` waves, as a multiple of the significant height: sqrt(ln N / 2)
-/// (Longuet-Higgins 1952, the most likely highest of Rayleigh's distribution).
+/// Returns the most likely height of the highest of N = `waves` waves, over the significant height: sqrt(ln N / 2) for
+/// Rayleigh's distribution (Longuet-Higgins 1952). N below 2 is taken as 2.
 pub fn highest_over_significant(waves: f64) -> f64 {
     libm::sqrt(0.5 * libm::log(waves.max(2.0)))
 }

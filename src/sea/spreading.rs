@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::numerics::GAUSS_8_HALF;
 
-/// Returns cos^2s(theta / 2), normalised over the full circle: 2^(2s-1) Gamma(s+1)^2 / (pi Gamma(2s+1))
+/// Returns cos^2s(theta / 2) times 2^(2s-1) Gamma(s+1)^2 / (pi Gamma(2s+1)), which normalises it over the full circle
 /// (Longuet-Higgins, Cartwright and Smith 1963). The logarithm of the gamma function keeps large `s` finite.
 pub fn cosine_power(theta: f64, s: f64) -> f64 {
     let ln_norm = (2.0 * s - 1.0) * std::f64::consts::LN_2 + 2.0 * libm::lgamma(s + 1.0)
@@ -27,8 +27,8 @@ pub fn mitsuyasu_exponent(r: f64, wind_over_speed: f64) -> f64 {
     peak * libm::pow(r, if r < 1.0 { 5.0 } else { -2.5 })
 }
 
-/// Returns the exponent `s` of Hasselmann, Dunckel and Ewing (1980) at `r` = w / wp. It jumps at the peak, as
-/// published.
+/// Returns the exponent `s` of Hasselmann, Dunckel and Ewing (1980) at `r` = w / wp. `wind_over_speed` is that of
+/// [`mitsuyasu_exponent`]. The exponent jumps at the peak, as published.
 pub fn hasselmann_exponent(r: f64, wind_over_speed: f64) -> f64 {
     if r < 1.0 { 6.97 * libm::pow(r, 4.06) } else { 9.77 * libm::pow(r, -2.33 - 1.45 * (wind_over_speed - 1.17)) }
 }

@@ -37,7 +37,7 @@ pub struct SeaPoint {
     /// Height of the surface above mean sea level, m.
     pub height_m: f64,
     /// Largest error of the height, m: 4 standard deviations of the waves left out and of the interpolation in tiles,
-    /// and the tolerance of the solution.
+    /// the tolerance of the solution, and the amplitudes of the waves of wakes that were left out.
     pub height_error_m: f64,
     /// Unit normal of the surface (east, north, up).
     pub normal: DVec3,
@@ -245,7 +245,8 @@ impl SeaSurface {
         SolvedParticle { rest, moved, off }
     }
 
-    /// Returns what a query with this shortest wave sums, and what it leaves out.
+    /// Returns the waves that a query sums if its shortest wave length is `shortest_m`, and a bound of the error by
+    /// those left out.
     fn included(&self, shortest_m: f64) -> IncludedWaves {
         let lanes = self.lanes.included(shortest_m);
         let (mut raised_m, mut variance, mut images) = (lanes.lowering_m, lanes.variance_m2, 0.0);

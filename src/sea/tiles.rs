@@ -34,7 +34,7 @@ const TAKEOVER: [f64; 2] = [4.0, 5.656_854_249_492_38];
 pub(super) const LEAST_PERIODS: f64 = TAKEOVER[0];
 /// Most periods in a tile's length: eight times the end of [`TAKEOVER`].
 const MOST_PERIODS: i32 = 45;
-/// Turn of each tile against the next, rad: the golden angle.
+/// Turn of each tile against the next shorter one, rad: the golden angle.
 const TURN: f64 = 2.399_963_229_728_653;
 /// Values at each sample: height, displacement along the tile's two axes, then velocity and acceleration, each first
 /// vertical and then along the two axes.
@@ -123,7 +123,8 @@ impl WaveTile {
         for y in 0..=MOST_PERIODS {
             for x in -MOST_PERIODS..=MOST_PERIODS {
                 let square = x * x + y * y;
-                // One of each pair; fewer than 4 periods hold no energy except in the longest tile.
+                // Of each vector and its opposite, one is listed. Waves of fewer than 4 periods have energy only in the
+                // longest tile of the ladder.
                 if (y == 0 && x <= 0) || square > MOST_PERIODS * MOST_PERIODS {
                     continue;
                 }
@@ -394,8 +395,8 @@ pub(super) struct Sampled {
     pub along_y: [f64; 3],
 }
 
-/// Weights of a cubic B-spline at four samples around a place `t` in \[0, 1) between the middle two, and derivatives of
-/// the weights.
+/// Returns the weights of a cubic B-spline for four samples, and the derivatives of the weights. The place lies between
+/// the middle two samples, at `t` in \[0, 1) from the second.
 fn spline(t: f64) -> ([f64; 4], [f64; 4]) {
     let (t2, u) = (t * t, 1.0 - t);
     let t3 = t2 * t;
@@ -405,7 +406,8 @@ fn spline(t: f64) -> ([f64; 4], [f64; 4]) {
     (weights, slopes)
 }
 
-/// Returns the first `N` fields of a tile at a place in its own axes, m.
+/// Returns the first `N` fields of a tile, at least 3, and the derivatives of the first three, at a place in the tile's
+/// axes, m.
 #[inline]
 pub(super) fn sample<const N: usize>(fields: &[[f64; VALUES]], length_m: f64, place_m: DVec2) -> Sampled {
     let per_m = SIDE as f64 / length_m;

@@ -109,8 +109,9 @@ impl TrackNode {
     }
 }
 
-/// Adds to `nodes`, which hold the track before the leg, the states of the leg up to a time, where course or speed
-/// change. The first node of a track is the beginning of its first leg.
+/// Adds states of the leg up to a time to `nodes`, which hold the track before the leg. A state is added if it differs
+/// from the last node ([`TrackNode::differs`]). Where there are [`MOST_NODES`], the oldest is dropped. The first node
+/// of a track is the beginning of its first leg.
 fn add_nodes(leg: &TrackNode, turn: f64, until_s: f64, nodes: &mut Vec<TrackNode>) {
     let is_first = nodes.is_empty();
     let mut add = |state: TrackNode| {
@@ -170,8 +171,9 @@ impl HullTrack {
     }
 
     /// Begins the next leg, where the host sets the same hull again. A leg that begins before the present one replaces
-    /// the track from its own time on. A leg that begins more than [`JUMP_LENGTHS`] from where the track has the hull,
-    /// before the track's beginning or after its end begins a new track.
+    /// the track from its own time on. A new track begins if the leg begins before the track or after the track's end.
+    /// It also begins if the leg, not earlier than the present one, begins more than [`JUMP_LENGTHS`] from where the
+    /// track has the hull then.
     ///
     /// # Errors
     /// As [`HullTrack::new`]; nothing changes then.
@@ -267,8 +269,8 @@ fn leg_of(hull: &SeaHull, world: &World) -> Result<TrackNode> {
     Ok(TrackNode { time_s: hull.at_s, place_m, ahead, speed_m_s: hull.speed_m_s })
 }
 
-/// Returns the share of the height with which waves of an age are drawn: waves fade at both ends of a track. The newest
-/// and the oldest waves of the track have the ages `newest_s` and `oldest_s`.
+/// Returns the share of the height with which waves of an age are drawn: the oldest waves of a track fade, and if the
+/// track has ended, the newest too. The newest and the oldest waves have the ages `newest_s` and `oldest_s`.
 pub(super) fn age_share(age_s: f64, newest_s: f64, oldest_s: f64) -> f64 {
     let oldest_s = oldest_s.min(MOST_AGE_S);
     let fading = 0.2 * (oldest_s - newest_s).max(1e-6);

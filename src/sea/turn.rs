@@ -24,8 +24,8 @@ fn sine(quarter: f64) -> f64 {
                         + z * (-1.0 / 39_916_800.0 + z * (1.0 / 6_227_020_800.0 - z / 1_307_674_368_000.0)))))))
 }
 
-/// Returns the sine and cosine of `turns` turns, within 7e-12. Plain sums and products, so that every machine gives the
-/// same bits; no branch, so that the compiler works on several waves at a time.
+/// Returns the sine and cosine of `turns` turns, within 7e-12. It has only sums and products, so that every machine
+/// gives the same bits, and no branch, so that the compiler works on several waves at a time.
 #[inline(always)]
 pub(super) fn sin_cos(turns: f64) -> (f64, f64) {
     let u = fraction(turns);

@@ -300,7 +300,8 @@ impl Wake {
         })
     }
 
-    /// Adds the wake at a place to `sum`, without waves shorter than `shortest_m`.
+    /// Adds the wake at a place to `sum`, without waves shorter than `shortest_m`. Waves of up to twice this length are
+    /// added in part.
     pub(super) fn add_at(&self, place_m: DVec2, shortest_m: f64, sum: &mut WakePoint) {
         for end in [HullEnd::Bow, HullEnd::Stern] {
             let asked = AskedWaves { end, place_m, shortest_m };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Optical water types of Jerlov (1976), from the clearest ocean to the most turbid coast.
+/// Eight of the optical water types of Jerlov (1976), from the clearest ocean to a turbid coast.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WaterType {
     /// Ocean I: the clearest.
@@ -19,7 +19,7 @@ pub enum WaterType {
     Coast3,
     /// Coast 5C.
     Coast5,
-    /// Coast 7C: the most turbid.
+    /// Coast 7C: the most turbid of the eight.
     Coast7,
 }
 
@@ -53,8 +53,9 @@ pub fn refractive_index(salinity_g_kg: f64, temperature_c: f64, wavelength_nm: f
         + 1.1455e6 / (l * l * l)
 }
 
-/// Returns the reflectance for unpolarised light that meets a flat surface at an angle of cosine `cos_incidence`, from
-/// a medium into one of `index` times its refractive index (Fresnel's equations): 1 beyond the critical angle.
+/// Returns the reflectance for unpolarised light that meets a flat surface at an angle of cosine `cos_incidence`, by
+/// Fresnel's equations. The refractive index of the medium beyond the surface is `index` times that of the medium in
+/// front of it. The reflectance is 1 beyond the critical angle.
 pub fn fresnel_reflectance(cos_incidence: f64, index: f64) -> f64 {
     let cos = cos_incidence.clamp(0.0, 1.0);
     let inner = 1.0 - (1.0 - cos * cos) / (index * index);
@@ -67,7 +68,8 @@ pub fn fresnel_reflectance(cos_incidence: f64, index: f64) -> f64 {
     0.5 * (across * across + along * along)
 }
 
-/// Returns the reflectance of a flat surface for diffuse light, the mean of [`fresnel_reflectance`] over the cosine.
+/// Returns the reflectance of a flat surface for diffuse light: the mean of [`fresnel_reflectance`] over the hemisphere
+/// of directions, weighted by the cosine of incidence.
 pub fn diffuse_reflectance(index: f64) -> f64 {
     let steps = 4000u32;
     let at = |i: u32| libm::sqrt((f64::from(i) + 0.5) / f64::from(steps));
@@ -84,8 +86,8 @@ pub fn mean_reflectance(cos_view: f64, mean_square: f64, index: f64) -> f64 {
 
 /// Returns the mean reflectance for the variance of slopes along one axis, integrated over 6 standard deviations on
 /// both sides. Along the view the integral takes `steps` pairs of steps by Simpson's rule, up to where facets turn away
-/// from the eye. Across the view it takes `steps` trapezoids on one side. For such integrands their error falls
-/// exponentially with the number of steps.
+/// from the eye. Across the view it takes `steps` trapezoids on one side. The error of trapezoids falls exponentially
+/// with their number here, because the integrand is smooth and fades out like a Gaussian.
 fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32) -> f64 {
     let cos = cos_view.clamp(0.0, 1.0);
     let sin = (1.0 - cos * cos).sqrt();
@@ -116,8 +118,8 @@ pub(super) const TABLE_SIDES: [usize; 2] = [64, 32];
 /// Largest root mean square slope of [`reflectance_table`]. Twin of `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl`.
 pub(super) const TABLE_MOST_SLOPE: f64 = 0.4;
 
-/// Returns the mean reflectance row by row: rows by root mean square slope along one axis, from 0 to
-/// [`TABLE_MOST_SLOPE`]; columns by the root of the cosine of the view's zenith angle, from 0 to 1.
+/// Returns the mean reflectance of rough water row by row. The rows belong to root mean square slopes along one axis,
+/// from 0 to [`TABLE_MOST_SLOPE`]. The columns belong to roots of the cosine of the view's zenith angle, from 0 to 1.
 pub(super) fn reflectance_table(index: f64) -> Vec<f64> {
     let [columns, rows] = TABLE_SIDES;
     let entry = |i: usize| {
@@ -130,15 +132,16 @@ pub(super) fn reflectance_table(index: f64) -> Vec<f64> {
 
 /// Diffuse attenuation of pure sea water, 1/m, at 450, 550 and 650 nm: below that of Jerlov's clearest type.
 const PURE_ATTENUATION_PER_M: [f64; 3] = [0.0168, 0.0607, 0.342];
-/// Wavelengths of attenuations, nm.
+/// Wavelengths of the three values of an attenuation, nm.
 const ATTENUATED_NM: [f64; 3] = [450.0, 550.0, 650.0];
 
 /// Returns the reflectance of a body of deep water seen from straight above, relative to the light that enters the
 /// water, at 450, 550 and 650 nm. The water has the diffuse attenuation `attenuation_per_m`, 1/m. Below the surface the
 /// reflectance is 0.33 b / a (Morel and Prieur 1977). Here b is the coefficient with which water and particles scatter
 /// light back, and a that of absorption. The attenuation K of blue light and that of pure water, Kw, give the
-/// chlorophyll C by K - Kw = 0.11 C^0.67. Particles then scatter back 0.416 C^0.766 (0.002 + 0.01 (0.5 - 0.25 log C))
-/// (Morel and Maritorena 2001).
+/// chlorophyll C, mg/m^3, by K - Kw = 0.11 C^0.67. At 550 nm particles then scatter back 0.416 C^0.766 (0.002 + 0.01
+/// (0.5 - 0.25 log C)), 1/m, with the logarithm to base 10 (Morel and Maritorena 2001). At other wavelengths l, nm, the
+/// coefficient is 550 / l times that.
 pub(super) fn body_reflectance(attenuation_per_m: [f64; 3], index: f64) -> [f64; 3] {
     let green_blue = (attenuation_per_m[0] - PURE_ATTENUATION_PER_M[0]).max(1e-4) / 0.11;
     let chlorophyll = libm::pow(green_blue, 1.0 / 0.67).clamp(0.01, 10.0);

@@ -1,5 +1,5 @@
-//! Tables for places ahead of an observer that moves steadily. They are drawn in slices. The tables at the observer's
-//! own place are a mix of the tables of two such places.
+//! Tables for places ahead of an observer whose altitude, sun or moon moves steadily (`course.rs`). They are drawn in
+//! slices. The tables at the observer's own place are a mix of the tables of two such places.
 
 use bytemuck::{Zeroable as _, bytes_of};
 
@@ -14,7 +14,7 @@ use crate::gpu::Device;
 /// next place.
 pub(super) struct WayTables {
     tables: [Apart; 3],
-    /// Bind groups that read each layer of each table.
+    /// Bind groups that read the layers of `tables`, for each place.
     groups: [Vec<wgpu::BindGroup>; 3],
     /// Bind groups for the passes that draw the next place's tables, for each lamp: of the sky, and of the air.
     pub observer_groups: [[wgpu::BindGroup; 2]; LAMPS],
@@ -63,7 +63,7 @@ pub(super) struct Ahead {
     pub course: ObserverCourse,
     /// Id of the planet's tables from which the tables on the way are drawn.
     pub set: Option<u64>,
-    /// Created when the observer moves for the first time.
+    /// Created when the first slice of tables ahead is drawn.
     pub tables: Option<Box<WayTables>>,
 }
 

@@ -67,8 +67,8 @@ fn file_size(settings: &SkySettings) -> u64 {
     Name::RESULTS.iter().map(table).sum::<u64>() + (MAGIC.len() + 8 + 8) as u64
 }
 
-/// Writes tables in the order of [`Name::RESULTS`]. The write is atomic: a reader sees the old file or the complete new
-/// one.
+/// Writes tables in the order of [`Name::RESULTS`], and returns the path of the file. The write is atomic: a reader
+/// sees the old file or the complete new one. Afterwards the oldest files beyond [`MOST_FILES`] are removed.
 ///
 /// # Errors
 /// [`Status::Io`] naming the file, also for tables with values that are not finite.
@@ -100,7 +100,7 @@ pub(crate) fn write(directory: &Path, key: u64, tables: &[Vec<u8>]) -> Result<Pa
     Ok(target)
 }
 
-/// Largest number of files kept in a directory. Each planet whose tables are kept makes one.
+/// Largest number of files kept in a directory. Each planet whose tables are kept makes one for each of its settings.
 const MOST_FILES: usize = 32;
 
 /// Removes the oldest tables beyond [`MOST_FILES`].

@@ -12,7 +12,7 @@ pub const AIR: Part = Part { name: "air", rungs: &["all", "none"], importance: 0
 pub const SKY: Part = Part { name: "sky", rungs: &["all", "none"], importance: 0.2, worth: Worth::Composed(2) };
 
 /// Work of the air in a pixel: with one lamp, and for each further lamp. Measured on a software driver (`cargo bench --
-/// parts`), in units of a pixel without any part.
+/// parts`). The unit is the work of a pixel in which no part is drawn.
 const AIR_WORK: (f64, f64) = (0.4, 0.2);
 /// Work of the clear sky in a pixel, as [`AIR_WORK`].
 const SKY_WORK: (f64, f64) = (0.07, 0.05);
@@ -50,8 +50,8 @@ pub fn candidates() -> Vec<Listed<SkySettings>> {
     add("directional-half", half(Directional));
     add("directional", SkySettings::default());
     add("directional-double", double(Directional));
-    // The first of these candidates doubles the sizes of the planet's tables only, the second those of the observer's
-    // tables only. They show which of the tables improve the picture.
+    // The next two candidates have larger sizes in some of the tables only: the first in the planet's, the second in
+    // the observer's. They show which of the tables improve the picture.
     add("directional-fine-planet", SkySettings { orders: 6, ..planet_sizes(double(Directional)) });
     add("directional-fine-view", SkySettings { orders: 5, ..view_sizes(double(Directional)) });
     add("isotropic-eighth", coarsest(IsotropicTables));
@@ -203,7 +203,7 @@ fn source_texels(s: &SkySettings) -> f64 {
     }
 }
 
-/// Work of one setting: for the planet's tables, for the observer's tables, and for a pixel.
+/// Returns the work with these settings: for the planet's tables, for the observer's tables, and for a pixel.
 pub fn work(s: &SkySettings) -> Work {
     let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
     let texels = |name: Name| area(name.size(s));
@@ -222,7 +222,8 @@ pub fn work(s: &SkySettings) -> Work {
         let bytes = TEXEL_BYTES * pass.draws.len() as f64;
         rebuild = rebuild.plus(Units { samples, texels: lookups, bytes }, count);
     }
-    // Scratch of a build, and two sets of tables: the one that is shown and the one being built.
+    // Scratch of a build, two sets of tables (the one that is shown and the one being built), and the light as it is
+    // shown.
     let kept = |name: &Name| area(name.result_size(s));
     let shared: f64 = Name::SCRATCH.iter().map(|n| texels(*n)).sum::<f64>()
         + 2.0 * Name::RESULTS.iter().map(kept).sum::<f64>()
@@ -239,7 +240,8 @@ pub fn work(s: &SkySettings) -> Work {
         let nodes = f64::from(s.march_cells.next_multiple_of(4));
         Units { samples: nodes, texels: nodes * source_texels(s), bytes: TEXEL_BYTES }
     } else {
-        // The sky takes 2 look-ups. The air takes 4, and the columns along the ray. Half of the pixels show each.
+        // The sky takes 2 look-ups. The air takes 4, and the columns along the ray. Half of the pixels show sky, half
+        // air.
         Units { samples: 1.0, texels: 3.0, bytes: TEXEL_BYTES }
     };
     Work {

@@ -1,7 +1,8 @@
 //! Course of an observer whose altitude changes steadily, or whose sun or moon moves steadily. It would cost too much
 //! to draw the observer's tables of the sky (`observer_tables.rs`) anew in every frame. The course therefore picks
-//! places on the observer's way, and the tables of the next place are drawn in slices: some rows in each frame. The
-//! tables for the observer itself are a mix of the tables of two places, one behind and one ahead of it: the pair.
+//! places on the observer's way. A place is an altitude together with the elevations of sun and moon. The tables of the
+//! next place are drawn in slices: some rows in each frame. The tables for the observer itself are a mix of the tables
+//! of two places, one behind and one ahead of it: the pair.
 
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use super::observer_tables::LAMPS;
 /// Count of the values that an observer's tables depend on: its altitude, and the sine of elevation of each lamp.
 const NUMBERS: usize = 1 + LAMPS;
 
-/// Values that an observer's tables depend on.
+/// Place on an observer's way: the values that the observer's tables depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ObserverPlace {
     /// Altitude, m.
@@ -41,23 +42,23 @@ impl ObserverPlace {
     }
 }
 
-/// Bounds for following an observer, for its altitude, m, and the sine of elevation of each lamp.
+/// Bounds for following an observer. The first number of each is for the altitude, m, the others are for the sine of
+/// elevation of each lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// Largest difference between an observer's place and the place of tables at which these tables may be used for the
-    /// observer.
+    /// Largest difference between two places at which the tables of one may be used for an observer at the other.
     pub near: [f64; NUMBERS],
-    /// Largest distance between two places at which a linear mix of their tables may be used for places in between.
+    /// Largest difference between two places whose tables may be mixed linearly for the places in between.
     pub far: [f64; NUMBERS],
 }
 
 /// Frames of motion before anything is drawn ahead.
 const FRAMES_BEFORE: u32 = 8;
-/// Largest number of frames from one place to the next, for a usual and for a very slow motion. The far bounds may
-/// allow fewer. A very slow motion takes more than 40 frames to cover [`SHORT_WAY`] times the near bounds, and gets
-/// that number of frames, up to 400.
+/// Least and largest value of the limit on the number of frames from one place to the next. The limit is the number of
+/// frames in which the motion covers [`SHORT_WAY`] times a near bound. It is therefore above the least value only for a
+/// very slow motion. The far bounds may allow fewer frames than the limit.
 const MOST_FRAMES: (f64, f64) = (40.0, 400.0);
-/// Way of a very slow motion from one place to the next, in multiples of the near bounds.
+/// Way from one place to the next, in multiples of the near bounds, that a very slow motion is to cover.
 const SHORT_WAY: f64 = 20.0;
 /// Weight of the newest frame's motion in the speed, an exponential mean over some 10 frames. With the mean, a camera
 /// that sways keeps its course.
@@ -103,8 +104,9 @@ pub(super) struct ObserverCourse {
 }
 
 impl ObserverCourse {
-    /// Follows the observer to `place` in the next frame. `drawn` is the place of the present tables, `rows` the height
-    /// of a table.
+    /// Follows the observer to `place` in the next frame, and returns that frame's work. A frame without motion draws
+    /// no slice, and a lamp that appears or goes begins a new course. `drawn` is the place of the present tables,
+    /// `rows` the height of a table.
     pub fn follow(
         &mut self,
         place: ObserverPlace,
@@ -134,7 +136,7 @@ impl ObserverCourse {
 
     /// Plans a frame of an observer with a pair. Between the pair's places the plan is a mix of their tables and a
     /// slice of the next tables. Past the second place the plan is the rest of the next tables and a shift of the pair.
-    /// Forgets the course if the observer is outside the shifted pair too.
+    /// Forgets the course if the observer is outside the shifted pair too, or if there is no next place.
     fn between(
         &mut self,
         pair: &[ObserverPlace; 2],
@@ -228,8 +230,9 @@ fn difference(a: &ObserverPlace, b: &ObserverPlace) -> [f64; NUMBERS] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// Returns the number of frames from `place` to the next place: until the observer has moved by a far bound, or the
-/// limit of [`MOST_FRAMES`]. `speed` is the motion in one frame. Returns `None` below 2 frames, too few for slices.
+/// Returns the number of frames from `place` to the next place: those in which the observer moves by a far bound, or
+/// the limit of [`MOST_FRAMES`] if that is less. `speed` is the motion in one frame. Returns `None` below 2 frames, too
+/// few for slices.
 fn frames_ahead(place: &ObserverPlace, speed: &[f64; NUMBERS], bounds: &Bounds) -> Option<f64> {
     let numbers = || (0..NUMBERS).filter(|i| *i == 0 || place.mu_s[i - 1].is_some());
     let frames =

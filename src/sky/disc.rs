@@ -8,8 +8,9 @@
 //! square root of the relative position. It passes through four depths of the reference (`reference::ray`).
 //!
 //! # Error
-//! The transmittance is within 0.5 % anywhere on a disc of the sun's size, and within 6 % on a disc of 11 degrees
-//! (test).
+//! The relative error of the transmittance is below 0.5 % anywhere on a disc of the sun's size, and below 6 % on a disc
+//! of 11 degrees (test). The test counts a transmittance below 0.1 % as 0.1 % on the former disc, and one below 10 % as
+//! 10 % on the latter.
 
 use super::{
     reference::ray::Ray,
@@ -23,7 +24,7 @@ const NOT_LIFTED: f64 = 0.2;
 /// Tolerances of the interval. The first is its margin beyond the disc on both sides. The second is the largest sum of
 /// the changes of the lamp's sine of elevation and of its radius, rad, for which the interval is kept.
 const ROOM: (f64, f64) = (2e-3, 1e-3);
-/// Change of altitude after which the interval is computed again: a share of the altitude plus a number of m.
+/// Change of altitude after which the depth is computed again: a share of the altitude plus a number of m.
 const CLIMB: (f64, f64) = (1e-3, 1.0);
 /// Smallest depth, which keeps the logarithm finite.
 const LEAST: f64 = 1e-9;

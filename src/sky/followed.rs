@@ -14,7 +14,7 @@ pub(crate) struct FollowedSky {
     tables: SkyTables,
     /// Directory of the cache.
     cache: Option<PathBuf>,
-    /// First planet, until its tables are in the cache.
+    /// First planet, while the cache lacks its tables; `None` without a cache.
     first: Option<Planet>,
     /// Frame in which the last step of a build was done.
     frame_id: Option<u64>,
@@ -56,7 +56,8 @@ impl FollowedSky {
     }
 
     /// Drops the shown tables if they belong to another body than `planet`. If no tables are shown then and there is a
-    /// cache, loads the tables of `planet` from it.
+    /// cache, shows the tables of `planet`, if the library has finished ones or the cache holds them. Otherwise
+    /// `planet` becomes the first planet.
     fn begin(&mut self, planet: &Planet) -> Result<()> {
         if self.tables.planet().is_some_and(|shown| !is_same_body(shown, planet)) {
             self.tables.forget();
@@ -82,7 +83,8 @@ impl FollowedSky {
 
     /// Continues building the tables of the changing air, unless this frame has already done so. `share` is the work to
     /// do, as a share of a build with the default settings. The first frame gets a draft. A share of 1 builds the
-    /// tables whole, for pictures that must not depend on earlier pictures. Returns whether anything was built.
+    /// tables whole in any call, for pictures that must not depend on earlier pictures. Returns whether anything was
+    /// built; a step of a fade does not count.
     pub fn build_toward(
         &mut self,
         device: &Device,
@@ -125,8 +127,8 @@ impl FollowedSky {
     }
 }
 
-/// Whether two planets are the same body, perhaps under different weathers: they may differ in air and ground albedo
-/// only.
+/// Whether two planets are the same body, perhaps under different weathers: whether they have the same radii and the
+/// same wavelengths.
 fn is_same_body(a: &Planet, b: &Planet) -> bool {
     let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     body(a) == body(b)

@@ -52,7 +52,7 @@ const SUBMISSION_SHARE: f64 = 1.0 / 8.0;
 /// Work, in nodes of a march, below which a build needs no draft: 0.2 s on the software driver.
 const DRAFT_FROM: f64 = 4e6;
 /// Limits of [`Kit::pace`], the factor on the share of a build's work that one frame does. Within them a frame costs
-/// the same with all settings; beyond them very large tables cost more.
+/// the same with all settings. Below the lower limit, with very large tables, it costs more.
 const PACE: (f64, f64) = (0.5, 5.0);
 
 /// Tables that are needed only during a build.
@@ -64,7 +64,7 @@ pub(crate) struct Ticket {
 }
 
 impl Ticket {
-    /// Planet that is being built.
+    /// Planet whose tables are being built.
     pub fn planet(&self) -> &Planet {
         &self.set.planet
     }
@@ -104,7 +104,7 @@ struct BuildQueue {
     finished: Vec<Weak<TableSet>>,
     /// Scratch tables of earlier builds, by detail.
     spare: [Option<Scratch>; 2],
-    /// Number of whole builds finished.
+    /// Number of finished builds of whole tables; drafts are not counted.
     count: u64,
 }
 
@@ -122,8 +122,8 @@ pub(crate) struct BuildStep {
     pub done: f64,
 }
 
-/// Pipelines and builds for one [`SkySettings`] on one device. Any thread; its lock must be the last that a thread
-/// takes.
+/// Pipelines and builds for one [`SkySettings`] on one device. Any thread. Its lock is taken after all others except
+/// that for submitting.
 pub(crate) struct Kit {
     pub device: Arc<Device>,
     pub settings: SkySettings,
@@ -138,7 +138,7 @@ pub(crate) struct Kit {
     pub pace: f64,
     /// Build plan of whole tables.
     whole: Level,
-    /// Build plan of drafts, where a draft saves work.
+    /// Build plan of drafts; `None` if no drafts are built with these settings.
     draft: Option<Level>,
     /// Pass that adds up triples, where there are several.
     parts: Option<PartPass>,
@@ -202,7 +202,7 @@ impl Kit {
         Ok(self.observers.get_or_init(|| made))
     }
 
-    /// Number of whole builds finished so far. Tables loaded from the cache are not counted.
+    /// Number of builds of whole tables finished so far. Drafts, and tables loaded from the cache, are not counted.
     pub fn builds(&self) -> u64 {
         self.lock().count
     }
@@ -261,8 +261,8 @@ impl Kit {
         Build { ticket, set, scratch, triples, reads, next: 0 }
     }
 
-    /// Submits strips with up to `share` of the work of a whole build. Returns the tables once the last strip is
-    /// submitted.
+    /// Submits strips with up to `share` of the work of a whole build, and at least one strip. Returns the tables once
+    /// the last strip is submitted.
     pub fn advance(&self, ticket: &Arc<Ticket>, share: f64) -> Result<(BuildStep, Option<Arc<TableSet>>)> {
         let mut guard = self.lock();
         let work = &mut *guard;

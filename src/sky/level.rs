@@ -17,7 +17,7 @@ pub(crate) struct Strip {
     pub cost: f64,
 }
 
-/// Largest share of a whole build in one strip, unless one row costs more.
+/// Largest share of the work for one triple of wavelengths in one strip, unless one row costs more.
 pub(crate) const STRIP_SHARE: f64 = 1.0 / 1024.0;
 /// Detail of a planet's tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +40,8 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    /// Creates the plan with strips that cost at most `strip_cost`, or with `None` at most [`STRIP_SHARE`] of the
-    /// whole. A strip has at least one row.
+    /// Creates the plan with strips that cost at most `strip_cost`, or with `None` at most [`STRIP_SHARE`] of the work
+    /// for one triple. A strip has at least one row.
     pub fn new(device: &Device, settings: &SkySettings, strip_cost: Option<f64>) -> Self {
         let passes = passes(settings);
         let (strips, cost) = strips(settings, &passes, strip_cost);
@@ -67,8 +67,8 @@ impl Level {
     }
 }
 
-/// Cuts the passes into strips that cost at most `most`, or with `None` at most [`STRIP_SHARE`] of the total. A strip
-/// has at least one row, whatever it costs. Also returns the total cost.
+/// Cuts the passes for one triple into strips that cost at most `most`, or with `None` at most [`STRIP_SHARE`] of their
+/// total. A strip has at least one row, whatever it costs. Also returns the total cost of the triple.
 pub(crate) fn strips(settings: &SkySettings, passes: &[Pass], most: Option<f64>) -> (Vec<Strip>, f64) {
     let row_cost = |p: &Pass| f64::from(p.draws[0].size(settings).0) * p.texel_time(settings);
     let total: f64 = passes.iter().map(|p| row_cost(p) * f64::from(p.draws[0].size(settings).1)).sum();

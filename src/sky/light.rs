@@ -63,7 +63,7 @@ impl LightTable {
         Self { suns, altitudes, values, ..self }
     }
 
-    /// Interpolates between this table and another of the same sizes.
+    /// Interpolates between this table and another of the same sizes; `t` is the weight of the other.
     pub(crate) fn mix(&self, other: &Self, t: f32) -> Self {
         let between = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|c| a[c] + (b[c] - a[c]) * t);
         let values = self.values.iter().zip(&other.values).map(between).collect();

@@ -2,11 +2,12 @@
 //!
 //! # What is drawn
 //! [`SkyTables`] hold what depends on the planet alone: light scattered more than once, by altitude, sun angle and
-//! direction, and the light on level ground. Fragment passes build them into fp16 textures on every kind of device, at
-//! once or in steps. [`SkyVolume`] holds what depends on an observer's altitude and the lamps' zenith angles: the sky
-//! by direction, and the air in front of objects. Turning the camera changes neither. Shaders read both through
-//! `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`, `sky_transmittance`, `ground_radiance`, ..) and
-//! `shaders/sky/disc.wgsl` (`disc_radiance`) with [`SkyVolume::bind_group`] as group 1.
+//! direction, and the light that arrives at a point from all directions, by altitude and sun angle. Fragment passes
+//! build them into fp16 textures on every kind of device, at once or in steps. [`SkyVolume`] holds what depends on an
+//! observer's altitude and the lamps' zenith angles: the sky by direction, and the air in front of objects. Turning the
+//! camera changes neither. Shaders read both through `shaders/sky/lookup.wgsl` (functions `sky_radiance`, `aerial`,
+//! `sky_transmittance`, `ground_radiance`, ..) and `shaders/sky/disc.wgsl` (`disc_radiance`) with
+//! [`SkyVolume::bind_group`] as group 1.
 //!
 //! All users of one [`SkyLibrary`] (all contexts of a device) that show the same planet with the same settings share
 //! the planet's tables and the work of building them.

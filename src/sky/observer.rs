@@ -30,8 +30,8 @@ pub struct Lamp {
     pub angular_radius: f64,
     /// Appearance of the disc.
     pub disc: Disc,
-    /// Whether the lamp's light in the air is drawn. If not, only its disc is, which costs almost nothing. Default
-    /// true.
+    /// Whether the lamp's light in the air is drawn. If not, only its disc is, which costs almost nothing.
+    /// [`Lamp::sun`] sets true.
     pub lights_air: bool,
 }
 

@@ -6,12 +6,13 @@ use super::settings::SkySettings;
 use crate::gpu::bind::as_layers;
 use crate::gpu::{Device, Layer};
 
-/// Number of layers for each lamp: complete light, and light scattered once by haze without its phase function.
+/// Number of layers for each lamp. The first is light scattered by gas or more than once. The second is light scattered
+/// once by haze, without its phase function.
 pub(super) const LAYERS: u32 = 2;
 /// Largest number of lamps that light the air.
 pub(super) const LAMPS: usize = 2;
 
-/// Table of an observer's air with the sky beside or below it: an array texture that passes draw layer by layer.
+/// Table of an observer's air with the sky beside or below it: an array texture with [`LAYERS`] layers for each lamp.
 pub(super) struct Layered {
     texture: wgpu::Texture,
     /// View of all layers, for look-ups.
@@ -29,7 +30,7 @@ impl Layered {
         Self { texture, whole, layers }
     }
 
-    /// Copies the layers of a lamp to textures of the same size.
+    /// Copies the layers of a lamp to the same layers of `copies`.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, lamp: usize, copies: &Apart) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
         for z in LAYERS * lamp as u32..LAYERS * (lamp as u32 + 1) {

@@ -103,7 +103,7 @@ pub(crate) struct Builder {
 }
 
 /// Buffers that all builds of one detail share: table sizes, directions to sum over, and the job of each pass (its
-/// order, and whether it is the last one).
+/// scattering order, and whether the orders after it are added as a geometric series).
 pub(crate) struct BuildBuffers {
     pub dims: wgpu::Buffer,
     rule: wgpu::Buffer,
@@ -174,7 +174,7 @@ impl Builder {
     }
 }
 
-/// Blend state that mixes a share of the new colour into the target: out = share * new + (1 - share) * old.
+/// Blend state for out = share * new + (1 - share) * old, where the blend constant is the share.
 pub(crate) fn fade_blend() -> wgpu::BlendState {
     let over = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::Constant,
@@ -280,7 +280,7 @@ fn draw_over(
     }
 }
 
-/// Pass that adds up the results for several triples of wavelengths, which are built one after the other.
+/// Pass that adds up the light of several triples of wavelengths, whose tables are built one after the other.
 pub(crate) struct PartPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
@@ -313,7 +313,7 @@ impl PartPass {
         bind(device, &self.layout, &[tex(table), air.as_entire_binding()])
     }
 
-    /// Adds a triple to `target`. The `first` triple clears the target before.
+    /// Adds the light of a triple to `target`. The `first` triple clears the target before.
     pub fn add(&self, encoder: &mut wgpu::CommandEncoder, target: &SkyTable, triple: &wgpu::BindGroup, first: bool) {
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

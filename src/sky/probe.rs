@@ -105,7 +105,7 @@ impl Probe {
         &mut self.tables
     }
 
-    /// Computes the answers under one sun above the x axis at `sun_zenith_angle`, rad.
+    /// Computes the answers under one sun above the x axis at `sun_zenith_angle`, rad, without refraction.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for numbers out of range; GPU faults.

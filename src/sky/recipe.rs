@@ -15,7 +15,9 @@ pub(crate) enum PassKind {
     Once,
 }
 
-/// Tables of a build. `Sources`, `Lights`, `OnceGas` and `OnceHaze` are its results.
+/// Tables of a build. `Sources`, `Lights`, `OnceGas` and `OnceHaze` are its results. `Order(i)` and `OrderLight(i)` are
+/// the source and the light of a single scattering order, where i alternates between 0 and 1 from order to order.
+/// `PartSources` and `PartLights` are sums over the orders so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Name {
     Nothing,
@@ -116,8 +118,8 @@ impl Pass {
         }
     }
 
-    /// Time of one texel, in units of the time of a march's node, measured on the software driver. Strips of a build
-    /// are cut by this time, so that each frame takes equally long.
+    /// Time of one texel, in units of the time of a march's node: [`Pass::texel_cost`] times a factor measured on the
+    /// software driver. Strips of a build are cut by this time, so that each frame takes equally long.
     pub fn texel_time(&self, s: &SkySettings) -> f64 {
         match self.kind {
             PassKind::Scatter => 0.24 * self.texel_cost(s),
@@ -145,7 +147,7 @@ fn gather(order: u32, source: Name, light: Name) -> Pass {
     Pass::new(PassKind::Gather, order, false, reads, &[Name::Radiances])
 }
 
-/// Pass that adds the light gathered last to the table `sum` and draws the result into `target`.
+/// Pass that draws the light of the order gathered last, and the sum of this light and the table `sum` into `target`.
 fn light(order: u32, last: bool, sum: Name, target: Name) -> Pass {
     let n = order as usize;
     let (previous, now) = (Name::OrderLight((n + 1) % 2), Name::OrderLight(n % 2));

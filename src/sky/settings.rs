@@ -2,14 +2,14 @@
 
 use crate::error::{Error, Result};
 
-/// Model of the sky. All models share the same look-up functions, so that only the tables depend on the choice. With
-/// [`SkyModel::BruteForce`] these functions march along the ray of every pixel.
+/// Model of the sky. All models share the same look-up functions. With [`SkyModel::BruteForce`] these functions march
+/// along the ray of every pixel. Between the other models only the tables differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkyModel {
     /// Light scattered once, from a table over (altitude, view angle, sun angle); the phase functions are applied
     /// afterwards (Elek 2008). The table is computed for views in the sun's azimuth, and used for all azimuths. By day
-    /// it is within 3 %; at sunset, away from the sun, it is wrong by a factor of 2 to 3, and by more from space. Light
-    /// scattered more than once is missing (20 to 50 %).
+    /// the light scattered once is within 3 %; at sunset, away from the sun, it is wrong by a factor of 2 to 3, and by
+    /// more from space. Light scattered more than once is missing (20 to 50 %).
     Table3d,
     /// Light scattered more than once is taken as equal in all directions (Hillaire 2020). The error is -3 to -6 % near
     /// the horizon and +3 % at the zenith. The tables take a tenth of the default's time to build.
@@ -17,8 +17,9 @@ pub enum SkyModel {
     /// Light scattered more than once is computed order by order, and depends on direction. The default.
     #[default]
     Directional,
-    /// The default model, but light scattered once is marched in every pixel with [`SkySettings::march_cells`] nodes.
-    /// The tables are measured against it.
+    /// The default model, but without an observer's tables: every pixel marches along its ray with
+    /// [`SkySettings::march_cells`] nodes, and looks up the light scattered more than once at each of them. The tables
+    /// are measured against it.
     BruteForce,
 }
 
@@ -149,8 +150,8 @@ impl SkySettings {
     }
 
     /// Returns settings for a draft: small tables over the planet, which are shown until the full tables are built.
-    /// With the default settings a draft is a twentieth of the work. Light scattered once keeps its resolution, because
-    /// the observer's tables march it.
+    /// With the default settings a draft is a twentieth of the work. Except with [`SkyModel::Table3d`], light scattered
+    /// once keeps its resolution, because the observer's tables march it.
     pub(crate) fn draft(&self) -> Self {
         Self {
             orders: self.orders.min(4),

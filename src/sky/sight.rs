@@ -16,8 +16,8 @@ pub const LEAST_CONTRAST: f64 = 0.05;
 /// Number of strips of the sun's disc. The light of a half-set sun is within 0.3 % of that with 200 strips.
 const STRIPS: usize = 24;
 
-/// Depth below the ground's sphere down to which a line of sight is not hidden, m. Two points on the ground itself
-/// therefore see each other over 200 m.
+/// Depth below the ground's sphere down to which a line of sight is not hidden, m. Two points on the ground of the
+/// Earth therefore see each other if they are less than 225 m apart.
 const GRAZE_M: f64 = 1e-3;
 
 /// Sunlight at a point.

@@ -104,7 +104,7 @@ impl SolvedSky {
         Ok(Self { reference: Reference::solve(&planet, &QUERY)?, ground: Mutex::default() })
     }
 
-    /// Radiance of the air along a whole ray, and of the ground if the ray meets it, per wavelength.
+    /// Radiance of the air along a whole ray, plus that of the ground if the ray meets it, per wavelength.
     ///
     /// # Errors
     /// [`Status::InvalidArgument`] for a number out of range.

@@ -73,7 +73,8 @@ enum State {
 /// One call in this many does not continue the build. In that call observers draw their own tables for the present sun
 /// and altitude.
 const REST: u32 = 8;
-/// Smallest step of a fade's weight per call. A fade costs the same in each frame, however long it lasts.
+/// Step of a fade's weight per call while the air does not change, unless the call's share of a build is larger. A fade
+/// costs the same in each frame, however long it lasts.
 const FADE: f32 = 1.0 / 16.0;
 /// Largest step of the weight per call while the air changes. A change that took place during a build is thereby spread
 /// over several calls.
@@ -88,8 +89,8 @@ const UNSEEN_SHARE: f32 = 1e-4;
 pub struct TablesProgress {
     /// Work submitted by this call, as a share of a whole build; 0 if another user of the library has built the planet.
     pub work: f32,
-    /// Progress towards the whole tables of the planet given last: 0 while a draft is built, 0.5 when the whole tables
-    /// are built, 1 when they are shown.
+    /// Progress towards the whole tables of the planet given last: 0 while a draft is built or fades in, 0.5 when the
+    /// whole tables are built, 1 when they are shown.
     pub done: f32,
 }
 
@@ -162,9 +163,9 @@ impl SkyTables {
     ///
     /// With a `fraction` of 1 the tables of `planet` are built and shown at once. Otherwise the first planet is shown
     /// at once as a draft. A later planet whose air differs much from the shown one's also gets a draft, which fades in
-    /// over sixteen calls. The whole tables are built meanwhile over 8/7 of 1/`fraction` calls, because every eighth
-    /// call rests, and then fade in like a draft. If another planet is given during that build, its tables are built
-    /// afterwards; if it differs much, a build that is less than half done is abandoned for it.
+    /// over sixteen calls. The whole tables are built after the draft is shown, over 8/7 of 1/`fraction` calls, because
+    /// every eighth call rests, and then fade in like a draft. If another planet is given during that build, its tables
+    /// are built afterwards; if it differs much, a build that is less than half done is abandoned for it.
     ///
     /// The result depends only on the sequence of calls, not on time. This call submits what it builds. It records what
     /// it shows into `encoder`, which must be submitted afterwards.
@@ -180,9 +181,9 @@ impl SkyTables {
         self.update_along(encoder, AirChange { now: planet, ahead: planet }, fraction)
     }
 
-    /// Follows a change whose end is known, as [`SkyTables::update`] follows a planet. A draft of the end is built once
-    /// and mixed with the shown tables by the place of the present air between both. The whole tables follow when the
-    /// change has ended.
+    /// Follows a change whose end is known, as [`SkyTables::update`] follows a planet. Tables of the end (a draft, if
+    /// its air differs much) are built once and mixed with the shown tables by the place of the present air between
+    /// both. After a draft the whole tables follow when the change has ended.
     ///
     /// # Errors
     /// As [`SkyTables::update`].

@@ -90,7 +90,7 @@ impl AirUniform {
     }
 
     /// Returns an air for each of `parts`, the triples of a set of wavelengths. Its `part_a`, `part_b` and `part_c` are
-    /// the triple's columns, `layer` is the triple's index, and `layers` the number of triples.
+    /// the columns of the triple's matrix, `layer` is the triple's index, and `layers` the number of triples.
     pub fn of_parts(parts: &[SpectralTriple]) -> Vec<Self> {
         let one = |(layer, part): (usize, &SpectralTriple)| {
             let [part_a, part_b, part_c] = part.columns.map(|c| c.map(|v| v as f32));

@@ -146,7 +146,7 @@ impl Observer {
 /// Sine of the depth under the horizon at which nothing of the moon's disc is visible any more.
 const BELOW_HORIZON: f64 = 0.02;
 
-/// Whether the moon's disc may be above the horizon.
+/// Whether the moon is among the lamps: its light matters, or its disc may be above the horizon.
 fn moon_shows(scene: &Scene) -> bool {
     let (radius, h) = (scene.planet.bottom_radius_m, scene.place.altitude_m.max(0.0));
     let horizon = -(h * (h + 2.0 * radius)).sqrt() / (radius + h);

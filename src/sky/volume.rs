@@ -181,7 +181,7 @@ impl SkyVolume {
     /// unchanged: turning the camera is free.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for an observer out of range.
+    /// [`crate::Status::InvalidArgument`] for an observer out of range; GPU faults.
     pub fn prepare(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -231,7 +231,7 @@ impl SkyVolume {
         Ok(drawn)
     }
 
-    /// Draws the tables of lamps that are out of date. Returns whether any was drawn.
+    /// Draws the lamps' tables, except those that are up to date. Returns whether any was drawn.
     fn update_lamps(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -258,7 +258,7 @@ impl SkyVolume {
             drawn = self.follow(encoder, tables, shown, &ObserverPlace { altitude_m, mu_s })?;
         }
         for drawn in &mut self.drawn {
-            // These tables are up to date if they already contain the mix of two sets that is now shown.
+            // A lamp's tables are up to date if they already contain the mix of two sets that is now shown.
             *drawn = drawn.map(|d| match d.over.is_some() && shown.mixes == d.over.map(|over| (d.set, over)) {
                 true => DrawnFor { set: shown.id, over: None, ..d },
                 false => d,

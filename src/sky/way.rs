@@ -1,17 +1,20 @@
-//! Way from one air to another: how far apart two planets are, and where a third one lies between them.
+//! Change of a planet's air from one weather to another, taken as a straight way through the numbers that describe the
+//! air: how far apart two airs are, and where on the way between them a third one lies.
 
 use crate::planet::{FIELDS, Planet};
 
-/// Relative change of optical depth above which two planets are far apart. A draft for one of them (small tables that
-/// are quickly built) then shows it with a smaller error than the whole tables of the other.
+/// Change of the optical depth, as a share of the depth, above which two planets are far apart: its far change. A draft
+/// for one of them (small tables that are quickly built) then shows it with a smaller error than the whole tables of
+/// the other. The far change of the haze's asymmetry is this number itself, and that of a scale height is twice this
+/// share of the height.
 const FAR: f64 = 0.03;
-/// Change of the ground's albedo above which two planets are far apart.
+/// Far change (see [`FAR`]) of the ground's albedo.
 const FAR_ALBEDO: f64 = 0.1;
 /// Count of the numbers that the air's light depends on.
 const NUMBERS: usize = 15;
 /// Largest distance of a planet from the way between two others, as a share of the way's length, at which a mix of
-/// their tables may still be used for it. A distance of 1, in far changes (see [`units`]), is allowed on a way of any
-/// length.
+/// their tables may still be used for it. A distance of a single far change is allowed however short the way is. A
+/// distance or length is the square root of the sum, over all [`numbers`], of (change / far change)^2.
 const BESIDE: f64 = 0.5;
 
 /// Length of light's slanted path through the air, as a multiple of the vertical path, for which a mix of two tables is
@@ -27,8 +30,8 @@ pub(super) struct PlaceOnWay {
     pub is_near: bool,
 }
 
-/// Returns the place of the air of `now` on the way between the airs of `start` and `end`. The three planets are one
-/// body under three weathers.
+/// Returns the place of the air of `now` on the way between the airs of `start` and `end`: the nearest point of the
+/// way. The three planets are one body under three weathers.
 pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceOnWay {
     if now == end {
         return PlaceOnWay { share: 1.0, is_near: true };
@@ -51,8 +54,8 @@ pub(super) fn place_on_way(start: &Planet, end: &Planet, now: &Planet) -> PlaceO
 /// Weights of the tables at the two ends of a way from one air to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightWay {
-    /// Change of the vertical optical depth over the way, times [`SLANT`], clamped to ±40. A larger change would alter
-    /// only the weights near the clearer end.
+    /// Change of the vertical optical depth at the middle wavelength over the way, times [`SLANT`], clamped to ±40. A
+    /// larger change would alter only the weights near the clearer end.
     depth: f64,
 }
 
@@ -91,7 +94,8 @@ pub(super) fn between(start: &Planet, end: &Planet, share: f64) -> Planet {
 }
 
 /// Whether two planets differ so much that a draft (see [`FAR`]) for one has a smaller error than the whole tables of
-/// the other.
+/// the other. True if they are different bodies, or if a number changes by more than a far change. The changes of the
+/// depths of gas, haze and ozone at a wavelength are added.
 pub(super) fn is_far(a: &Planet, b: &Planet) -> bool {
     let body = |p: &Planet| (p.bottom_radius_m, p.top_radius_m, p.wavelengths_nm);
     let (difference, unit) = (differences(a, b), units(a, b));
@@ -120,8 +124,9 @@ fn differences(a: &Planet, b: &Planet) -> [f64; NUMBERS] {
     std::array::from_fn(|i| b[i] - a[i])
 }
 
-/// Returns the factors that turn changes of the numbers into multiples of a far change, for planets between `a` and
-/// `b`.
+/// Returns the factors that turn changes of the numbers into multiples of far changes ([`FAR`]). Relative changes are
+/// relative to the larger of the values of `a` and `b`. For a depth of gas, haze or ozone this value is the depth of
+/// all three at the wavelength.
 fn units(a: &Planet, b: &Planet) -> [f64; NUMBERS] {
     let (a, b) = (numbers(a), numbers(b));
     let whole = |n: &[f64; NUMBERS], i: usize| n[i] + n[3 + i] + n[6 + i];

@@ -28,7 +28,7 @@ const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
 /// Work of each pixel whenever snow falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
-/// Returns the work of drawing snow with these settings.
+/// Returns the work of drawing snow with these settings. A default number of flakes is taken as that on a GPU.
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
         // Adds a little work for the snow in the fog, which is drawn anyway. There is no layer.

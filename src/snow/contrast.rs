@@ -10,7 +10,9 @@
 //! integral of 1.08 (n / k) (k A)^2 / ((L + w) w) dr.
 //! ```
 //!
-//! The integral is computed numerically, unlike that of drops, because k grows from shell to shell.
+//! The formula is summed over the classes of flakes and over the shells. The term of a shell is multiplied by the
+//! square of the share that the shell shows at r. The integral is computed numerically, unlike that of drops, because k
+//! grows from shell to shell.
 
 use glam::{DVec2, DVec3};
 
@@ -59,6 +61,7 @@ pub(crate) struct FlakeContrast {
 
 impl FlakeContrast {
     /// Creates the contrast for a camera. `light` includes the exposure; `tone` maps it to the picture's values.
+    /// `lamps` says whether there are lamps, which may make flakes arbitrarily bright.
     pub fn new(
         (flakes, wind_m_s): (&Flakes, DVec3),
         shot: &StreakCamera<'_>,

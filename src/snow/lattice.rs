@@ -14,7 +14,7 @@
 //! represent others. The numbers per class are chosen so that every drawn flake, together with the flakes that it
 //! represents, covers the same area. Of all choices, this keeps the contrast closest to that of all flakes (importance
 //! sampling by area). Shells whose contrast would be too high by more than a factor of the square root of 3 are not
-//! drawn: their flakes are extinction, drawn with the fog.
+//! drawn, except the innermost one. The flakes of shells that are not drawn are extinction, drawn with the fog.
 
 use glam::DVec3;
 
@@ -42,7 +42,7 @@ pub const TURN_UNIT: f64 = 1.0 / 256.0;
 pub const FADE: f64 = 0.85;
 /// Distance below which flakes fade out towards the camera, m: `NEAREST` of `shaders/snow/flakes.wgsl`.
 pub const NEAREST_M: f64 = 0.3;
-/// Largest ratio, at which a shell is still drawn, of the variance of the drawn flakes' cover to that of all flakes.
+/// Largest ratio of the variance of the drawn flakes' cover to that of all flakes, at which a shell is still drawn.
 const MOST_NOISE: f64 = 3.0;
 /// Offset that gives flakes other random numbers than drops: `SALT` of `shaders/snow/flakes.wgsl`.
 pub(super) const SALT: u32 = 0x5e0_0000;
@@ -57,7 +57,7 @@ pub fn side_m(shell: usize) -> f64 {
 pub struct Flakes {
     /// Per class: diameter (m), fall speed (speed units), radius of the helix (m), turns (turn units).
     pub table: [[f32; 4]; CLASSES],
-    /// Per class and shell: number of flakes of the classes up to this one.
+    /// Per class and shell: number of drawn flakes of the classes up to this one.
     pub upto: [[u32; SHELLS]; CLASSES],
     /// Per class and shell: number of flakes that each drawn flake represents.
     pub weight: [[f32; SHELLS]; CLASSES],
@@ -93,8 +93,8 @@ fn thinned(numbers: &[f64; CLASSES], areas: &[f64; CLASSES], volume_m3: f64, roo
 }
 
 impl Flakes {
-    /// Creates the flakes of these sizes. At most `most` are drawn. `begun` is the share of the flakes that has left
-    /// the cloud.
+    /// Creates the flakes of these sizes. At most `most` are drawn. `begun` is the share of the flakes that has begun
+    /// to fall at the camera's altitude.
     pub fn new(sizes: &FlakeSizes, begun: f64, most: u32) -> Self {
         let mut this = Self {
             table: [[0.0; 4]; CLASSES],
@@ -229,8 +229,8 @@ pub struct Flake {
     pub weight: f64,
 }
 
-/// Returns the fall speed (speed units), the turns (turn units, wrapping) and the first angle of a flake of a class,
-/// from its three random words.
+/// Returns the fall speed (speed units), the turns (turn units; two's complement if negative) and the first angle
+/// (2^-32 of a turn) of a flake of a class, from its three random words.
 fn own(random: [u32; 3], class: &[f32; 4]) -> (u32, u32, u32) {
     let scattered = |units: u32, random: u32| {
         let scatter = (random & 255) as i32 - 128;
@@ -254,8 +254,8 @@ pub fn shell_share(shell: usize, distance_m: f64) -> f64 {
 }
 
 /// Returns all flakes as seen by a camera at `position_m` (east, north and up from a point fixed to the world), after
-/// the air has moved by `displacement_m` in `time_s`. Two cameras see the same flake under the same id. F64 twin of
-/// `flake_of` in `shaders/snow/flakes.wgsl`.
+/// the air has moved by `displacement_m` in `time_s`. Two cameras see the same flake under the same id. Reference in
+/// f64 of `flake_of` in `shaders/snow/flakes.wgsl`; places and angles have the same bits there.
 pub fn flakes(
     flakes: &Flakes,
     seed: u64,

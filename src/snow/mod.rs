@@ -14,12 +14,13 @@
 //! drawn flakes is subtracted from that of the layer. So neither the mean of the picture nor the visibility depends on
 //! how many flakes are drawn.
 //!
-//! *Settings*: [`SnowSettings`]. *Cost*: proportional to the number of drawn flakes; none where no snow falls. *Error*:
-//! [`contrast`] estimates how much all flakes together change a picture; `docs/lab` has the contrast lost with fewer
-//! flakes.
+//! *Settings*: [`SnowSettings`]. *Cost*: proportional to the number of drawn flakes, plus the layer's work per pixel;
+//! none where no snow falls. *Error*: [`contrast`] estimates how much all flakes together change a picture; `docs/lab`
+//! has the contrast lost with fewer flakes.
 //!
 //! Near a wind that varies in space (`SceneMoment::wind_volume`) flakes are stepped (`particles::stepping`), starting
-//! from their places in the lattice. On devices without compute shaders they move with the weather's wind instead.
+//! from their places in the lattice. They move with the weather's wind instead on devices without compute shaders, and
+//! if more flakes are drawn than a storage buffer of the device has room for.
 //!
 //! There is no `held.rs`: flakes follow from seed and time. Stepped flakes belong to a view and are not saved.
 

@@ -50,7 +50,7 @@ pub(super) struct SnowPass {
     /// Layout of the group of shelters, occluder maps and lamps.
     surroundings: wgpu::BindGroupLayout,
     pipelines: PassPipelines<FlakeVariant, wgpu::RenderPipeline>,
-    /// List of the flakes in the picture, on devices with compute shaders while flakes are not stepped.
+    /// List of the flakes in the picture. Used on devices with compute shaders while flakes are not stepped.
     listed: Option<Box<ListedFlakes>>,
     /// Pass that steps flakes, while they are stepped.
     step: Option<Box<StepPass>>,
@@ -87,7 +87,7 @@ impl SnowPass {
         self.counts
     }
 
-    /// Returns the bytes of GPU memory held.
+    /// Returns the bytes of GPU memory that the stepped states and the list of flakes take.
     pub fn bytes(&self) -> u64 {
         self.step.as_ref().map_or(0, |step| step.bytes()) + self.listed.as_ref().map_or(0, |l| l.listing.bytes())
     }

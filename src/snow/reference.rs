@@ -13,7 +13,7 @@ pub const ASYMMETRY: f64 = 0.54;
 
 /// Returns the phase function of a flake, whose integral over all directions is 4 pi: (1 - g^2) / (1 + g^2 - 2 g c)^1.5
 /// (Henyey and Greenstein 1941) with g = [`ASYMMETRY`]. `c` is the cosine of the scattering angle: 1 is straight on.
-/// Ice absorbs next to no visible light.
+/// Absorption is left out, because ice absorbs next to no visible light.
 pub fn flake_phase(c: f64) -> f64 {
     let g = ASYMMETRY;
     (1.0 - g * g) / (1.0 + g * g - 2.0 * g * c).powf(1.5)
@@ -21,8 +21,8 @@ pub fn flake_phase(c: f64) -> f64 {
 
 /// Returns the weight of the sky, against the ground, in the light of a flake that is seen along a ray whose sine of
 /// elevation is `z`: the integral of [`flake_phase`] over the upper hemisphere, divided by 4 pi. Its Legendre series is
-/// `1/2 + (3/4) g z - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2. The sum of the terms up to P3 is within
-/// 0.02 of the quotient.
+/// `1/2 + (3/4) g z - (7/16) g^3 P3(z) + ..`, with P3(z) = (5 z^3 - 3 z) / 2. The sum of the terms up to P3, which is
+/// returned, is within 0.02 of the weight.
 pub fn flake_sky_share(z: f64) -> f64 {
     0.5 + z * (0.50835 - 0.17222 * z * z)
 }

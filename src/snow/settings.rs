@@ -22,7 +22,7 @@ pub enum SnowModel {
 /// but neither the snowfall itself nor the place of any flake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnowSettings {
-    /// Method by which snow is drawn.
+    /// Method by which snow is drawn. Default [`SnowModel::Automatic`].
     pub model: SnowModel,
     /// Largest number of drawn flakes, [1000, 8 000 000]. More flakes reach farther, up to 16 m. Flakes beyond this
     /// number are represented by drawn flakes, or are extinction, drawn with the fog. `None`, the default: 1 000 000,

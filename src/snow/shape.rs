@@ -1,10 +1,11 @@
-//! Shape of a flake: the f64 twin of `shaders/snow/shape.wgsl`.
+//! Shape of a flake in f64: the reference of `shaders/snow/shape.wgsl`.
 //!
-//! A flake is a disc eroded by noise: value = max(1 - exp(-5 W), 0) with W = offset + strength n - r^2, where r is the
-//! distance from the middle in radii and n the flake's own noise. The formula is that of a procedural flake in an older
-//! system. There the noise could erode a flake completely; here n lies between -1 and 1. Offset and strength are such
-//! that the mean over discs is the share of ice in a flake's disc. Near flakes therefore cover as much as far ones,
-//! which are drawn as faint discs.
+//! A flake is a disc eroded by noise. Its opacity is max(1 - exp(-5 W), 0) with W = `OFFSET` + `NOISE` n - r^2. Here r
+//! is the distance from the middle in radii, and n is noise between -1 and 1 that differs from flake to flake. The
+//! formula is that of a procedural flake in an older system, in which the noise could erode a flake completely. The
+//! test below requires a mean opacity above 0.05 of each of 600 flakes. `OFFSET` and `NOISE` are such that the opacity,
+//! averaged over the disc and over these flakes, is the share of a flake's disc that its ice covers
+//! (`falling::flakes::AREA_RATIO`). Near flakes therefore cover as much as far ones, which are drawn as faint discs.
 
 use crate::{falling::random3, numerics::smooth};
 
@@ -32,7 +33,7 @@ fn noise(p: [f64; 2], seed: u32) -> f64 {
     mix(mix(at(0, 0), at(1, 0), w[0]), mix(at(0, 1), at(1, 1), w[0]), w[1])
 }
 
-/// Returns the opacity of the flake of a seed at a place, in radii, 0 to 1.
+/// Returns the opacity, 0 to 1, of the flake of a seed at a place, which is given in radii from the flake's middle.
 pub fn flake_shape(place: [f64; 2], seed: u32) -> f64 {
     let square = place[0] * place[0] + place[1] * place[1];
     if square >= 1.0 {

@@ -41,7 +41,7 @@ pub(crate) struct FlakesUniform {
 }
 
 impl FlakesUniform {
-    /// Creates the block of flakes for a camera in moving air. `light` includes the exposure.
+    /// Creates the block of flakes for a camera in moving air, with a drawn share of 1. `light` includes the exposure.
     pub fn new(seed: u64, flakes: &Flakes, light: &LightAround, shot: &StreakCamera<'_>, air: &MovingAir) -> Self {
         let v = |d: DVec3| d.as_vec3().to_array();
         let last = flakes.upto[CLASSES - 1];

@@ -35,7 +35,7 @@ struct Counted {
     temperature_c: f64,
     /// Factor on fall speeds by the air's density ([`drops::factor_in`]).
     factor: f64,
-    /// Share of the flakes that has left the cloud, in steps.
+    /// Share of the flakes that has begun to fall at the camera's altitude, rounded by [`begun_in_steps`].
     begun: f64,
     /// Largest number of drawn flakes.
     most: u32,
@@ -49,7 +49,7 @@ pub(crate) struct SnowView {
     pass: Option<Box<SnowPass>>,
     /// Conditions of the last count, and the flakes that it gave.
     counted: Option<Box<(Counted, Flakes)>>,
-    /// Whether flakes fall at the camera.
+    /// Whether flakes fall at the camera and the settings allow their drawing.
     is_there: bool,
     /// Whether the pass counts how often pixels are drawn, instead of showing the flakes' light.
     counts: bool,
@@ -59,7 +59,7 @@ pub(crate) struct SnowView {
     over: bool,
     /// Whether flakes were stepped in the last frame.
     is_stepped: bool,
-    /// Displacement of the air in the last frame.
+    /// Cache of the winds at the times from which the step asks for the air's displacement.
     last_wind: Remembered,
     /// Identifier of the last drawn frame, and the report of its snow.
     drawn: (u64, SnowReport),
@@ -82,7 +82,7 @@ impl SnowView {
         }
     }
 
-    /// Returns the flakes of the last picture; `None` before the first.
+    /// Returns the flakes of the last count; `None` before the first count.
     fn flakes(&self) -> Option<&Flakes> {
         self.counted.as_ref().map(|kept| &kept.1)
     }
@@ -157,7 +157,8 @@ impl DrawnEffect for SnowView {
         put(&candidates::SNOW, is_there, &candidates::snow_work(context.pixels(), flakes));
     }
 
-    /// Sets the extinction that is drawn as flakes, to be subtracted from the fog, in addition to that of rain.
+    /// Returns the extinction that flakes replace in the fog, the layer in front of the picture, and the reach
+    /// within which shelters matter to flakes.
     fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
         self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };

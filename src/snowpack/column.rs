@@ -12,7 +12,7 @@ const DENSITY_STEP: f64 = 4.0;
 /// Number of densities for which settling is tabulated: they reach past that of ice, [`laws::ICE_KG_M3`].
 const DENSITIES: usize = 232;
 
-/// Snow over a square metre. A column without ice holds no snow, and all its values are 0.
+/// Snow over a square metre. All values of a column without mass are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Column {
     /// Ice, in units of mass.
@@ -53,7 +53,8 @@ pub(super) struct MassExchange {
     pub sublimated: i64,
 }
 
-/// Forcing of columns during a step: the same for a whole field, apart from shelter.
+/// Forcing of columns during a step, before shelter: the same for a whole field, or for each block of cells where
+/// precipitation varies from place to place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ColumnForcing {
     /// Ice that falls, in units of mass.
@@ -103,8 +104,8 @@ fn units(amount: f64) -> i64 {
     (amount * UNITS).round() as i64
 }
 
-/// Returns `number` x `part` / `whole`, rounded down. The rounding error of the floating-point product is harmless for
-/// depths, which enter no balance.
+/// Returns `number` x `part` / `whole`, rounded towards 0. The rounding error of the floating-point product is harmless
+/// for depths and albedos, which enter no balance.
 fn share(number: i64, part: i64, whole: i64) -> i64 {
     (number as f64 * (part as f64 / whole as f64)) as i64
 }
@@ -256,7 +257,7 @@ impl Column {
         }
     }
 
-    /// Removes the share `part / whole` of the column.
+    /// Removes the share `part / whole` of the column, and returns it.
     pub fn take(&mut self, part: i64, whole: i64) -> SnowParcel {
         let exact = |v: i64| (i128::from(v) * i128::from(part) / i128::from(whole)) as i64;
         let taken = SnowParcel { ice: exact(self.ice), water: exact(self.water), depth: exact(self.depth) };

@@ -1,14 +1,15 @@
 //! Snow that the wind carries along the ground: it erodes where the wind is strong and lands where it is weaker.
 //!
-//! **Wind at the surface.** A wind that varies in space is used as it is, with its direction; components against the
-//! mean wind count as 0. Otherwise the surface's shape changes the mean wind by the factor 1 + 0.58 s + 2 H / L. s is
-//! the slope along the wind, positive where it faces the wind (Liston and Elder 2006). H is the height of a crest and L
-//! its half-width at half the height; in a hollow H is negative (Jackson and Hunt 1975). Behind an obstacle the wind is
-//! calmed below a line that falls by 1 in [`LEE_RUN`] from the obstacle's top: the idea of Winstral and Marks (2002),
-//! with the length of drifts behind solid fences (Tabler 2003). In front of an obstacle of height H a line rises to its
-//! top with the same slope. At the depth d below this line the wind is multiplied by 1 - [`CALMED`] (d / H)^4: it loses
-//! a tenth at five heights before a wall and three fifths at one height. The drift there ends up half as high as the
-//! wall, as is found on the windward side of fences (Tabler 1980, J. Glaciol. 26, 405).
+//! **Wind at the surface.** A wind that varies in space is used as it is, with its direction. Its component along the
+//! cells' rows or columns counts as 0 where it points against that of the mean wind. Otherwise the surface's shape
+//! changes the mean wind by the factor 1 + 0.58 s + 2 H / L. s is the slope along the wind, positive where it faces the
+//! wind (Liston and Elder 2006). H is the height of a crest and L its half-width at half the height; in a hollow H is
+//! negative (Jackson and Hunt 1975). Behind an obstacle the wind is calmed below a line that falls by 1 in [`LEE_RUN`]
+//! from the obstacle's top: the idea of Winstral and Marks (2002), with the length of drifts behind solid fences
+//! (Tabler 2003). In front of an obstacle of height H a line rises to its top with the same slope. At the depth d below
+//! this line the wind is multiplied by 1 - [`CALMED`] (d / H)^4: it loses a tenth at five heights before a wall and
+//! three fifths at one height. The drift there ends up half as high as the wall, as is found on the windward side of
+//! fences (Tabler 1980, J. Glaciol. 26, 405).
 //!
 //! **Transport.** Along the wind the flux Q approaches the capacity Qc of the wind: dQ/dx = (Qc - Q) / L. L is
 //! [`ERODING_M`] if Q < Qc and there is loose snow, and [`LANDING_M`] if Q > Qc. One sweep down the wind solves this
@@ -21,7 +22,8 @@
 //!
 //! The sweep goes from patch to patch down the wind as it does from cell to cell: the snow that leaves the last cells
 //! of one patch, and the lee's line over these cells, enter the next patch. Patches are left out if they have no snow,
-//! receive none and have no snow to leeward.
+//! receive none and have no snow to leeward. In a wind that varies in space, snow to leeward does not matter, because
+//! no lines are used.
 
 use glam::DVec2;
 
@@ -134,7 +136,7 @@ impl Through {
 
 /// Returns the height of ground and snow, m, at the cell that lies `cells` cells along an axis (0: east, 1: north) from
 /// a cell, given by the index of its patch and its column and row. Also returns the number of cells actually gone:
-/// fewer at the edge of the ground, and 0 if the cell there is blocked.
+/// fewer at the edge of the ground. It is 0, and the height NaN, if the cell where the way ends is blocked.
 fn along(
     field: &SnowField,
     (patch, place): (usize, [usize; 2]),
@@ -186,8 +188,9 @@ fn shaped(field: &SnowField, patch: usize, place: [usize; 2], unit: DVec2) -> f6
 }
 
 /// Returns the line over a cell below which an object calms the wind: the height of the line, m, and the height of the
-/// object, m. It is the mean of the lines over the two neighbouring cells on the object's side (`neighbours`), lowered
-/// by the fall over the path through the cell. `None` if neither of them has a line.
+/// object, m. Both are means over the two neighbouring cells on the object's side (`neighbours`), weighted by the
+/// shares of the flux. The line's mean is lowered by its fall over the path through the cell. `None` if neither
+/// neighbour has a line.
 fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
     let (mut line, mut caster, mut sum) = (0.0, 0.0, 0.0);
     for (share, known) in way.shares.into_iter().zip(neighbours).filter_map(|(share, known)| Some((share, known?))) {
@@ -199,7 +202,8 @@ fn fallen(way: &Way, neighbours: [Option<[f64; 2]>; 2]) -> Option<[f64; 2]> {
 }
 
 /// Returns the factor on the wind at a cell by the lee of an object to windward, 1 - [`CALMED`] smoothstep(d / H), and
-/// the lee's line over the cell. d is the depth below the line and H the object's height.
+/// the lee's line over the cell. d is the depth of the cell's surface below the line and H the object's height. A cell
+/// that reaches above the line begins a new line at its own top.
 fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, windward.map(|air| air.lee)).map(|[line, caster]| [line, caster.max(LEAST_M)]);
     if patch.is_hole(cell) {
@@ -214,7 +218,8 @@ fn calmed(patch: &Patch, cell: usize, way: &Way, windward: [DriftFlux; 2]) -> (f
 }
 
 /// Returns the factor on the wind at a cell by the calm in front of an object to leeward, 1 - [`CALMED`] (d / H)^4, and
-/// the calm's line over the cell. d is the depth below the line and H the object's height.
+/// the calm's line over the cell. d is the depth of the cell's surface below the line and H the object's height. A cell
+/// that reaches above the line begins a new one if an object stands on it, else it has no line.
 fn dammed(patch: &Patch, cell: usize, way: &Way, leeward: [Option<[f64; 2]>; 2]) -> (f64, Option<[f64; 2]>) {
     let fallen = fallen(way, leeward);
     if patch.is_hole(cell) {
@@ -467,9 +472,9 @@ fn inflow(field: &SnowField, step: &SnowStep<'_>, way: &Way) -> [[i64; 2]; 2] {
     [way.unit.x.abs(), way.unit.y.abs()].map(|part| fluxes.map(|flux| (flux * part) as i64))
 }
 
-/// Erodes a column if the air carries less than its capacity (`lacking` > 0), or lands snow if it carries more.
-/// `eroded` and `landed` are the shares of the difference that move within the cell. Returns the gain of the air, in
-/// units of mass.
+/// Erodes a column if the air carries less than its capacity (`lacking` > 0) and the wind can move the column's snow.
+/// Lands snow if the air carries more. `eroded` and `landed` are the shares of the difference that move within the
+/// cell. Returns the gain of the air, in units of mass.
 fn exchange(column: &mut Column, lacking: i64, speed: f64, [eroded, landed]: [f64; 2], landing_kg_m3: f64) -> i64 {
     if lacking > 0 {
         let loose = column.ice > 0 && speed > threshold_m_s(column.is_wet(), column.density_kg_m3());

@@ -5,8 +5,9 @@
 pub(super) struct DriftFlux {
     /// Saltating and suspended snow, in units of mass.
     pub snow: [i64; 2],
-    /// Height of the line below which the lee calms the wind, and of the object that casts the lee, m; `None` at the
-    /// edge of the ground.
+    /// Height of the line below which the lee calms the wind, and height of the object that casts the lee, m. `None`
+    /// without a line: at the edge of the ground, behind a patch that the sweep leaves out, and in a wind that varies
+    /// in space.
     pub lee: Option<[f64; 2]>,
 }
 
@@ -16,8 +17,9 @@ pub(super) struct Edges {
     /// Fluxes that have left the patch down the wind: along each row to the east or west, along each column to the
     /// north or south.
     pub left: [Vec<DriftFlux>; 2],
-    /// Wind over each cell. For a wind that varies in space these are its components along the sweep, m/s. Otherwise
-    /// they are the ratio of the wind over the cell to the mean wind, and 0.
+    /// Wind over each cell, as two numbers. In a wind that varies in space they are its components along rows and along
+    /// columns, m/s, positive in the direction of the sweep and never negative. Otherwise they are the ratio of the
+    /// wind over the cell to the mean wind, and 0.
     pub wind: Vec<[f64; 2]>,
     /// Lines below which obstacles to leeward calm the wind, where the wind enters each row and each column of the
     /// patch: height of the line and of the obstacle that casts it, m. Empty without such lines.

@@ -17,7 +17,8 @@ use super::{
 /// Mass balance of a field since it began: sums over cells, in units of mass ([`super::column::UNITS`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Books {
-    /// Mass that lay on ground when it was set.
+    /// Mass of the snow with which patches were added: when the host sets a grid or a tile, its patch begins with the
+    /// snow of level, open ground.
     pub began: i64,
     /// Snow and ice that fell, and rain that fell on snow.
     pub fallen: i64,

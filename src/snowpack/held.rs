@@ -55,8 +55,9 @@ pub(crate) struct HeldSnow {
     site: Option<Site>,
     /// Tiles that changed while steps remained, each with the terrain after the change.
     waiting: Vec<(TileKey, Arc<Terrain>)>,
-    /// Grounds that the host has set since the snow was last adapted to a ground, in order. This is either one ground
-    /// that keeps the snow, or an empty ground that removes the snow, followed by a new ground.
+    /// Grounds to which the snow is still to be adapted, in order: the one that the host set last, or an empty ground
+    /// and then the one set last. The empty ground removes the snow. It is there if the host has set several grounds
+    /// since the last adaptation, and one of them does not keep the snow of the one before.
     grounds: Vec<SnowGround>,
     /// Table of settling for the step in progress.
     settling: Settling,
@@ -68,7 +69,8 @@ pub(crate) struct HeldSnow {
     published: u64,
     /// Meltwater from the snow since it was last published: beginning and length of each step, s, and its water.
     melts: Vec<(f64, f64, Meltwater)>,
-    /// Whether the meltwater published so far belongs to a state that a loaded one has replaced; it is then deleted.
+    /// Whether the meltwater published so far belongs to a state that a loaded one has replaced. The next `publish`
+    /// then deletes it.
     forgets: bool,
 }
 
@@ -152,7 +154,7 @@ impl HeldSnow {
         self.revision += 1;
     }
 
-    /// Creates the state if it is missing, and adapts it to the world's terrain.
+    /// Creates the state if the snow is simulated and has none, and adapts the snow to the world's terrain.
     pub(super) fn be_there(&mut self, world: &World) -> Result<()> {
         if self.model == LyingSnowModel::Simulated && self.state.is_none() {
             self.state = Some(SnowState::first(world, world.time_s)?);
@@ -309,7 +311,7 @@ impl HeldSnow {
         Ok(())
     }
 
-    /// Takes the snow's part out of a saved state.
+    /// Takes the snow's entry out of a saved state.
     ///
     /// # Errors
     /// [`Status::Parse`] for values that cannot be snow of this context.
@@ -344,8 +346,8 @@ impl HeldEffect for HeldSnow {
         if self.is_fast || time_s - world.time_s > LONGEST_S {
             self.coarse_until_s = time_s;
         }
-        // Time before `earliest_s` passes without steps. The start is a multiple of COARSE_STEP_S, so leaps that end at
-        // slightly different times start alike.
+        // Time before `earliest_s` passes without steps. `earliest_s` is a multiple of COARSE_STEP_S, so long updates
+        // that end at slightly different times begin at the same time.
         let earliest_s = ((time_s - MOST_S) / COARSE_STEP_S).floor() * COARSE_STEP_S;
         state.time_s = state.time_s.max(earliest_s);
         Ok(())

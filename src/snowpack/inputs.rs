@@ -5,11 +5,11 @@ use glam::DVec2;
 use super::column::{Column, ColumnForcing, Settling};
 
 /// Function that returns the forcing at a cell of the lattice. Its arguments are the cell's index east and north, and
-/// the height of the cell's ground, m.
+/// the height of the cell's ground above the terrain's origin, m.
 pub(super) type FallsAt<'a> = &'a dyn Fn([i32; 2], f64) -> ColumnForcing;
 
 /// Function that returns the wind at 10 m, m/s east and north, over a cell of the lattice. Its arguments are the cell's
-/// index east and north, and the height of the snow's surface there, m.
+/// index east and north, and the height of the snow's surface there above the terrain's origin, m.
 pub(super) type CellWind<'a> = &'a dyn Fn([i32; 2], f64) -> DVec2;
 
 /// Wind at 10 m over a field, m/s east and north.

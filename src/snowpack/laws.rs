@@ -42,7 +42,7 @@ pub fn new_density_kg_m3(temperature_c: f64, wind_m_s: f64) -> f64 {
 
 /// Returns the rate at which snow settles as its grains change, 1/s: 2.777e-6 exp(-0.04 F - 0.046 (rho - 100)), twice
 /// as high in wet snow (Anderson 1976 in Jordan 1991, eq. 29). F is the frost, degrees below 0 C; rho is the density,
-/// kg/m^3, and at least 100.
+/// kg/m^3, of which less than 100 counts as 100.
 pub fn metamorphism_per_s(temperature_c: f64, density_kg_m3: f64, wet: bool) -> f64 {
     let cold = (-temperature_c).max(0.0);
     let dense = (density_kg_m3 - 100.0).max(0.0);
@@ -84,7 +84,8 @@ pub fn refreezing_mm_h(temperature_c: f64) -> f64 {
 
 /// Returns the sublimation rate of snow, mm/h, by the bulk formula: `E = 3600 rho (k / ln(2 / z0))^2 U (qs - q)`. rho
 /// is the air's density, kg/m^3; k = 0.4 von Karman's constant; z0 = 0.001 m the roughness length; U the wind at 2 m,
-/// m/s; q the specific humidity of the air, and qs that of saturated air over ice. The rate is 0 where q exceeds qs.
+/// m/s; q the specific humidity of the air, and qs that of saturated air over ice at the air's temperature, at most
+/// 0 C. The rate is 0 where q exceeds qs.
 pub fn sublimation_mm_h(c: &Conditions) -> f64 {
     let t = c.air.temperature_c.min(0.0);
     let pressure = c.air.station_pressure_hpa;
@@ -105,7 +106,7 @@ pub fn threshold_m_s(wet: bool, density_kg_m3: f64) -> f64 {
 
 /// Returns the flux of saltating snow, kg/(m s), for winds at 10 m: `Q = 0.68 rho t (u^2 - t^2) / (u g)` (Pomeroy and
 /// Gray 1990). u and t are the friction velocities of the wind and of the threshold, m/s; rho = 1.3 kg/m^3 is the air's
-/// density; g = 9.81 m/s^2.
+/// density; g = 9.81 m/s^2. The flux is 0 up to the threshold.
 pub fn saltation_kg_m_s(wind_m_s: f64, threshold_m_s: f64) -> f64 {
     if wind_m_s <= threshold_m_s {
         return 0.0;

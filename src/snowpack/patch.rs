@@ -14,7 +14,7 @@ pub(super) struct Patch {
     pub key: [i32; 2],
     /// Revision of the host's tile from which the ground was taken.
     pub tile_revision: u64,
-    /// Height of each cell, m. Empty until the ground is known.
+    /// Height of each cell above the origin of the host's terrain, m. Empty until the ground is known.
     pub heights_m: Vec<f32>,
     /// Lowest height of a cell, m.
     pub lowest_m: f64,

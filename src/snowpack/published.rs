@@ -15,13 +15,14 @@ pub(super) fn seen(column: &Column) -> SnowHere {
     }
 }
 
-/// Returns a column as depth, m, density, kg/m^3, wetness and albedo.
+/// Returns the depth (m), density (kg/m^3), wetness and albedo of a column.
 fn texel(column: &Column) -> [f32; 4] {
     let s = seen(column);
     [s.depth_m, s.density_kg_m3, s.wetness, s.albedo].map(|v| v as f32)
 }
 
-/// Copies the snow on a field's cells to the world's `snow`, which other rooms read.
+/// Copies the snow on a field's cells to the world's `snow`, which other rooms read. Copies of tiles whose snow has not
+/// changed stay as they are.
 pub(super) fn publish(field: &SnowField, snow: &mut LyingSnow) {
     if field.lattice.is_none() {
         let cells = field.patches.first().map_or(0, |patch| patch.heights_m.len());

@@ -18,7 +18,7 @@ pub enum SnowFriction {
     /// Snow covers less than 0.3 of the ground.
     #[default]
     Bare = 0,
-    /// Loose, dry snow.
+    /// Loose snow, dry or with at most half of the liquid water that it can hold.
     Loose = 1,
     /// Snow denser than 350 kg/m^3: pressed, or packed by wind.
     Packed = 2,
@@ -44,7 +44,7 @@ pub struct SnowAt {
     /// Share of the ground that snow covers, 0 to 1.
     pub cover: f64,
     /// Point of the snow's surface above or below the queried position, in the host's world. It is the queried position
-    /// itself if this lies off the host's terrain or more than 3 m above the ground.
+    /// itself if this lies off the host's terrain or more than 3 m above the ground, and without simulated snow.
     pub surface: DVec3,
     /// Grip of a wheel.
     pub friction: SnowFriction,
@@ -130,7 +130,7 @@ impl HeldSnow {
         Ok(SnowAt::of(here, mass, site.position(local)))
     }
 
-    /// Returns the mass balance of the snow on the host's terrain; `None` without a terrain.
+    /// Returns the mass balance of the snow on the host's terrain; `None` without a terrain or without simulated snow.
     pub fn books(&self) -> Option<SnowBalance> {
         let (_, field) = self.field()?;
         let kg = |units: i64| units as f64 / UNITS * field.cell_m * field.cell_m;

@@ -1,5 +1,5 @@
-//! Saved form of lying snow as text. Amounts are whole numbers; a run of n equal numbers v is written as "v*n", with v
-//! in hexadecimal.
+//! Saved form of lying snow as text. Amounts are whole numbers. The lists of the cells' amounts are hexadecimal; a run
+//! of n equal numbers v is written as "v*n", with n in decimal.
 
 use serde::{Deserialize, Serialize};
 
@@ -125,7 +125,7 @@ impl SavedCells {
         }
     }
 
-    /// Returns the saved field, whose ground is not known yet.
+    /// Returns the saved field, whose ground is not known yet; `None` if it is not valid.
     fn field(&self) -> Option<SnowField> {
         if self.cells.saturating_mul(self.tiles.len().max(1)) > MOST_CELLS
             || self.columns.is_some() == self.lattice.is_some()

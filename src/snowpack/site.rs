@@ -66,7 +66,7 @@ pub(super) struct Site {
 }
 
 /// Inputs of the flakes' paths in a wind that varies in space. Shelter is found again when any of them changes:
-/// otherwise a loaded state would have another shelter.
+/// otherwise it would differ from that of a loaded state, which is found from the current inputs.
 #[derive(Clone, Copy, PartialEq)]
 struct ShadedIn {
     /// Revision of the wind volume.
@@ -77,7 +77,7 @@ struct ShadedIn {
     fall: f64,
 }
 
-/// Four cells around a place, each with its patch, and their weights.
+/// Four cells around a place, each with its patch, and their weights; `None` for a cell without ground.
 pub(super) type CornerShares = [Option<((usize, usize), f64)>; 4];
 
 impl Site {
@@ -117,7 +117,8 @@ impl Site {
         Self::new(Ground::Grid(t.clone()), (t.origin, t.to_enu), t.cell_m)
     }
 
-    /// Creates the site of a tiled terrain whose tiles are not known yet. Loaded snow of the same lattice stays.
+    /// Creates the site of a tiled terrain whose tiles are not known yet. Loaded snow of the same lattice stays; snow
+    /// of the site `old` does not.
     pub fn of_tiles(terrain: &Terrain, old: Option<&Self>, field: &mut Option<SnowField>) -> Self {
         let lattice = [terrain.desc.origin.x, terrain.desc.origin.y, terrain.desc.origin.z, terrain.desc.cell_m];
         let fits = |f: &SnowField| f.lattice == Some(lattice) && f.size == [terrain.side(); 2];
@@ -249,7 +250,7 @@ impl Site {
 
     /// Finds the cells that boxes shelter from falling snow, and the cells on which boxes stand. Only boxes that stand
     /// still are included. Flakes move with `air` where the wind varies in space. Returns whether the boxes or the
-    /// ground have changed.
+    /// ground have changed; `false` if there neither were nor are any boxes.
     pub fn shade(
         &mut self,
         field: &mut SnowField,
@@ -333,7 +334,7 @@ impl Site {
     }
 
     /// Returns whether flakes on their way to `landed`, a position in the host's world, meet a box. The path is traced
-    /// back until it is above the box. `fall` is the flakes' fall speed, m/s.
+    /// back until it is above the box, in at most [`MOST_PARTS`] steps. `fall` is the flakes' fall speed, m/s.
     fn meets(&self, shelter: &Shelter, landed: DVec3, air: &SiteWind<'_>, fall: f64) -> bool {
         let up = self.to_enu.row(2);
         let half_height = (shelter.axes.transpose() * up).abs().dot(shelter.half_size_m);
@@ -413,7 +414,8 @@ impl SiteWind<'_> {
 
     /// Returns the wind at 10 m over a cell of the lattice, given by its index east and north and the height of its
     /// snow's surface, m: east and north, m/s. It is the wind 2 m above the snow (or one cell of the wind volume above
-    /// the snow, if that is more), extrapolated to 10 m by the logarithmic law.
+    /// the snow, if that is more), extrapolated to 10 m by the logarithmic law. Outside the wind volume it is the
+    /// weather's wind.
     pub fn over(&self, place: [i32; 2], surface_m: f64) -> DVec2 {
         let asked_m = ASKED_M.max(self.volume.cell_m.z);
         let lower = self.lower(asked_m);

@@ -83,7 +83,7 @@ fn settle(field: &mut SnowField, moving: &mut Vec<(u32, u32)>, rise: f64, left: 
             patch.put(at.1 as usize, column);
             patch.changed(revision);
         }
-        // Tests both cells and the neighbours again: the move has changed their slopes.
+        // Tests both cells and the neighbours of the upper one again: the move has changed their slopes.
         moving.push(to);
         moving.push(cell);
         moving.extend(around(field, cell).map(|(above, _)| above));

@@ -21,7 +21,7 @@ pub(super) struct SnowState {
     pub sunlight_w_m2: f64,
     /// Snow on level, open ground; it also lies around the host's terrain.
     pub country: Column,
-    /// Meltwater of the last step.
+    /// Meltwater of the last step: on the host's terrain if there is one, else on level, open ground.
     pub melted: Meltwater,
     /// Time that was simulated in fast-forward, s.
     pub coarse_s: f64,

@@ -38,7 +38,7 @@ impl Sums {
 }
 
 impl Patch {
-    /// Steps the patch's columns, block by block.
+    /// Steps the patch's columns, block by block. A patch on which no ice is left becomes bare.
     fn step(&mut self, size: [usize; 2], step: &SnowStep<'_>, sums: &mut Sums) {
         let side = if step.falls.is_some() { [BLOCK; 2] } else { size };
         let (mut lies, was_bare) = (false, self.is_bare());

@@ -24,7 +24,8 @@ const SAMPLES: usize = 4;
 /// Strip of ground: a path with a width. Two points and a width make a rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SnowStrip {
-    /// Centre line in the host's world, m; 2 to 1024 points. Heights do not matter.
+    /// Centre line in the host's world, m; 2 to 1024 points, each finite and within 1e12 m of the world's origin.
+    /// Heights do not matter.
     pub points: Vec<DVec3>,
     /// Full width, m, \[0.01, 1000\].
     pub width_m: f64,

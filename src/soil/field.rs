@@ -23,7 +23,7 @@ pub(super) struct SoilField {
     pub patches: Vec<SoilPatch>,
     /// Slots by key, rows from the south.
     pub slots: BTreeMap<[i32; 2], u32>,
-    /// Slots of the patches that may move in the next sweep, in the order of their keys.
+    /// Slots of the patches whose soil may move in the next sweep, in the order of their keys.
     pub awake: Vec<u32>,
     /// Slots of the patches that have changed since the last sweep.
     changed: Vec<u32>,
@@ -33,11 +33,11 @@ pub(super) struct SoilField {
     sweeps: u64,
     /// Water of ground that was not dug. New patches begin with this water.
     pub water: BankWater,
-    /// Depth below the undug surface to which the bank is frozen hard, in units.
+    /// Depth below the undug surface to which the bank is frozen, in units; 0 if tools break the frost.
     pub frozen: i64,
     /// Whether any bank has lost its hold.
     pub has_broken: bool,
-    /// Incremented with each step in which something changed.
+    /// Incremented whenever a step, soil that the host brings, or new undug ground changes something.
     pub revision: u64,
     scratch: SweepScratch,
 }
@@ -75,12 +75,12 @@ impl SoilField {
         }
     }
 
-    /// Slot of the patch with a key, if it was ever dug.
+    /// Slot of the patch with a key; `None` without such a patch.
     pub fn slot(&self, key: [i32; 2]) -> Option<u32> {
         self.slots.get(&[key[1], key[0]]).copied()
     }
 
-    /// Cell at a place of the lattice, if its patch was ever dug.
+    /// Cell at a place of the lattice; `None` without ground or without a patch there.
     pub fn find(&self, place: [i32; 2]) -> Option<SoilCell> {
         let side = SIDE as i32;
         let slot = self.slot(place.map(|v| v.div_euclid(side)))?;
@@ -124,7 +124,7 @@ impl SoilField {
         [key[0] * SIDE as i32 + (cell.cell % SIDE) as i32, key[1] * SIDE as i32 + (cell.cell / SIDE) as i32]
     }
 
-    /// Cell beside another, in whichever patch it lies; `None` where that patch was never dug.
+    /// Cell beside another, in whichever patch it lies; `None` without ground or without a patch there.
     pub fn beside(&self, cell: SoilCell, offset: [i32; 2]) -> Option<SoilCell> {
         let side = SIDE as i32;
         let [x, y] = [(cell.cell % SIDE) as i32 + offset[0], (cell.cell / SIDE) as i32 + offset[1]];
@@ -183,7 +183,8 @@ impl SoilField {
         self.barred.clear();
     }
 
-    /// Closes the eastern (0) or northern (1) edge of a cell to soil between two heights, in units.
+    /// Closes the eastern (`side` 0) or northern (1) edge of a cell to soil from a cell whose surface lies between two
+    /// heights, in units.
     pub fn close(&mut self, cell: SoilCell, side: u16, heights: [f64; 2]) {
         let patch = &mut self.patches[cell.slot as usize];
         if patch.barriers.is_empty() {
@@ -192,7 +193,8 @@ impl SoilField {
         patch.barriers.push((2 * cell.cell as u16 + side, heights));
     }
 
-    /// Whether a blade holds the soil that would slide from a cell.
+    /// Whether a blade holds the soil that would slide from a cell across an edge of a patch
+    /// ([`SoilPatch::barriers`]).
     fn is_held(&self, slot: u32, edge: u16, donor: SoilCell) -> bool {
         let top = self.patches[donor.slot as usize].surface[donor.cell];
         let holds = |(closed, [low, high]): &(u16, [f64; 2])| *closed == edge && *low < top && top <= *high;

@@ -9,9 +9,9 @@ use super::{
 };
 use crate::error::{Error, Result, check_range};
 
-/// Number of parts in which a heap is poured.
+/// Number of equal masses in which a heap is poured.
 const PARTS: i64 = 200;
-/// Numbers of sweeps between two parts and after the last part, divided by the square of the radius in cells. Slides
+/// Numbers of sweeps between two pourings and after the last one, divided by the square of the radius in cells. Slides
 /// spread like heat, in a time that grows with the square of the distance. After the last sweep, less than a thousandth
 /// of the excess is left.
 const SWEEPS_BETWEEN: f64 = 0.02;

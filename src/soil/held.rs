@@ -2,9 +2,10 @@
 //! heights and colours of the tiles.
 //!
 //! The host's tiles are the undug ground. After each step the change of the soil is added to the heights of the tiles
-//! where the soil changed, so queries, water, snow and wind see one ground ([`DugGround::changes`] tells the water
-//! where). The ground tells the soil once a minute how wet it is. A step of soil ends the steps of all other effects
-//! that read the ground ([`HeldEffect::reads_next_s`]), so the same poses give the same bits at any frame rate.
+//! where the soil changed, so queries, water, snow and wind see one ground. [`DugGround::changes`] tells the water in
+//! which rectangles heights have changed. Once a minute the soil reads from the world how wet the ground is. All
+//! effects advance together up to the end of each step of soil ([`HeldEffect::reads_next_s`]), so the same poses give
+//! the same bits at any frame rate.
 
 use std::{collections::BTreeMap, sync::Arc, time::Instant};
 

@@ -22,7 +22,7 @@ impl SoilKindId {
     pub const GRAVEL: Self = Self(1);
     /// Dry clay.
     pub const CLAY: Self = Self(2);
-    /// Moist sandy loam; the default.
+    /// Moist sandy loam; by default it lies below 0.3 m of topsoil.
     pub const LOAM: Self = Self(3);
     /// Topsoil.
     pub const TOPSOIL: Self = Self(4);

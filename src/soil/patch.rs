@@ -162,8 +162,8 @@ impl SoilPatch {
         self.cut[cell] > 0 || self.press(cell).sunk > 0
     }
 
-    /// Depth of bank, in the coordinates of undisturbed ground, that a dig of `depth` units takes, and the compaction
-    /// that is left.
+    /// Depth of bank, as it was before it was compacted, that a dig of `depth` units takes, and the compaction that is
+    /// left.
     fn bank_taken(&self, cell: usize, depth: i64) -> (i64, Pressed) {
         let press = self.press(cell);
         let thickness = press.packed - press.sunk;
@@ -212,7 +212,7 @@ impl SoilPatch {
         self.refresh(cell, materials);
     }
 
-    /// Masses of a kind, by cell.
+    /// Masses of a kind, by cell; all are 0 for a kind that the patch did not have yet.
     pub fn kind_masses(&mut self, kind: u8) -> &mut Vec<i64> {
         let found = self.masses.binary_search_by_key(&kind, |(kind, _)| *kind);
         let index = found.unwrap_or_else(|index| {

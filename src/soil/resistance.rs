@@ -26,7 +26,8 @@ impl SoilSite {
     /// The cohesion is that which the water in the soil leaves.
     ///
     /// # Errors
-    /// [`crate::error::Status::InvalidArgument`] for an unknown tool, or naming a field of `blade`.
+    /// [`crate::error::Status::InvalidArgument`] for an unknown tool, or naming a field of `blade` that
+    /// [`cutting_force`] does not accept for this soil.
     pub fn resistance(&self, tool: SoilToolId, blade: &SoilBlade) -> Result<CuttingForce> {
         let report = self.report(tool)?;
         let pose = self.tool_pose(tool).ok_or_else(|| Error::range("tool", "a tool of this site", tool.0))?;

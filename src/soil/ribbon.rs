@@ -11,7 +11,7 @@ pub(super) struct CellShare {
     pub share: f64,
     /// Centre of the part, in cells.
     pub centre: DVec2,
-    /// Height of the edge over the centre.
+    /// Height of the edge at the centre, in the unit of the edge's heights.
     pub height: f64,
 }
 
@@ -108,9 +108,10 @@ fn each_share_of_triangle(corners: [DVec3; 3], act: &mut impl FnMut(CellShare)) 
     }
 }
 
-/// Calls `act` for each cell that an edge passes on its way from `start` to `end`, each given by the ends of the edge,
-/// in cells. A cell can be passed to `act` several times, with parts that do not overlap. Four triangles around the
-/// middle favour no corner, so that the error in a curve falls with the square of the number of parts.
+/// Calls `act` for each cell that an edge passes on its way between two positions. `start` has the two ends of the edge
+/// at the first position, `end` those at the second, in cells. `act` can get a cell several times, with parts that do
+/// not overlap. Four triangles around the middle favour no corner, so that the error on a curved way falls with the
+/// square of the number of pieces into which the way is divided.
 pub(super) fn each_share(start: [DVec3; 2], end: [DVec3; 2], mut act: impl FnMut(CellShare)) {
     let ring = [start[0], start[1], end[1], end[0]];
     let middle = 0.25 * ring.iter().sum::<DVec3>();

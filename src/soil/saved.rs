@@ -1,4 +1,5 @@
-//! Saved form of a site as text. Depths and masses are whole numbers; a run of equal ones is written as "bits*times".
+//! Saved form of a site as text. Depths and masses are whole numbers. Lists of them are hexadecimal; a run of n equal
+//! numbers v is written as "v*n", with n in decimal.
 
 use std::collections::VecDeque;
 
@@ -26,7 +27,7 @@ const MOST_PATCHES: usize = 1 << 20;
 const MOST_CUT: i64 = 1 << 28;
 const MOST_LOOSE: i64 = 1 << 40;
 const MOST_MASS: i64 = 1 << 58;
-/// Largest number of steps: those of the latest time.
+/// Largest number of steps: more than there are until the latest time, 1e10 s.
 const MOST_STEPS: i64 = 1 << 40;
 /// Largest freezing index, K s: that of a century of the hardest winters.
 const MOST_FREEZING_K_S: f64 = 1e12;

@@ -11,7 +11,8 @@ use super::{
 };
 use crate::{light::tone::srgb_encode, terrain::DugColor};
 
-/// Depth of loose soil, and of a cut, that hides everything below it, m: about that of turf.
+/// Depth of loose soil that hides everything below it, and depth of a cut that removes all that grew there, m: about
+/// that of turf.
 const COVERS_M: f64 = 0.03;
 /// Number of steps of the table [`CODES`].
 const STEPS: usize = 1024;

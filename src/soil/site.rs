@@ -132,7 +132,8 @@ pub struct SoilSite {
     pub(super) idle: u32,
     pub(super) taken: i128,
     pub(super) brought: i128,
-    /// Sum of the degrees below 0 over time, K s.
+    /// Freezing index, K s: the sum of the degrees below 0 over time, from which degrees above 0 are subtracted; at
+    /// least 0.
     pub(super) freezing_k_s: f64,
 }
 
@@ -169,7 +170,7 @@ impl SoilSite {
         }
     }
 
-    /// Returns a kind of soil.
+    /// Returns a kind of soil; `None` for an unknown number.
     pub fn kind(&self, kind: SoilKindId) -> Option<&SoilKind> {
         self.field.materials.kinds.get(kind.index()).map(|material| &material.kind)
     }
@@ -187,7 +188,8 @@ impl SoilSite {
     /// Adds a tool at its first pose, whose time must not lie before that of the ground.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field; [`Status::WrongOrder`] for a time in the past.
+    /// [`Status::InvalidArgument`] naming the field, also for more than [`MAX_SOIL_TOOLS`] tools;
+    /// [`Status::WrongOrder`] for a time before that of the ground.
     pub fn add_tool(&mut self, shape: SoilToolShape, pose: &SoilToolPose) -> Result<SoilToolId> {
         shape.validate()?;
         pose.validate(&shape)?;
@@ -271,8 +273,8 @@ impl SoilSite {
     /// Drops loose soil that the host brings onto a place, at once. Returns whether there is ground to take it.
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the parameter: a place within 1e7 m, a known kind, a mass in \[0, 1e6\] kg,
-    /// and loose soil at most 1000 m deep.
+    /// [`Status::InvalidArgument`] naming the parameter. Accepted are a place within 1e7 m of the origin, a known kind,
+    /// and a mass in \[0, 1e6\] kg with which the loose soil is at most 1000 m deep.
     pub fn bring(&mut self, place: DVec3, kind: SoilKindId, mass_kg: f64, ground: &dyn UndugGround) -> Result<bool> {
         check_place("place", place)?;
         check_kind("kind", kind, self.field.materials.kinds.len())?;
@@ -319,7 +321,7 @@ impl SoilSite {
         }
     }
 
-    /// Whether nothing changes until the host does something.
+    /// Whether nothing changes until the host or the weather changes something.
     pub fn is_quiet(&self) -> bool {
         self.idle >= QUIET_STEPS && self.tools.iter().all(|tool| tool.poses.is_empty())
     }

@@ -237,7 +237,7 @@ impl SoilToolPose {
         edges.into_iter().reduce(|low, edge| if height(&edge) < height(&low) { edge } else { low }).unwrap_or([a, b])
     }
 
-    /// Whether a point is above the opening, seen from above.
+    /// Whether the opening lies under a point: the point is within the opening in plan, and above the opening's middle.
     pub(super) fn is_under(&self, point: DVec3) -> bool {
         let [a, b, c, d] = self.corners();
         let ring = [a, b, d, c];

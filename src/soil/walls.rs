@@ -14,14 +14,14 @@ use super::{
 
 /// Factor by which the fall of the ground must grow at a crest.
 const CREST: f64 = 1.05;
-/// Largest number of cells behind a toe that a fall can reach.
+/// Distance behind a toe, in cells, that a fall does not reach any more.
 const MOST_BROKEN: i32 = 512;
 
 /// Cohesion at and above which the bank counts as cemented, kPa. It is far above the cohesion of soils, and equals that
 /// of weak rock and coal.
 const CEMENTED_KPA: f64 = 100.0;
 
-/// Crest of a wall that fails, and the way to its toe.
+/// Toe of a wall that fails, and the direction of the fall.
 struct Fall {
     toe: SoilCell,
     /// Offset of a step from the crest towards the toe.
@@ -29,8 +29,8 @@ struct Fall {
     toe_height: f64,
 }
 
-/// Lets walls fall that are higher than their soil can stand, among the patches that have changed. Returns whether any
-/// falls.
+/// Lets walls fall that are higher than their soil can stand, on patches with unchecked walls and on their neighbours.
+/// Returns whether any wall falls.
 pub(super) fn break_walls(field: &mut SoilField, ground: &dyn UndugGround) -> bool {
     if !field.patches.iter().any(|patch| patch.is_unchecked) {
         return false;

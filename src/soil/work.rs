@@ -189,8 +189,8 @@ impl SoilTool {
         }
     }
 
-    /// Cuts what the edge passes. Soil in front of the opening goes into the bucket while it has room; the rest is
-    /// pushed ahead.
+    /// Cuts what the edge passes. While a bucket moves to the side to which it opens, the cut soil goes into it up to
+    /// its rated volume. All other cut soil is pushed ahead.
     fn cut(&mut self, edges: [[DVec3; 2]; 2], next: &SoilToolPose, place: &mut WorkedGround<'_>) {
         let [start, end] = edges;
         let motion = (0.5 * (end[0] + end[1] - start[0] - start[1])).truncate();
@@ -326,7 +326,8 @@ impl SoilTool {
         }
     }
 
-    /// Whether the ground in front of the opening is higher than the cutting edge.
+    /// Whether the ground in front of the opening is higher than the cutting edge, by more than [`IN_GROUND_CELLS`] on
+    /// average.
     fn is_in_ground(&self, place: &WorkedGround<'_>) -> bool {
         let pose = &self.pose;
         let ahead = pose.ahead() * AHEAD_CELLS;

@@ -308,7 +308,7 @@ impl Composition {
         }
     }
 
-    /// Merges the contribution of one effect, and moves the textures and blocks out of it.
+    /// Merges the contribution of one effect, and moves the textures, the uniform block and the tables out of it.
     pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
         for c in &contribution.constants[..contribution.count] {
             let (whole, least) = ((c.name, c.whole), (c.name, c.least));
@@ -351,7 +351,8 @@ impl Composition {
         };
     }
 
-    /// Ends the merging. Stage PARTICLES is left out if no effect has a layer in front of the picture.
+    /// Ends the merging. Stage PARTICLES is left out if no effect has a layer in front of the picture. A cube map
+    /// (`has_cube_map`) needs a panorama.
     pub fn finish(&mut self, has_cube_map: bool) {
         if self.texture(Texture::Before).is_none() {
             self.stages = self.stages.without(Stages::PARTICLES);

@@ -67,7 +67,8 @@ impl PlannedShares {
         Self { parts, shares: [[1.0; MOST_RUNGS - 1]; MOST_PARTS], is_gauged: false }
     }
 
-    /// Creates the shares from `share`, which takes the index of a part in `parts` and the index of one of its steps.
+    /// Creates the shares from `share`, which takes the index of a part in `parts` and the index of one of its steps
+    /// from a rung to the next lower one.
     pub fn new(parts: &'static [Part], is_gauged: bool, share: impl Fn(usize, usize) -> f32) -> Self {
         let mut planned = Self { is_gauged, ..Self::whole(parts) };
         for (part, shares) in planned.shares.iter_mut().enumerate().take(parts.len()) {

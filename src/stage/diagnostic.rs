@@ -5,11 +5,11 @@ use super::stages::Stages;
 /// False-colour picture in place of a frame's: one number of each pixel on a scale of six colours (black, blue, green,
 /// yellow, red, white). A step leads from one colour to the next.
 ///
-/// Each picture names a stage. The call with this stage draws the picture; other calls of the frame draw nothing. The
-/// colours are display colours: linear in float and sRGB formats and where the host's colour is display-linear,
-/// otherwise encoded by the sRGB curve. In multisampled images the first sample of a pixel gives the colour of the
-/// whole pixel. Masked pixels keep the host's colour. If nothing in the frame has the picture's number, the picture is
-/// black.
+/// Each picture names a stage. The call with this stage draws the picture. Other calls of the frame draw nothing,
+/// except for the sea and the terrain where the depth may be written. The colours are display colours: linear in float
+/// and sRGB formats and where the host's colour is display-linear, otherwise encoded by the sRGB curve. In multisampled
+/// images the first sample of a pixel gives the colour of the whole pixel. Masked pixels keep the host's colour. If
+/// nothing in the frame has the picture's number, the picture is black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Diagnostic {
     /// The normal picture.

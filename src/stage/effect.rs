@@ -48,7 +48,8 @@ pub(crate) trait DrawnEffect {
         Ok(())
     }
 
-    /// Stages in which the effect has something to draw in the gathered moment. The effect is not run in other stages.
+    /// Stages in which the effect has something to draw in the gathered moment. A stage that no effect names is left
+    /// out, except PREPARE and TONE.
     fn stages(&self) -> Stages;
 
     /// Refuses a frame with images that the effect cannot draw into.

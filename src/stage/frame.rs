@@ -96,8 +96,8 @@ pub struct Frame<'a> {
     /// RENDER_ATTACHMENT and COPY_SRC.
     pub color: Option<&'a wgpu::Texture>,
     /// The host's depth texture. Without it every pixel shows the sky. Needs TEXTURE_BINDING, and RENDER_ATTACHMENT too
-    /// with [`DepthAccess::ReadWrite`]. It has as many samples as `color`; if `color` is resolved to one sample, the
-    /// depth may have any number, and Welkin reads the first.
+    /// with [`DepthAccess::ReadWrite`]. It has as many samples as `color`. If `color` has one sample and Welkin only
+    /// reads the depth, the depth may have any number of samples, and Welkin reads the first.
     pub depth: Option<&'a wgpu::Texture>,
     /// Mask in the red channel: 1 keeps the host's pixel (cab, HUD), 0 draws weather. One sample; needs
     /// TEXTURE_BINDING.
@@ -124,7 +124,7 @@ pub struct Frame<'a> {
     pub flags: FrameFlags,
     /// False-colour picture for developers in place of the frame's. Default: none.
     pub diagnostic: Diagnostic,
-    /// Velocity of the camera in the host's axes, m/s, at most 2000; it tilts the rain streaks. Default 0.
+    /// Velocity of the camera in the host's axes, m/s, at most 2000; it tilts the streaks of rain and snow. Default 0.
     pub camera_velocity_m_s: DVec3,
 }
 

@@ -30,7 +30,7 @@ pub(crate) struct Outputs {
     pub fog_depth: f64,
     /// [`Output::Sea`]: height of the sea's highest crests above the camera, m, if a sea is drawn.
     pub sea_top_m: Option<f64>,
-    /// [`Output::Stars`], if any star shows.
+    /// [`Output::Stars`], if the layer's drawn share is above 0.
     pub stars: Option<wgpu::TextureView>,
     /// [`Output::Rain`] or [`Output::Snow`], if anything is drawn into the layer.
     pub before: Option<wgpu::TextureView>,
@@ -73,7 +73,8 @@ impl Outputs {
     }
 }
 
-/// Outputs that an effect takes from others, and those that it gives, in one step of a frame.
+/// Outputs that an effect takes from others, and those that it gives, either while the effects gather or while they
+/// compose.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Exchange {
     pub needs: &'static [Output],

@@ -1,10 +1,10 @@
-//! Report of a frame, and the cost of each effect where the host asks for it
+//! Report of a frame, and the cost of each [`CostItem`] where the host asks for it
 //! ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
 //!
-//! A cost is a wall time: the CPU submits the work of one effect and waits until this work is done. Such a time is
-//! right on every driver (timestamps of software drivers are not), at the price of the wait. It includes the CPU's part
-//! and the driver's own hand-over, some tens of microseconds per effect on a GPU. Frames that are not measured submit
-//! once and wait for nothing.
+//! A cost is a wall time: the CPU submits the work of one item and waits until this work is done. Such a time is right
+//! on every driver (timestamps of software drivers are not), at the price of the wait. It includes the CPU's work and
+//! the driver's own hand-over, some tens of microseconds per item on a GPU. Calls that are not measured wait for
+//! nothing. Each is submitted once, and in pieces only where an image of an OpenGL host is copied between them.
 
 use std::{
     sync::Arc,
@@ -96,7 +96,8 @@ impl CostItem {
 /// Costs of one measured frame so far.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Costs {
-    /// Wall time of all calls of the frame, without the time between the calls, ms.
+    /// Wall time of all calls of the frame, ms, without the time between the calls and without each call's wait for
+    /// earlier work on the queue.
     pub whole_ms: f64,
     ms: [f64; CostItem::ALL.len()],
 }
@@ -119,8 +120,8 @@ pub struct Report {
     pub frame_id: u64,
     /// Render passes recorded for this frame_id so far, without those that build tables.
     pub passes: u32,
-    /// Tables built, refined or faded for this frame_id so far. It is 0 when only the camera turned and the sky has its
-    /// final quality.
+    /// Number of tables built, refined or faded for this frame_id so far: 0 when only the camera turned and the sky has
+    /// its final quality.
     pub tables_rebuilt: u32,
     /// Exposure that was applied, display units per cd/m^2.
     pub exposure: f64,
@@ -130,7 +131,7 @@ pub struct Report {
     pub rain: RainReport,
     /// Snow drawn around the camera.
     pub snow: SnowReport,
-    /// Cost of each effect, if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
+    /// Cost of each [`CostItem`], if the frame was measured ([`FrameFlags::MEASURE`](super::FrameFlags::MEASURE)).
     pub costs: Option<Costs>,
     /// Number of effects whose opaque geometry was not drawn because the host's depth may only be read
     /// ([`DepthAccess::Read`](crate::frame::DepthAccess::Read)): the sea if it is in view, and the terrain if the
@@ -143,7 +144,7 @@ pub struct Report {
     pub reported_ms: Option<f64>,
 }
 
-/// Drops and hailstones drawn around the camera, and those left out for lack of room.
+/// Drops and hailstones drawn around the camera, and splashes and bounces left out for lack of room.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RainReport {
     /// Number of drops and hailstones around the camera, of which those in the picture were drawn.
@@ -223,7 +224,7 @@ impl<'a> Recording<'a> {
         self.blocks.upload(self.device);
     }
 
-    /// Submits what has been recorded so far.
+    /// Uploads the blocks and submits what has been recorded so far.
     pub fn flush(&mut self) {
         self.upload();
         let next = self.device.device.create_command_encoder(&Default::default());

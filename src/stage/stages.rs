@@ -11,9 +11,11 @@ impl Stages {
     pub const PREPARE: Self = Self(1);
     /// Sky behind everything. Fills the pixels at the far depth, or all pixels if the frame has no depth texture.
     pub const BACKGROUND: Self = Self(2);
-    /// Water and snow on surfaces, after the host's opaque objects.
+    /// Water and snow on surfaces, shadows of clouds, and the sea and terrain that Welkin draws; after the host's
+    /// opaque objects.
     pub const SURFACE: Self = Self(4);
-    /// Fog and aerial perspective over everything that the host drew.
+    /// Air, fog and distant precipitation in front of everything drawn so far, and clouds in front of what the host
+    /// drew.
     pub const MEDIUM: Self = Self(8);
     /// Rain, hail and snow near the camera, and the channels of lightning flashes.
     pub const PARTICLES: Self = Self(16);

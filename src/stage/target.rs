@@ -66,10 +66,10 @@ pub(crate) fn check_depth(texture: &wgpu::Texture, color: &wgpu::Texture) -> Res
     check_usage("depth", texture, wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
-/// Checks that a depth texture can be attached beside the colour target and written.
+/// Checks that a depth texture can be attached beside the colour target and written. [`check_depth`] checks its size.
 ///
 /// # Errors
-/// The errors of [`check_depth`].
+/// [`crate::Status::Unsupported`] naming the format, [`crate::Status::InvalidArgument`] naming samples or usage.
 pub(crate) fn check_written(depth: &wgpu::Texture, color: &wgpu::Texture) -> Result<()> {
     let format = depth.format();
     if !format.has_depth_aspect() {
@@ -241,8 +241,9 @@ impl Sampling {
     }
 }
 
-/// Whether stages drawn one by one give the same picture as all of them in one draw. They do not if the picture is
-/// rounded to a display's steps between two stages.
+/// Whether stages drawn one by one give the same picture as all of them in one draw. They do not with TONE on a
+/// scene-linear colour whose format is no float: between the draws, the scene-linear picture would be rounded to the
+/// steps of that format.
 pub(crate) fn can_be_apart(frame: &Frame<'_>, stages: Stages) -> bool {
     let tone = stages.has(Stages::TONE) && frame.color_space == ColorSpace::SceneLinear;
     !tone || frame.color.is_some_and(|c| is_float(c.format()))

@@ -19,8 +19,8 @@ pub(crate) struct FlashUniform {
     pub pad: f32,
 }
 
-/// Constants of the composition, apart from those in the sky's and the fog's own blocks. `shaders/common/frame.wgsl`
-/// has the units.
+/// Constants of the composition, apart from those in the effects' own blocks. `shaders/common/frame.wgsl` has the
+/// units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct FrameUniform {
@@ -77,8 +77,8 @@ pub(crate) struct FrameUniform {
     /// Factor for light in the coarse grid, a power of two with which white is about 1.
     pub even_scale: f32,
     pub pad: f32,
-    /// Light that bows add to the phase function of drops, 1/sr per channel, tabulated over the scattering angle: for
-    /// drops in the low air, and for those in the columns of rain areas.
+    /// Differences that bows make to the phase function of drops, 1/sr per channel, tabulated over the angle from the
+    /// antisolar point: for drops in the low air, and for drops in the columns of rain areas.
     pub bows: [BowTable; 2],
 }
 
@@ -121,7 +121,8 @@ pub(crate) enum FrameBlock<'a> {
     Bows(&'a [BowTable; 2]),
 }
 
-/// Light that a bow adds to the phase function, 1/sr per channel, tabulated over the scattering angle.
+/// Difference that bows make to the phase function of drops, 1/sr per channel, tabulated over the angle from the
+/// antisolar point.
 pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameUniform {
@@ -164,7 +165,7 @@ impl FrameUniform {
     }
 }
 
-/// Number of scattering angles in a table of bows.
+/// Number of angles in a table of bows.
 pub(crate) const BOW_ENTRIES: usize = 160;
 
 /// Whether a format stores light as floats, not as a display's integer steps.

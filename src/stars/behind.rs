@@ -25,7 +25,7 @@ pub(crate) struct NightBehind {
 
 impl NightBehind {
     /// Creates the night light of a scene at a universal time. `fog_depth` is the fog's optical depth straight up.
-    /// Behind dense fog or a closed deck no glow is computed.
+    /// No glow is computed by day, in bright twilight, or behind dense fog or a closed deck.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] for a time outside the almanac's range or a place out of range.

@@ -9,10 +9,10 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// (`Worth::Composed`).
 pub const STARS: Part = Part { name: "stars", rungs: &["all", "none"], importance: 0.3, worth: Worth::Composed(2) };
 
-/// Work of the layer for one pixel, in units of the work for a pixel without any part.
+/// Work of the night sky's layer for one pixel, in units of the work for a pixel without any part.
 const LAYER_OF_PIXEL: f64 = 0.1;
 
-/// Work of the layer in a picture of `pixels` pixels.
+/// Work of the night sky's layer in a picture of `pixels` pixels.
 pub(crate) fn stars_work(pixels: u64) -> StepWork {
     StepWork { fixed: LAYER_OF_PIXEL * pixels as f64, ..StepWork::default() }
 }

@@ -72,8 +72,8 @@ const RECORD: usize = 12;
 
 /// Proper motions: number (HR), motion in right ascension (times the cosine of the declination) and in declination, arc
 /// seconds a year. The list has the brighter stars that move by more than 0.5" a year, and the stars with names that
-/// move by more than 0.2" a year. Source: Hipparcos (ESA 1997, van Leeuwen 2007), rounded to 0.01", which is 0.0003
-/// degrees in a century.
+/// move by more than 0.2" a year. Source: Hipparcos (ESA 1997, van Leeuwen 2007), rounded to 0.01" or finer; 0.01" a
+/// year is 0.0003 degrees in a century.
 const MOTIONS: [(u16, f64, f64); 49] = [
     (15, 0.14, -0.16),
     (21, 0.52, -0.18),

@@ -4,8 +4,8 @@ use glam::{DMat3, DVec3};
 
 use crate::almanac::celestial::equatorial_direction;
 
-/// Light of all stars of the disc in a column through the sun's position, on both sides of the plane, solar
-/// luminosities (V) a square parsec (Flynn et al. 2006, MNRAS 372, 1149).
+/// Light of all stars of the disc above and below the plane at the sun's position, solar luminosities (V) a square
+/// parsec of the plane (Flynn et al. 2006, MNRAS 372, 1149).
 const COLUMN_LV_PC2: f64 = 24.3;
 /// Number of tenth-magnitude stars a square degree that equal one solar luminosity a square parsec. A square degree at
 /// 10 pc is 0.030 square parsecs, and the sun has magnitude 4.83 there.

@@ -21,7 +21,8 @@ use crate::{
 
 /// Galactic latitudes of the sphere's rows from the equator northwards, degrees, and the number of columns that the
 /// side of a patch (an area between two rows) spans in the row. There are few rows, because a software driver spends
-/// time on every edge. 95 % of the patches are within 3 % of the tables.
+/// time on every edge. More than 30 degrees from the sun, 95 % of the triangles differ in their middle from the tables
+/// by less than 3 % of the glow.
 const RINGS: [(f64, usize); 15] = [
     (0.0, 1),
     (1.0, 1),

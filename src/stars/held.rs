@@ -50,7 +50,8 @@ impl HeldStars {
         self.own_magnitude.unwrap_or_else(|| catalogue()[0].magnitude)
     }
 
-    /// Removes the settings from a saved state and reads them; `stars` are the host's own stars.
+    /// Removes the settings from a saved state and reads them. A state without them gives the defaults. `stars` are the
+    /// host's own stars.
     ///
     /// # Errors
     /// [`Status::Parse`] for a value that is not a table of these settings; [`Status::InvalidArgument`] for a setting

@@ -41,8 +41,8 @@ fn integrated_color(temperature_k: f64) -> [f64; 3] {
 const MIRED_STEP: f64 = 10.0;
 
 /// Linear Rec. 709 colour, with luminance 1, of a black body. The temperature is clamped to 1000 to 1 000 000 K. The
-/// colour is read from a table in steps of 10 mired; up to 100 000 K it is within 0.5 % of the sum over wavelengths.
-/// Any thread.
+/// colour is read from a table in steps of 10 mired. From 2000 to 93 000 K each channel is within 0.005 of the sum over
+/// wavelengths. Any thread.
 pub fn color_of_temperature(temperature_k: f64) -> [f64; 3] {
     static TABLE: OnceLock<[[f64; 3]; 101]> = OnceLock::new();
     let table = TABLE.get_or_init(|| std::array::from_fn(|i| integrated_color(1e6 / (MIRED_STEP * i as f64).max(1.0))));

@@ -15,12 +15,12 @@
 //! ```
 //!
 //! # Positions
-//! [`catalogue()`] has 9096 stars (Yale Bright Star Catalogue), and the proper motions of the 49 bright ones that move
-//! most. One matrix ([`crate::almanac::celestial::celestial_to_world`]) turns J2000.0 to (east, north, up): precession
-//! (Lieske 1977), nutation (two terms) and sidereal time (Aoki et al. 1982), with UTC for UT1. Annual aberration,
-//! 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the derivative of the
-//! Earth's position. Refraction lifts stars near the horizon (Saemundsson 1986). The planets follow the series of Simon
-//! et al. 1994, with the magnitudes of Mallama and Hilton 2018.
+//! [`catalogue()`] has 9096 stars (Yale Bright Star Catalogue), and the proper motions of 49 bright ones that move
+//! noticeably. One matrix ([`crate::almanac::celestial::celestial_to_world`]) turns J2000.0 to (east, north, up):
+//! precession (Lieske 1977), nutation (two terms) and sidereal time (Aoki et al. 1982), with UTC for UT1. Annual
+//! aberration, 0.0057 degrees, is a vector added to each direction; it follows from the Earth's velocity, the
+//! derivative of the Earth's position. Refraction lifts stars near the horizon (Saemundsson 1986). The planets follow
+//! the series of Simon et al. 1994, with the magnitudes of Mallama and Hilton 2018.
 //!
 //! # Light
 //! Magnitude 0 is 2.54e-6 lux (Allen 1973). The colour is that of a black body, for an eye that sees sunlight as white
@@ -41,12 +41,12 @@
 //! strength of the airglow.
 //!
 //! # Cost
-//! A point takes 24 bytes on the CPU and the GPU: 218 448 for the catalogue and planets. A frame uploads the points in
-//! the picture that are brighter than `StarView::faintest_lux`, some hundreds, and draws each as a quad that lights at
-//! most 16 pixels. The glow is a sphere of 1421 corners, computed again after six hours of simulated time. A frame
-//! draws the triangles that lie in the picture; a pixel costs as much as one of an even sky. On the CPU a frame runs
-//! [`Heavens::at`], some 900 sines and cosines, and [`NightSky::new`], which samples 32 directions. By day all of this
-//! is left out.
+//! A point takes 24 bytes on the GPU: 218 448 for the catalogue and planets. On the CPU a view keeps 76 bytes for each
+//! star. A frame uploads the planets and the stars in the picture that are brighter than `StarView::faintest_lux`, some
+//! hundreds, and draws each as a quad that lights at most 16 pixels. The glow is a sphere of 1421 corners, computed
+//! again after six hours of simulated time. A frame draws the triangles that lie in the picture; a pixel costs as much
+//! as one of an even sky. On the CPU a frame runs [`Heavens::at`], some 900 sines and cosines, and [`NightSky::new`],
+//! which samples 32 directions. By day all of this is left out.
 //!
 //! # Error
 //! `cargo test --lib stars -- --nocapture` prints these errors and fails where they are exceeded.

@@ -212,8 +212,8 @@ struct Frustum {
     footprint: [f32; 2],
 }
 
-/// Largest angle between a star's catalogued and apparent direction, rad. Refraction lifts by 0.6 degrees, and by more
-/// in denser air.
+/// Largest angle between a star's catalogued and apparent direction, rad, in air of density 1 or less
+/// ([`StarView::air_density`]). Refraction lifts by 0.6 degrees. In denser air the density multiplies the angle.
 const MOST_MOVED: f64 = 0.012;
 
 impl Frustum {

@@ -18,7 +18,7 @@ pub struct StarSettings {
     /// Whether Mercury to Uranus are drawn. Default true.
     pub planets: bool,
     /// Rotation from the equator and equinox of J2000.0 to (east, north, up), in place of the one computed for the
-    /// Earth. `None` by default.
+    /// Earth; orthonormal to 1e-6. With it, stars have neither aberration nor proper motion. `None` by default.
     pub celestial_to_world: Option<DMat3>,
     /// Strength of the airglow, [0, 10]: 1 (default) near the minimum of solar activity, 1.7 at the maximum.
     pub airglow: f64,

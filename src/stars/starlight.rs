@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::disc::{disc_s10, equator_to_galactic};
 use crate::almanac::celestial::equatorial_direction;
 
-/// Declinations of the tables' columns, degrees. A row is 10 degrees of right ascension.
+/// Declinations of the tables' columns, degrees. The rows are 10 degrees of right ascension apart.
 const DECLINATIONS_DEG: [f64; 25] = [
     -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -24.0, -20.0, -16.0, -12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0, 16.0, 20.0,
     24.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0,

@@ -25,7 +25,7 @@ pub struct StarView<'a> {
     pub clip: DMat4,
     /// Rays of the camera in the same axes, to interpret the host's depth.
     pub rays: &'a ViewRays,
-    /// Size of the target, pixels.
+    /// Width and height of the target, pixels, each in [1, 65 536].
     pub size: [u32; 2],
     /// 1 where row 0 of the target is the picture's top, -1 where it is the bottom.
     pub y_sign: f32,

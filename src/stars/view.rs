@@ -144,8 +144,9 @@ impl NightOverCamera {
     }
 }
 
-/// Scale of the layer, units per cd/m^2, for a pixel's solid angle, sr. Half floats end at 65504, which Venus at its
-/// brightest does not reach with this scale, and lose precision below 6e-5.
+/// Scale of the layer, units per cd/m^2, for a pixel's solid angle, sr. `shaders/stars/points.wgsl` cuts a star off at
+/// 3e4, about half the largest half float. For pixels of 5e-10 sr or more, only Venus among the planets and the
+/// catalogue's stars can reach this limit. Below 6e-5, half floats lose precision.
 fn scale(pixel_sr: f64) -> f64 {
     256.0 * (pixel_sr / 5e-7).clamp(1e-3, 1.0)
 }

@@ -1,5 +1,6 @@
 //! Uniform blocks of the shelters, occluder maps and lamps around a camera: one bind group, of index 2, for all
-//! shaders. The blocks are uploaded once a frame. Nothing is uploaded while there are no shelters, maps or lamps.
+//! shaders. The blocks are uploaded before each draw that reads them. While there is no shelter, map or lamp, nothing
+//! is uploaded, apart from one upload after the last of them was removed.
 
 use glam::{DMat3, DVec3};
 
@@ -41,7 +42,7 @@ pub(crate) struct SurroundingsBlock {
     staged: Vec<u8>,
     /// Whether the last upload contained any surroundings.
     holds_any: bool,
-    /// Whether any box or map keeps rain off near the camera.
+    /// Whether there is a map, or a box that may keep rain off near the camera.
     sheltered: bool,
     /// Placeholder for the table of maps (the texture of all occluder maps) while there is none.
     none: wgpu::TextureView,
@@ -96,7 +97,7 @@ pub(crate) struct HostSurroundings<'a> {
     /// Velocity of the air, (east, north, up), m/s.
     pub wind_m_s: DVec3,
     pub near: ShelterReach,
-    /// Exposure of the picture, applied to the lamps.
+    /// Exposure of the picture, display units per cd/m^2. The lamps' light is multiplied by it.
     pub exposure: f64,
 }
 
@@ -112,7 +113,7 @@ impl HostSurroundings<'_> {
     }
 }
 
-/// Creates the layout of bind group 2, for the shaders of drops and of the composition.
+/// Creates the layout of bind group 2, for every shader that reads the blocks.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let all = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
     let slots = [
@@ -150,7 +151,7 @@ impl SurroundingsBlock {
         }
     }
 
-    /// Writes the blocks into the staging buffer and returns the end of the part that shaders read, bytes.
+    /// Writes the blocks into the staging buffer and returns the number of bytes up to the end of the last lamp.
     fn stage(&mut self, host: &HostSurroundings<'_>) -> usize {
         let staged = &mut self.staged;
         let mut put = |at: usize, bytes: &[u8]| staged[at..at + bytes.len()].copy_from_slice(bytes);
@@ -197,7 +198,7 @@ impl SurroundingsBlock {
         STARTS[2] + 16 + size_of::<LightUniform>() * count
     }
 
-    /// Returns whether any box or map keeps rain off near the camera.
+    /// Returns whether there is a map, or a box that may keep rain off near the camera.
     pub fn shelters(&self) -> bool {
         self.sheltered
     }

@@ -1,5 +1,5 @@
 //! Surroundings that all effects share: the host's boxes and occluder maps, which keep rain off, its lamps and terrain,
-//! and the wind that varies in space.
+//! the lying snow, and the wind that varies in space.
 
 mod around;
 mod occluder;

@@ -21,9 +21,9 @@ pub const OCCLUDER_MAP_TEXELS: (u32, u32) = (8, 4096);
 /// Depth texture of surfaces that keep rain off, and the camera with which the host drew it.
 #[derive(Clone, Copy, Debug)]
 pub struct OccluderMap<'a> {
-    /// Depth texture: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, with
-    /// TEXTURE_BINDING, from 8 to 4096 texels along either side. Its content is copied when the map is set; the host
-    /// may draw into it again after that.
+    /// Depth texture: Depth16Unorm, Depth24Plus(Stencil8), Depth32Float(Stencil8) or R32Float, one sample, one layer,
+    /// with TEXTURE_BINDING, from 8 to 4096 texels along either side. Its content is copied when the map is set; the
+    /// host may draw into it again after that.
     pub depth: &'a wgpu::Texture,
     /// Camera with which the texture was drawn, and the time and velocity of its content.
     pub taken: Taken,
@@ -43,7 +43,8 @@ pub struct Taken {
     /// Simulation time for which the map's content is right, s, \[-1e10, 1e10\].
     pub time_s: f64,
     /// Velocity of the map's content in the host's world, m/s, of a magnitude of at most 2000; 0 for content that
-    /// stands still. With a velocity, the map of a moving truck need not be drawn anew every frame.
+    /// stands still. With a velocity, the map of a moving truck need not be drawn anew every frame. Content faster than
+    /// 0.1 m/s does not keep the ground dry.
     pub velocity_m_s: DVec3,
 }
 

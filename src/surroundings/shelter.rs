@@ -58,23 +58,24 @@ impl Planes {
 /// Box that rain does not pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shelter {
-    /// Middle of the box in the host's world, m.
+    /// Middle of the box in the host's world, m, within 1e12 of the origin.
     pub center_m: DVec3,
-    /// Axes of the box in the host's world as columns: a rotation.
+    /// Axes of the box in the host's world as columns: unit vectors at right angles, to 1e-3.
     pub axes: DMat3,
     /// Half the size along each axis, m, \[1e-3, 1e5\].
     pub half_size_m: DVec3,
-    /// Velocity in the host's world, m/s, of a magnitude of at most 2000.
+    /// Velocity in the host's world, m/s, of a magnitude of at most 2000. A box faster than 0.1 m/s does not keep the
+    /// ground dry.
     pub velocity_m_s: DVec3,
-    /// Planes that cut the box to another convex shape.
+    /// Planes that cut the box to another convex shape. They must leave some of the box.
     pub planes: Planes,
 }
 
 impl Shelter {
-    /// Checks that every field is in range; the error names the one that is not.
+    /// Checks that every field is in range and that the planes leave some of the box.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         if !(self.center_m.is_finite() && self.center_m.length() <= 1e12) {
             return Err(Error::range("shelter.center_m", "finite and within 1e12 m", self.center_m));
@@ -186,8 +187,8 @@ impl Shelter {
     }
 }
 
-/// Returns the share of the way from `a` to `b` (host's world) at which the way meets the shelter's shape; `None` if it
-/// does not.
+/// Returns the share of the way from `a` to `b` (host's world) at which the way first meets the shelter's shape: 0 if
+/// `a` is inside, `None` if the way misses the shape.
 pub(crate) fn met_at(shelter: &Shelter, a: DVec3, b: DVec3) -> Option<f64> {
     let own = |v: DVec3| shelter.axes.transpose() * v;
     let (o, d) = (own(a - shelter.center_m), own(b - a));

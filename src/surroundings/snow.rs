@@ -45,7 +45,7 @@ pub(crate) struct LyingSnow {
     pub country: SnowHere,
     /// Share of level, open ground that snow covers, 0 to 1.
     pub cover: f64,
-    /// Wind speed at 10 m above which the snow drifts, m/s.
+    /// Wind speed, 10 m above the ground, that must be exceeded for the snow to drift, m/s.
     pub threshold_m_s: f64,
     /// Snow of each node of the host's terrain, in the terrain's order: depth in m, density in kg/m^3, wetness, albedo.
     /// Empty without a terrain.
@@ -61,7 +61,8 @@ pub(crate) struct LyingSnow {
 }
 
 impl LyingSnow {
-    /// Records the water that leaves the snow from the time `from_s` to `from_s + seconds`, s.
+    /// Records the water that leaves the snow from the time `from_s` to `from_s + seconds`, s, for each slot that this
+    /// span touches. Slots up to the last one recorded stay as they are.
     pub fn melts(&mut self, from_s: f64, seconds: f64, water: Meltwater) {
         let first = (from_s / MELT_SLOT_S).floor() as i64;
         let last = ((from_s + seconds) / MELT_SLOT_S).ceil() as i64;

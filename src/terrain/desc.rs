@@ -19,8 +19,8 @@ const MOST_M: f32 = 1e5;
 /// Lattice of a terrain, level and aligned to true north at its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainDesc {
-    /// Position of the south-western cell of tile (0, 0) in the host's world, m. All heights are relative to the height
-    /// of this position.
+    /// Position of the south-western cell of tile (0, 0) in the host's world, m, within 1e12 of the world's origin.
+    /// Default 0. All heights are relative to the height of this position.
     pub origin: DVec3,
     /// Distance between neighbouring cells, m, \[0.01, 10 000\]. Default 1.
     pub cell_m: f64,
@@ -154,8 +154,8 @@ pub struct TerrainCells<'a> {
     pub first: [u32; 2],
     /// Number of cells of the rectangle east and north; (0, 0) means the whole tile.
     pub size: [u32; 2],
-    /// Heights above the terrain's origin, m, within 1e5. If empty in an update, the heights stay. A hole may have any
-    /// value.
+    /// Heights above the terrain's origin, m, within 1e5. If empty in an update, the heights stay. A new tile needs
+    /// heights. A hole may have any value.
     pub heights_m: Rows<'a, f32>,
     /// Materials of the cells, `None` for a hole. If empty in an update, the materials stay. If empty in a new tile,
     /// all are unspecified.

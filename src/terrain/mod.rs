@@ -7,9 +7,10 @@
 //! from the origin in whole numbers, so rounding is the same near the origin and far from it.
 //!
 //! A cell has a height and a class, or it is a **hole**, where there is no ground. The host adds and removes tiles and
-//! changes rectangles of cells. The cost of a change depends only on the number of cells that it changes, not on the
-//! size of tile and terrain: a hash is a sum over cells. A change subtracts the hashes of the old cells from the sum
-//! and adds those of the new cells. The terrain and each tile have a **revision**, which grows with each change.
+//! changes rectangles of cells. The cost of such a change depends only on the number of cells in the rectangle, not on
+//! the size of tile and terrain: a hash is a sum over cells. A change subtracts the hashes of the old cells from the
+//! sum and adds those of the new cells. Only with [`TerrainCells::no_data_m`] does a change read all cells of the tile.
+//! The terrain and each tile have a **revision**, which grows with each change.
 //!
 //! Copies of a terrain share its tiles. A tile that changes while another copy of the terrain still uses it is copied
 //! once. This room depends on no effect: water, wind and queries all read the terrain. It has no settings, and no error

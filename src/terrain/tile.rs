@@ -21,7 +21,7 @@ pub(crate) struct Tile {
     pub revision: u64,
     /// Revision of the soil up to which the heights include the soil's changes; 0 for a new tile.
     pub soil_revision: u64,
-    /// Sum of the hashes of the tile's cells; equal for tiles with the same cells.
+    /// Sum of the hashes of the tile's cells; equal for tiles with the same heights and classes.
     pub hash: u64,
 }
 
@@ -131,7 +131,8 @@ impl Tile {
         self.dug_colors.get(cell).copied().unwrap_or_default()
     }
 
-    /// Sets a cell with the change of the soil. Returns whether its height or its colour has changed.
+    /// Sets the height of a cell, with the soil's change in it, and the colour of the soil that shows. Returns whether
+    /// height or colour has changed.
     pub fn set_dug(&mut self, dug: &DugCell) -> bool {
         let &DugCell { cell, height_m, color } = dug;
         let (moves, is_tinted) = (self.heights_m[cell] != height_m, self.dug_color(cell) != color);

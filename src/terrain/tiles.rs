@@ -177,7 +177,8 @@ impl Terrain {
         self.desc.origin + self.to_enu.transpose() * plan
     }
 
-    /// Adds a tile, or replaces the cells of the tile that has this key. Returns the cells that may have changed.
+    /// Adds a tile, or replaces the cells of the tile that has this key. Returns the tile's rectangle; `None` if no
+    /// cell has changed.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; then nothing changes.
@@ -218,7 +219,7 @@ impl Terrain {
         Ok(Some(rect))
     }
 
-    /// Replaces a rectangle of a tile's cells. Returns the cells that may have changed.
+    /// Replaces a rectangle of a tile's cells. Returns that rectangle on the lattice; `None` if no cell has changed.
     ///
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the field; then nothing changes.
@@ -378,7 +379,7 @@ impl Terrain {
         self.tile(slot as u32).heights_m[cell]
     }
 
-    /// Whether a cell has neighbours in other tiles.
+    /// Whether a cell lies at the border of its tile, whether or not the terrain has the tile beyond.
     pub fn is_at_border(&self, id: CellId) -> bool {
         let mask = (1usize << self.bits) - 1;
         let cell = self.split(id).1;
@@ -408,8 +409,9 @@ impl Terrain {
         (p.truncate() / self.desc.cell_m, p.z)
     }
 
-    /// Cells for bilinear interpolation at a position, with their weights. Cells without ground are left out. `None` if
-    /// the nearest cell has no ground.
+    /// Cells for bilinear interpolation at a position in cells east and north of the origin, with their weights. Cells
+    /// without ground are left out, and the weights of the others add up to 1. `None` if the nearest cell has no
+    /// ground.
     pub fn about(&self, cells: DVec2) -> Option<impl Iterator<Item = (CellId, f64)> + Clone + use<>> {
         if !cells.is_finite() || cells.abs().max_element() >= f64::from(1 << 30) {
             return None;
@@ -452,13 +454,15 @@ impl Terrain {
         })
     }
 
-    /// Height of the ground, m, at a position in cells east and north of the origin; `None` where there is no ground.
+    /// Height of the ground above the origin, m, at a position in cells east and north of the origin; `None` where
+    /// there is no ground.
     pub fn height_at(&self, cells: DVec2) -> Option<f64> {
         Some(self.facet_at(cells)?.height_m)
     }
 
-    /// Returns the height at a position in metres east and north of the origin, m, for flow over the ground. Outside
-    /// the rectangle of all tiles it is the height at the rectangle's border. `None` where there is no ground.
+    /// Returns the height of the ground above the origin, m, at a position in metres east and north of the origin, for
+    /// flow over the ground. Outside the rectangle of all tiles it is the height at the rectangle's border. `None`
+    /// where there is no ground.
     pub fn height_near(&self, place_m: DVec2) -> Option<f64> {
         let all = self.bounds?;
         let end = |v: [i32; 2], off: i32| DVec2::new(f64::from(v[0] - off), f64::from(v[1] - off));

@@ -55,7 +55,9 @@ impl Conditions {
     /// Cloud layers blend slot by slot: covers linearly, optical depth as tau / (tau + 10), which is nearly the share
     /// of the light that a cloud stops. While one overcast replaces another, the share of clear sky never exceeds that
     /// at the clearer end. Wind blends as a vector, so a turn by more than 90 degrees passes through a lull. The
-    /// geometry and optics of a layer are weighted by its amount at each end. Everything else is linear.
+    /// geometry and optics of a layer are weighted by its amount at each end. In the same way the kinds of snow are
+    /// weighted by its rate, the swell's period and direction by its height, and the host's cloud light by its weight.
+    /// Everything else is linear.
     pub fn lerp(&self, other: &Self, t: f64) -> Self {
         if t >= 1.0 {
             return *other;

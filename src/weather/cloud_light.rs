@@ -140,7 +140,8 @@ impl Conditions {
         (self.gathered() * (1.0 - clear)).min(1.0)
     }
 
-    /// Returns [`Conditions::cloud_light`] at an altitude, with only the clouds above it.
+    /// Returns [`Conditions::cloud_light`] at an altitude. Only the clouds above it dim the light; the clouds below
+    /// reflect light up, as the ground does.
     pub(crate) fn cloud_light_at(&self, cos_sun_zenith: f64, ground_albedo: f64, altitude_m: f64) -> CloudLight {
         let (fluxes, _) = self.fluxes_at(cos_sun_zenith, ground_albedo, altitude_m);
         let (o, weight) = (&self.cloud_light, self.said_share(altitude_m));
@@ -200,8 +201,9 @@ impl Conditions {
 
 /// Light that comes down at an altitude, as shares of the light above all clouds.
 struct Fluxes {
-    /// Share of the sun's beam that no cloud scattered; `beam` also contains light scattered nearly straight on.
+    /// Share of the sun's beam that no cloud scattered.
     direct: f64,
+    /// Share of the sun's beam that the two-stream fluxes keep in the beam ([`super::cloud_part::Met::beam_through`]).
     beam: f64,
     /// Share of the sun's beam that comes down scattered.
     diffuse: f64,
@@ -211,9 +213,10 @@ struct Fluxes {
 
 /// Light that comes down through the parts of layers above a place, as shares of the light above them all.
 struct FromAbove {
-    /// Share of the beam that passed a cloud unscattered; `beam_through` also contains light scattered nearly straight
-    /// on.
+    /// Share of the beam that met a cloud and was never scattered.
     through: f64,
+    /// Share of the beam that met a cloud and that the two-stream fluxes keep in the beam
+    /// ([`super::cloud_part::Met::beam_through`]).
     beam_through: f64,
     /// Share of the sky's light that met no cloud.
     clear: f64,

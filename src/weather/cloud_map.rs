@@ -22,17 +22,18 @@ pub struct CloudMap {
     pub cell_m: f64,
     /// Numbers of cells east and north, 1 to [`MAX_CLOUD_MAP_CELLS`].
     pub cells: [u32; 2],
-    /// Lowest and highest base of the layers that follow the map, m above the station, each in \[-1000, 20 000\].
+    /// Lowest and highest base of the layers that follow the map, m above the station, each in \[-1000, 20 000\], the
+    /// second not below the first.
     pub base_m: [f64; 2],
     /// Value of each cell, \[0, 1\], from west to east; rows from south to north.
     pub cover: Vec<f32>,
 }
 
 impl CloudMap {
-    /// Checks that every field is in range; the error names the one that is not.
+    /// Checks that every field is in range and that there is one value for each cell.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] naming the field.
     pub fn validate(&self) -> Result<()> {
         for (i, v) in self.first_m.into_iter().enumerate() {
             check_range(&format!("cloud_map.first_m[{i}]"), v, -1e7, 1e7, "m")?;

@@ -178,9 +178,12 @@ impl SlabPart<'_> {
 pub(super) struct Met {
     /// Share that meets the part's clouds.
     pub hit: f64,
-    /// Share that meets the part's clouds and passes unscattered; `beam_through` also contains light scattered nearly
-    /// straight on.
+    /// Share that meets the part's clouds and passes unscattered. The optical depths of broken clouds have a gamma
+    /// distribution.
     pub through: f64,
+    /// Share that meets the part's clouds and stays in the beam for the two-stream fluxes, in which light scattered
+    /// nearly straight on counts as unscattered (delta scaling). All these clouds are taken to have the mean optical
+    /// depth, so this share may be above or below `through`.
     pub beam_through: f64,
     /// Share that is reflected up.
     pub back: f64,

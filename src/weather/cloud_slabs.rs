@@ -122,7 +122,7 @@ fn slab(layer: &CloudLayer, kind: CloudKind, least_water_kg_m2: f64, wind: &Wind
     }
 }
 
-/// Returns the wind that carries a layer: its own, or the weather's at its middle.
+/// Returns the wind that carries a layer, m/s towards east and north: its own, or the weather's at its middle.
 fn carrying_wind(layer: &CloudLayer, thickness_m: f64, wind: &WindProfile) -> [f64; 2] {
     let Some(own) = layer.wind else { return wind.mean_at_height_m_s(layer.base_m + 0.5 * thickness_m) };
     let (sine, cosine) = libm::sincos(own.from_deg.to_radians());
@@ -148,9 +148,9 @@ fn rain_layer(layers: &[CloudLayer]) -> Option<usize> {
 /// high.
 ///
 /// Precipitation, snow included, needs cloud; only ice crystals fall from a clear sky. The layer from which
-/// precipitation falls holds at least [`water_path_for_rate_kg_m2`], and if the host named no cloud at all, an overcast
-/// at 600 m is added: nimbostratus, in showers towering cumulus, in drizzle stratocumulus (`rain_needs_cloud` false
-/// switches both off).
+/// precipitation falls holds at least [`water_path_for_rate_kg_m2`]. If the host named no cloud at all, an overcast at
+/// 600 m is added: stratocumulus in drizzle, else towering cumulus in showers, else nimbostratus. Both rules hold only
+/// if `rain_needs_cloud` is true.
 pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: bool) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     let p = &w.precipitation;
     let raining = p.rate_mm_h > 0.0 && p.kind != PrecipitationKind::IceCrystals;
@@ -176,8 +176,9 @@ pub(super) fn cloud_slabs(w: &Weather, wind: &WindProfile, rain_needs_cloud: boo
 /// First slots of low, middle and high clouds.
 const LEVEL_SLOTS: [usize; 3] = [0, 7, 11];
 
-/// Puts slabs, lowest first, into the slots of their level; if a level has more slabs than slots, the other levels give
-/// up slots. The slabs then ascend from slot to slot, and [`Conditions::cloud_light`] goes through them from the top.
+/// Puts slabs, lowest first, into the slots of their level. If a level has more slabs than slots, the other levels give
+/// up slots. In either case the bases ascend from slot to slot, and [`Conditions::cloud_light`] goes through the slots
+/// from the top.
 fn into_slots(mut slabs: Vec<CloudSlab>) -> [CloudSlab; MAX_CLOUD_LAYERS] {
     slabs.sort_by(|a, b| a.base_m.total_cmp(&b.base_m));
     let below = |limit_m: f64| slabs.partition_point(|s| s.base_m < limit_m);

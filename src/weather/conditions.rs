@@ -89,7 +89,7 @@ pub struct AerosolLayer {
     pub reference_altitude_m: f64,
 }
 
-/// A layer at the ground: full density below `top_m - softness_m`, none above `top_m`, smooth between.
+/// A layer at the ground: full density from `base_m` to `top_m - softness_m`, none above `top_m`, smooth between.
 ///
 /// If `extinction_per_m` is 0, there is no layer and the other fields have no meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -102,7 +102,7 @@ pub struct GroundLayer {
     pub single_scattering_albedo: f64,
     /// Asymmetry of the phase function.
     pub asymmetry: f64,
-    /// Base above the station, m.
+    /// Base above the station, m. With 0 or less, the layer also fills valleys below the station.
     pub base_m: f64,
     /// Top above the station, m.
     pub top_m: f64,
@@ -174,7 +174,8 @@ pub struct CloudLightOverride {
     pub diffuse: f64,
 }
 
-/// Mean wind as a neutral logarithmic profile over height.
+/// Mean wind: a neutral logarithmic profile over height up to 100 m. Above that, the wind turns towards the geostrophic
+/// wind ([`Self::mean_at_height_m_s`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindProfile {
     /// Velocity at 10 m towards the east, m/s (the direction in which the air moves).

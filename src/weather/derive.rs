@@ -18,8 +18,8 @@ pub fn derive(weather: &Weather) -> Result<Conditions> {
 /// Derives conditions as [`derive()`], with the host's values in place of some laws.
 ///
 /// The reported visibility V is total, so each component counts once. The extinction ln 20 / V is shared by air
-/// (Bodhaine et al. 1999), precipitation (drop and flake spectra, limited to what V leaves) and particles, which take
-/// the remainder.
+/// (Bodhaine et al. 1999), precipitation (drop and flake spectra, limited to what air leaves of the extinction) and
+/// particles, which take the remainder.
 ///
 /// # Errors
 /// As [`Weather::validate`] and [`Overrides::validate`].

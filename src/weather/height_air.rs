@@ -33,8 +33,8 @@ pub struct AirAtHeight {
 
 impl Conditions {
     /// Returns the air at an altitude above sea level, m. Temperature falls by 6.5 K/km up to 11 km, pressure follows
-    /// (ICAO Doc 7488), and the density of vapour falls by a factor e every 2 km (ITU-R P.835). Below the station the
-    /// laws continue downwards, by 1 km at most.
+    /// (ICAO Doc 7488), and the density of vapour falls by a factor e every 2 km (ITU-R P.835). The same laws give the
+    /// air down to 1 km below the station. A lower altitude gets the air at 1 km below the station.
     pub fn air_at_altitude_m(&self, altitude_m: f64) -> AirAtHeight {
         let station_m = self.air.station_altitude_m;
         let altitude_m = altitude_m.max(station_m - 1000.0);
@@ -46,7 +46,7 @@ impl Conditions {
         let below = libm::pow(bend_k / station_k, K_PER_M / LAPSE_K_PER_M);
         let above = libm::exp(-K_PER_M * (altitude_m - bend_m) / bend_k);
         let pressure_hpa = self.air.station_pressure_hpa * below * above;
-        // Vapour pressure is density times temperature.
+        // Vapour pressure is proportional to density times temperature.
         let thinner = libm::exp(-(altitude_m - station_m) / VAPOUR_SCALE_M);
         let vapour_hpa =
             self.air.relative_humidity * saturation_pressure_hpa(self.air.temperature_c) * thinner * here_k / station_k;

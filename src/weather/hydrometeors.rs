@@ -5,8 +5,8 @@
 ///
 /// The extinction is the integral of geometric optics (Q = 2) over the Marshall-Palmer (1948) distribution of drops
 /// from 0.1 to 6 mm. The distribution is scaled so that, at the fall speeds of Gunn and Kinzer (1949), the drops give
-/// the rate R. A cubic in ln R is fitted to the integral from 0.01 to 400 mm/h, within 0.7 % (tested). Below 0.01 mm/h
-/// the fit continues with its slope at 0.01 mm/h.
+/// the rate R. The logarithm of the integral is fitted by a cubic in ln R from 0.01 to 400 mm/h, within 0.7 % of the
+/// integral (tested). Below 0.01 mm/h the fit continues with its slope at 0.01 mm/h.
 pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [-8.093_669_161_877_56, 0.621_661_386_993_859_1, 5.708_736_555_017_379e-3, 6.728_417_057_882_727e-4],
@@ -16,8 +16,8 @@ pub fn rain_extinction_per_m(rate_mm_h: f64) -> f64 {
 }
 
 /// Returns the extinction of showers, 1/m: as for rain, with the thunderstorm distribution of Joss et al. (1968), whose
-/// slope is 3.0 R^-0.21 per mm. Its fewer and larger drops have about 0.6 of the extinction of steady rain. The fit is
-/// a quartic in ln R, within 0.7 % of the integral.
+/// slope is 3.0 R^-0.21 per mm. Its fewer and larger drops have about 0.6 of the extinction of steady rain. The
+/// logarithm of the fit is a quartic in ln R. The fit is within 0.7 % of the integral from 0.01 to 400 mm/h (tested).
 pub fn shower_extinction_per_m(rate_mm_h: f64) -> f64 {
     fitted(
         [
@@ -56,9 +56,9 @@ pub fn rain_rate_mm_h(extinction_per_m: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns the extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968), N0 = 30
-/// 000 per m^3 mm and the slope 5.7 R^-0.21 per mm. The fit is a power law from 0.1 to 1 mm/h, continued above 1 mm/h
-/// by a quartic in ln R, within 0.5 % of the integral up to 500 mm/h (tested).
+/// Returns the extinction of drizzle, 1/m: as for rain, with the drizzle distribution of Joss et al. (1968). This has
+/// N0 = 30 000 per m^3 mm and the slope 5.7 R^-0.21 per mm. The fit is a power law up to 1 mm/h. Above 1 mm/h the
+/// logarithm of the fit is a quartic in ln R. The fit is within 0.5 % of the integral from 0.1 to 500 mm/h (tested).
 pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     if rate_mm_h <= 0.0 {
         return 0.0;
@@ -67,7 +67,7 @@ pub fn drizzle_extinction_per_m(rate_mm_h: f64) -> f64 {
     5.575e-4 * libm::pow(rate_mm_h, 0.605) * libm::exp(x * x * (8.645e-3 + x * (-1.047e-3 + x * 1.3258e-4)))
 }
 
-/// Returns the extinction of snow, 1/m, at a melted rate.
+/// Returns the extinction of snow, 1/m, at a rate R in mm/h of melted water.
 ///
 /// Sizes follow Gunn and Marshall (1958): N0 = 3800 R^-0.87 and the slope Lambda = 2.55 R^-0.48 per mm of melted
 /// diameter. Flakes of the diameter D, mm, have the density 0.17 / D g/cm^3 (Holroyd 1971), so D^2 = Dm^3 / 0.17 with
@@ -83,22 +83,23 @@ const SNOW_AT_1_MM_H: f64 = 2.989_494e-3;
 /// 4 x 0.48 - 0.87.
 const SNOW_EXPONENT: f64 = 1.05;
 
-/// Returns the melted rate of snow, mm/h, whose extinction is `extinction_per_m`: the inverse of
+/// Returns the rate of snow, mm/h of melted water, whose extinction is `extinction_per_m`: the inverse of
 /// [`snow_extinction_per_m`].
 pub fn snow_rate_mm_h(extinction_per_m: f64) -> f64 {
     if extinction_per_m <= 0.0 { 0.0 } else { libm::pow(extinction_per_m / SNOW_AT_1_MM_H, 1.0 / SNOW_EXPONENT) }
 }
 
-/// Returns the extinction of ice pellets and small hail, 1/m: as for rain, for frozen raindrops ([`crate::rain::ice`]).
-/// A cubic in ln R from 0.1 mm/h on, within 1 % of the integral.
+/// Returns the extinction of ice pellets and small hail, 1/m: as [`rain_extinction_per_m`], but of frozen raindrops
+/// ([`crate::rain::ice`]). From 0.1 mm/h on, the logarithm of the fit is a cubic in the logarithm of the rate. The fit
+/// is within 1 % of the integral.
 pub fn ice_pellet_extinction_per_m(rate_mm_h: f64) -> f64 {
     let c = [-8.240_465_571_633_957, 0.742_613_523_695_101_4, -0.013_905_257_292_335_787, 0.001_826_927_515_728_196_2];
     fitted(c, 0.1, rate_mm_h)
 }
 
-/// Returns the extinction of hail, 1/m, for stones by Cheng and English (1983; [`crate::rain::ice`]). A quintic in ln R
-/// from 0.1 mm/h on, within 2 % of the integral. Beyond 37 mm/h, the rate at which their law gives the largest stones,
-/// the extinction is proportional to the rate.
+/// Returns the extinction of hail, 1/m, with the sizes of stones by Cheng and English (1983; [`crate::rain::ice`]).
+/// From 0.1 to 37 mm/h, the logarithm of the fit is a quintic in the logarithm of the rate, within 2 % of the integral.
+/// The law gives no larger stones above 37 mm/h, where the extinction is therefore proportional to the rate.
 pub fn hail_extinction_per_m(rate_mm_h: f64) -> f64 {
     const MOST_MM_H: f64 = 37.0;
     let c = [

@@ -28,7 +28,8 @@ macro_rules! kinds {
             /// Returns the variant whose number is `value`.
             ///
             /// # Errors
-            /// [`crate::Status::InvalidArgument`] naming the parameter and the accepted numbers.
+            /// [`crate::Status::InvalidArgument`] for any other number. The message names the parameter and the
+            /// accepted numbers.
             pub fn from_u32(value: u32) -> Result<Self> {
                 match value {
                     $($value => Ok(Self::$variant),)+
@@ -68,7 +69,8 @@ kinds! {
 kinds! {
     /// Fog and mist: suspended droplets at the ground.
     FogKind, "fog.kind" {
-        /// No fog; the aerosol accounts for the visibility.
+        /// No fog is named. Haze, dust, sand, smoke and volcanic ash account for any visibility. Other aerosols account
+        /// for 5 km and more; for less, `derive` adds mist.
         None = 0, "none";
         /// Mist (METAR BR): droplets, with a visibility of 1 to 5 km.
         Mist = 1, "mist";
@@ -102,9 +104,9 @@ kinds! {
         Cumulonimbus = 5, "cumulonimbus";
         /// Thick sheet that rains or snows.
         Nimbostratus = 6, "nimbostratus";
-        /// Middle sheet of rounded masses.
+        /// Sheet of rounded masses at middle heights.
         Altocumulus = 7, "altocumulus";
-        /// Middle grey sheet.
+        /// Grey sheet at middle heights.
         Altostratus = 8, "altostratus";
         /// High fibres of ice.
         Cirrus = 9, "cirrus";
@@ -204,7 +206,8 @@ kinds! {
 }
 
 impl PrecipitationKind {
-    /// Liquid share of the precipitation's mass if the report gives none: 1 for rain, 0 for ice, 0.5 for sleet.
+    /// Liquid share of the precipitation's mass if the weather gives none: 1 for rain and drizzle, 0.5 for sleet, 0 for
+    /// all other kinds.
     pub fn default_liquid_fraction(self) -> f64 {
         match self {
             Self::Drizzle | Self::Rain | Self::FreezingDrizzle | Self::FreezingRain => 1.0,

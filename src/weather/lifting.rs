@@ -24,8 +24,9 @@ pub fn carried(speed_m_s: f64) -> f64 {
 /// the matter is as uneven as the gusts.
 const CALM: [f64; 2] = [1e-3, 0.3];
 
-/// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\]: 0 where
-/// no gust lifts anything, 1 where only gusts do. Gusts have a normal distribution around the mean wind.
+/// Returns the ratio of the standard deviation of the amount that gusts carry to its mean, limited to \[0, 1\], and
+/// multiplied by a ramp over the mean amounts of `CALM`: 0 where no gust lifts anything. The ratio reaches its limit
+/// where gusts lift matter but the mean wind does not. Gusts have a normal distribution around the mean wind.
 pub fn unevenness(wind: &WindProfile) -> f64 {
     const STEPS: i32 = 60;
     let (mean, deviation) = (wind.speed_m_s(), wind.speed_m_s() * wind.turbulence_intensity);
@@ -64,8 +65,9 @@ pub fn blown_kg_m3(wind_m_s: f64, height_m: f64) -> f64 {
 
 /// Adds the layer of snow that the wind lifts, unless the weather already has a layer at the ground. Loose snow covers
 /// the share `covered` of the ground and moves in wind above `threshold_m_s`. The extinction is that of spheres with an
-/// efficiency of 2: 3 eta / (2 rho r), with the density eta of the snow in the air, the density rho of ice and the
-/// radius r.
+/// efficiency of 2: 3 eta / (2 rho r), with the density eta of the snow in the air at half the layer's depth (at most
+/// 2 m), the density rho of ice and the radius r. The extinction is multiplied by `covered`, and by
+/// 1 - (threshold / wind)^2, so that it begins at 0 at the threshold.
 pub(crate) fn lift_snow(c: &mut Conditions, threshold_m_s: f64, covered: f64) {
     let wind = c.wind.speed_m_s();
     if c.fog.extinction_per_m > 0.0 || wind <= threshold_m_s || covered <= 0.0 {

@@ -13,10 +13,10 @@ pub const MAX_CLOUD_LAYERS: usize = 16;
 pub struct Weather {
     /// Meteorological optical range, m: the distance at which 550 nm light falls to 5 % (WMO-No. 8, aviation use), at
     /// station height. The value is **total**: air, haze, fog, rain and snow together. Range [1, 1e6], default 40 000.
-    /// Above about 260 km the extinction would be below that of pure air, and that of the aerosol is 0.
+    /// A visibility above about 260 km would need less extinction than pure air has; the aerosol has then none.
     pub visibility_m: f64,
     /// Vertical visibility into an obscured sky, m. Range [0, 10 000], default none (the sky is not obscured).
-    /// With fog it sets the fog's depth.
+    /// It sets the depth of fog, and of mist with a `visibility_m` below 1 km.
     pub vertical_visibility_m: Option<f64>,
     /// Runway visual range, m: how far lights and markings are seen. Range [1, 10 000], default none.
     /// For information only: extinction follows `visibility_m`.
@@ -53,9 +53,11 @@ pub struct Weather {
 /// Particles suspended in the mixed layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aerosol {
-    /// Kind of the particles. Sets the values of the fields below where those are `None`.
+    /// Kind of the particles. Sets the values of the fields below where those are `None`. Blowing dust or sand replaces
+    /// every kind but haze, dust, sand, smoke and volcanic ash.
     pub kind: AerosolKind,
-    /// Angstrom exponent: extinction is proportional to wavelength^-exponent. Range [-1, 4]; default by kind.
+    /// Angstrom exponent: extinction is proportional to wavelength^-exponent. Range [-1, 4]; default by kind and
+    /// humidity.
     pub angstrom_exponent: Option<f64>,
     /// Single scattering albedo at 550 nm and ambient humidity. Range [0, 1]; default by kind and humidity.
     pub single_scattering_albedo: Option<f64>,
@@ -72,7 +74,8 @@ pub struct Aerosol {
 pub struct Fog {
     /// Kind of fog.
     pub kind: FogKind,
-    /// Top of the fog above the station, m. Range [0.1, 2000]; default by kind or from the vertical visibility.
+    /// Top of the fog above the station, m. Range [0.1, 2000]; default the top of lifted matter, else by kind,
+    /// visibility, vertical visibility and lowest cloud.
     pub top_m: Option<f64>,
     /// Share of the ground under fog. Range [0, 1]; default by kind: 1, or 0.4 for patches, 0.6 for partial fog.
     pub coverage: Option<f64>,
@@ -94,7 +97,8 @@ pub struct CloudLayer {
     pub thickness_m: Option<f64>,
     /// Kind of cloud.
     pub kind: CloudKind,
-    /// Liquid water or ice content, g/m^3. Range [0, 10]; default by kind.
+    /// Liquid water or ice content, g/m^3. Range [0, 10]; default by kind. Raised in the layer from which precipitation
+    /// falls, if the rate needs more.
     pub water_g_m3: Option<f64>,
     /// Effective radius of droplets or crystals, um. Range [1, 500]; default by kind.
     pub droplet_radius_um: Option<f64>,
@@ -178,7 +182,7 @@ pub struct Swell {
 /// The ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// State as observed; default from precipitation, temperature and snow depth.
+    /// State as observed; default from precipitation, temperature, humidity and snow depth.
     pub state: Option<SurfaceState>,
     /// Depth of lying snow, m. Range [0, 20], default 0.
     pub snow_depth_m: f64,
@@ -326,14 +330,15 @@ pub fn saturation_pressure_hpa(temperature_c: f64) -> f64 {
 }
 
 impl Weather {
-    /// Sets the humidity from a dew point (degrees Celsius). A dew point above the temperature counts as saturation.
-    /// The humidity is [`saturation_pressure_hpa`] at the dew point divided by its value at the air temperature.
+    /// Sets the humidity from a dew point (degrees Celsius): [`saturation_pressure_hpa`] at the dew point divided by
+    /// its value at the air temperature. A dew point above the temperature gives saturation, a humidity of 1.
     pub fn set_dew_point_c(&mut self, dew_point_c: f64) {
         let ratio = saturation_pressure_hpa(dew_point_c) / saturation_pressure_hpa(self.temperature_c);
         self.relative_humidity = ratio.clamp(0.0, 1.0);
     }
 
-    /// Returns the dew point, degrees Celsius (the inverse of [`saturation_pressure_hpa`]); -90 at humidity 0.
+    /// Returns the dew point, degrees Celsius (the inverse of [`saturation_pressure_hpa`]); -90 for a vapour pressure
+    /// below 1e-6 hPa, as at humidity 0.
     pub fn dew_point_c(&self) -> f64 {
         let e = saturation_pressure_hpa(self.temperature_c) * self.relative_humidity;
         if e < 1e-6 {

@@ -9,7 +9,7 @@ use super::{
 type SeenValue = [f64; 2];
 
 /// Lower limit of the reference value of quantities between 0 and 1: if other quantities may change by 5 %, these may
-/// change by 0.02.
+/// change by at least 0.02.
 const SHARE: f64 = 0.4;
 
 impl Conditions {
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::weather::{Weather, derive};
 
-    /// Weathers of two reports.
+    /// Conditions of two presets.
     fn two() -> [Conditions; 2] {
         ["clear", "thunderstorm"].map(|name| derive(&Weather::preset(name).expect("a preset")).expect("valid"))
     }
@@ -153,8 +153,8 @@ mod tests {
         assert!(!clear.is_near(&storm, 0.05) && !storm.is_near(&clear, 0.05));
     }
 
-    /// Frames of a sixth of a second of a change of ten seconds are near each other once the change is under way, and
-    /// those of a second are not.
+    /// In a change of ten seconds, weathers a sixth of a second apart are near each other once the change is under way,
+    /// and weathers a second apart are not.
     #[test]
     fn a_change_is_near_for_some_frames_and_not_for_long() {
         let [clear, hazy] = ["clear", "hazy"].map(|name| derive(&Weather::preset(name).unwrap()).unwrap());

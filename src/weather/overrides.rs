@@ -5,16 +5,19 @@ use crate::error::{Result, check_range};
 /// The host's own values in place of laws. `None` leaves the law in force; default all `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// Aerosol extinction at 550 nm and station height, 1/m, in place of its share in the visibility. Range [0, 10].
+    /// Aerosol extinction at 550 nm and station height, 1/m, in place of the share that the visibility gives the
+    /// aerosol. Range [0, 10].
     pub aerosol_extinction_per_m: Option<f64>,
-    /// Extinction inside the ground layer, 1/m, in place of the remainder of the visibility. Range [0, 10].
+    /// Extinction inside the ground layer, 1/m, in place of the share that the visibility gives the layer. Range
+    /// [0, 10].
     pub fog_extinction_per_m: Option<f64>,
-    /// Extinction of the precipitation, 1/m, in place of that computed from the spectra of drops and flakes. Range [0,
-    /// 10].
+    /// Extinction of the precipitation, 1/m, in place of that computed from the spectra of drops and flakes. Range
+    /// [0, 10].
     pub precipitation_extinction_per_m: Option<f64>,
-    /// Visibility of the air above mist or fog, m. Range [100, 1e6]; by law 5 km above mist, 10 km above fog.
+    /// Visibility of the air above mist or fog, m. Range [100, 1e6]; by law 10 km above fog or blowing snow, else 5 km.
     pub visibility_above_fog_m: Option<f64>,
-    /// Growth of the particles' extinction with humidity, relative to that at 80 %, in place of Haenel's law. Range
+    /// Ratio of the particles' extinction to that at a humidity of 80 %, in place of Haenel's law. It sets how far
+    /// water changes the optical properties of the particles; their extinction follows from the visibility. Range
     /// [0.1, 20]; 1 switches the growth off.
     pub humidity_growth: Option<f64>,
     /// Ratio of the air density at sea level to the standard atmosphere's. Range [0, 10].
@@ -23,8 +26,8 @@ pub struct Overrides {
     pub rayleigh_scale_height_m: Option<f64>,
     /// Whether rain adds water to clouds, and a cloud to a clear sky; by law it does.
     pub rain_needs_cloud: Option<bool>,
-    /// Share of the sun's beam below the clouds, and share of diffuse light, in place of the slabs' light. Range [0, 1]
-    /// each.
+    /// Share of the direct sunlight that passes the clouds, and diffuse light below them as a share of the light above
+    /// them, in place of the slabs' light. Range [0, 1] each.
     pub cloud_light: Option<(f64, f64)>,
     /// Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30].
     pub wave_height_m: Option<f64>,

@@ -102,7 +102,7 @@ fn is_dry(w: &Weather) -> bool {
 
 /// Returns the aerosol of the weather with a known `extinction_per_m` at station height. Swelling lowers the share of
 /// absorption (water does not absorb) and moves asymmetry and spectrum towards a droplet's, by the volume of water
-/// taken up.
+/// taken up. `swelling` replaces [`humidity_growth`] if it is given.
 pub(super) fn aerosol_layer(w: &Weather, extinction_per_m: f64, swelling: Option<f64>) -> AerosolLayer {
     let kind = effective_kind(w);
     let p = properties(kind);
@@ -165,9 +165,10 @@ fn sky_depth(depth: f64) -> f64 {
 /// Shares the extinction of aerosol and fog between the mixed layer and the ground layer. This extinction is
 /// max(0, ln 20 / V - air - precipitation), with the reported visibility V.
 ///
-/// Haze, dust, sand, smoke and ash take all of this extinction, as far as [`sky_depth`] allows. Other aerosols take at
-/// most the extinction that belongs to [`visibility_above_m`], because dry background air never gets hazier than that;
-/// the remainder is mist or fog, whether the report names it or not.
+/// Haze, dust, sand, smoke and ash take all of this extinction into the mixed layer, as far as [`sky_depth`] allows;
+/// blowing dust and sand take at most half. Other aerosols take at most the extinction that belongs to
+/// [`visibility_above_m`], because dry background air never gets hazier than that; the remainder is mist or fog,
+/// whether the report names it or not. If the visibility leaves out the ground layer, the mixed layer takes all.
 pub(super) fn share_extinction(w: &Weather, air: &Air, falling_per_m: f64, o: &Overrides) -> ExtinctionShares {
     let rayleigh = air.rayleigh_extinction_per_m;
     let rest = (LN_20 / w.visibility_m - rayleigh - falling_per_m).max(0.0);
@@ -203,9 +204,10 @@ fn lowest_base_m(w: &Weather) -> Option<f64> {
 ///
 /// Shallow fog ends at 2 m by definition (WMO-No. 306, MI); patches and partial fog end at 20 m. In an obscured sky,
 /// fog is deeper than the vertical visibility: its depth is taken as twice that, 150 to 600 m. Otherwise the sky shows
-/// through, and the fog is about one visibility deep, 20 to 150 m. Mist reaches up to the lowest cloud if its base is
-/// at most 600 m high, but at least 60 m; without such a cloud it reaches 300 m. Blowing snow reaches some tens of
-/// metres (Budd, Dingle and Radok 1966), drifting snow and dust stay below eye height, and spray reaches 10 m.
+/// through, and the fog is about one visibility deep, 20 to 150 m. Mist with a visibility of 1 km or more ends at the
+/// base of the lowest cloud, but not below 60 m; if no base is at 600 m or lower, it ends at 300 m. Mist with less
+/// visibility is as deep as fog. Blowing snow reaches 50 m (some tens of metres: Budd, Dingle and Radok 1966), drifting
+/// snow and dust stay below eye height at 1.5 m, and spray reaches 10 m.
 fn default_top_m(w: &Weather, ground_per_m: f64) -> f64 {
     let through = (LN_20 / ground_per_m.max(1e-9)).clamp(20.0, 150.0);
     match (w.fog.kind, w.lofted.kind) {
@@ -278,7 +280,7 @@ pub(super) fn ground_layer(w: &Weather, extinction_per_m: f64, aerosol: &Aerosol
     }
 }
 
-/// Returns the share of the ground layer that the wind lifts.
+/// Returns the share of the ground layer that the wind has lifted: 1 for lofted matter of any kind, else 0.
 fn lifted(w: &Weather) -> f64 {
     if w.lofted.kind == LoftedKind::None { 0.0 } else { 1.0 }
 }

@@ -63,7 +63,8 @@ impl BitOr for WeatherParts {
 }
 
 impl Conditions {
-    /// Returns the extinction that the low layer adds to the total, 1/m. Shallow or patchy fog adds none.
+    /// Returns the extinction that the low layer adds to the total, 1/m. A layer that the reported visibility leaves
+    /// out, such as shallow fog, adds none.
     fn counted_fog_per_m(&self) -> f64 {
         let others =
             self.air.rayleigh_extinction_per_m + self.aerosol.extinction_per_m + self.precipitation.extinction_per_m();

@@ -1,5 +1,5 @@
-//! `Falling`, the precipitation of [`super::Conditions`]: the rates of its species and their extinction, from a
-//! report's kind or a saved state.
+//! `Falling`, the precipitation of [`super::Conditions`]: the rates of its species and their extinction, from the kind
+//! and rate of a weather's precipitation, or from a saved state.
 
 use serde::{Deserialize, Serialize};
 
@@ -130,11 +130,11 @@ impl Falling {
     }
 }
 
-/// Share of a shower's water that falls as hail if the report names hail beside rain.
+/// Share of the water that falls as hail if the weather has hail beside precipitation of another kind.
 const HAIL_SHARE: f64 = 0.2;
 
-/// Returns rates of precipitation from the report's kind, liquid and frozen parts separately. Hail beside rain takes
-/// [`HAIL_SHARE`].
+/// Returns the rates of each species from the kind and rate of the precipitation. Hail beside another kind takes
+/// [`HAIL_SHARE`] of the rate, and the liquid fraction divides the rest.
 pub(super) fn falling(p: &Precipitation) -> Falling {
     use PrecipitationKind as K;
     let liquid = p.liquid_fraction.unwrap_or_else(|| p.kind.default_liquid_fraction());

@@ -201,7 +201,7 @@ fn sleet() -> Weather {
     under_nimbostratus(w, PrecipitationKind::Sleet, 2.0, 400.0)
 }
 
-/// Returns a weather with snowfall on lying snow.
+/// Returns `w` with snow that falls at `rate_mm_h` on `depth_m` of lying snow, from a nimbostratus at 500 m.
 fn snowing(w: Weather, rate_mm_h: f64, depth_m: f64) -> Weather {
     let surface = Surface { snow_depth_m: depth_m, ..Surface::default() };
     under_nimbostratus(Weather { surface, ..w }, PrecipitationKind::Snow, rate_mm_h, 500.0)
@@ -243,9 +243,9 @@ fn gale() -> Weather {
     Weather { clouds, wind, pressure_hpa: 985.0, ..day(20_000.0, 9.0, 0.7) }
 }
 
-/// Returns a storm of Beaufort 10: 24.5 to 28.4 m/s, waves of about 9 m (WMO-No. 306, section E), which is sea state 8
-/// (code table 3700), and spray that lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor at
-/// sea (Harper, Kepert and Ginger 2010, table 1.1).
+/// Returns a storm of Beaufort 10: 24.5 to 28.4 m/s, with waves of about 9 m (WMO-No. 306, section E). Such waves are
+/// sea state 8 (code table 3700). Spray lowers the visibility. The gust is 1.23 times the ten-minute mean, the factor
+/// at sea (Harper, Kepert and Ginger 2010, table 1.1).
 fn storm_at_sea() -> Weather {
     let clouds = vec![CloudLayer::of(CloudKind::Stratocumulus, 1.0, 500.0)];
     let wind = Wind { gust_m_s: Some(32.0), ..Wind::of(26.0, 250.0) };

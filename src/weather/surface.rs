@@ -13,9 +13,10 @@ const GUST_PEAK_FACTOR: f64 = 2.3;
 /// Acceleration of gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
 
-/// Roughness length of the sea, m, under a wind of `speed_10_m_s` at 10 m: Charnock (1955) with the constant 0.0144
-/// (Garratt 1977) plus the smooth-flow limit 0.11 nu / u*, with the air's kinematic viscosity nu and the friction
-/// velocity u*. The sum is solved together with the log law by repeated substitution.
+/// Returns the roughness length of the sea, m, under a wind of `speed_10_m_s` at 10 m: Charnock (1955) with the
+/// constant 0.0144 (Garratt 1977) plus the smooth-flow limit 0.11 nu / u*, with the air's kinematic viscosity nu and
+/// the friction velocity u*. The sum is solved together with the log law by repeated substitution. It is limited to
+/// \[1e-6, 0.1\].
 pub fn sea_roughness_length_m(speed_10_m_s: f64) -> f64 {
     let mut z0 = 1e-4;
     // Each round leaves about 0.2 of the error; after 20 rounds it is below the last bit that matters.
@@ -113,7 +114,8 @@ pub(crate) fn cover_under_rain(falling: &Falling, humidity: f64) -> (f64, f64) {
     (wetness_from_rain(liquid, humidity), puddles_from_rain(liquid))
 }
 
-/// Returns the ground as observed, else as precipitation maintains it. Freezing rain makes ice instead of a film.
+/// Returns the ground as observed, else as precipitation maintains it. Lying snow above 0 C keeps it at least half wet.
+/// Freezing rain makes ice instead of a film.
 pub(super) fn surface_cover(s: &Surface, air_c: f64, humidity: f64, falling: &Falling) -> SurfaceCover {
     let cover = |wetness, puddles, ice| SurfaceCover { wetness, puddles, ice, snow_depth_m: s.snow_depth_m };
     if let Some(state) = s.state {

@@ -29,7 +29,8 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// Returns the share of the change that has taken place at `t`: 3x^2 - 2x^3, with zero rate at both ends.
+    /// Returns the share of the change that has taken place at `t`: 3x^2 - 2x^3 with the elapsed share x of the
+    /// transition. Its rate is 0 at both ends.
     pub(crate) fn share(&self, t: f64) -> f64 {
         if t >= self.end_s() {
             return 1.0;
@@ -80,9 +81,9 @@ impl Timeline {
     /// `transition_s` (\[0, 3.2e7\] s; 0 is a cut).
     ///
     /// # Errors
-    /// [`Status::InvalidArgument`] naming the field, or for more than 1024 changes under way or to come;
-    /// [`Status::WrongOrder`] if it begins before the last update or before a change that was given earlier. The
-    /// timeline then stays as it was.
+    /// [`Status::InvalidArgument`] for a time out of range, which the message names, and for more than 1024 changes
+    /// under way or to come. [`Status::WrongOrder`] if the change begins before the last update or before a change that
+    /// was given earlier. After an error the timeline is as it was.
     pub fn change(&mut self, weather: Conditions, start_s: f64, transition_s: f64) -> Result<()> {
         check_range("start_time_s", start_s, -MAX_TIME_S, MAX_TIME_S, "s")?;
         check_range("transition_s", transition_s, 0.0, MAX_TRANSITION_S, "s")?;
@@ -109,7 +110,8 @@ impl Timeline {
         self.known_from_s
     }
 
-    /// Returns the conditions at simulation time `t`; before [`known_from_s`](Self::known_from_s) those of that time.
+    /// Returns the conditions at simulation time `t`. Before [`known_from_s`](Self::known_from_s) every forgotten
+    /// change is taken as complete.
     pub fn at(&self, t: f64) -> Conditions {
         let started = self.changes.iter().take_while(|c| c.start_s <= t);
         started.fold(self.base, |below, change| match change.share(t) {

@@ -88,7 +88,7 @@ const REMEMBERED: usize = 16;
 pub(crate) struct Remembered {
     /// Revision of the timeline for which the entries hold.
     revision: Cell<u64>,
-    /// Winds with the bits of their times; the oldest is overwritten first.
+    /// Winds with the bits of their times; if there is no room, the entries are overwritten in turn.
     winds: RefCell<Vec<(u64, Blowing)>>,
     /// Index of the entry that is overwritten next, modulo [`REMEMBERED`].
     next: Cell<usize>,

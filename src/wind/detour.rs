@@ -113,8 +113,8 @@ impl LevelWind<'_> {
 impl DetourMap {
     /// Creates the map of a grid of wind in the weather's wind. `ground_m` returns the ground's height above the grid's
     /// origin at a place in metres east and north of it, `weathers_m_s` the weather's wind at a height above ground.
-    /// `life_m` is the distance that free air travels in a patch's life, limited to a sixth of the grid, so that lags
-    /// are gone at its edges. `None` if no wind blows.
+    /// `life_m` is the distance that free air travels in a patch's life. It is limited here to a sixth of the grid, so
+    /// that lags are gone at the grid's edges. `None` if less than 0.2 m/s of wind enters the grid.
     pub fn new(
         volume: &WindVolume,
         ground_m: &dyn Fn(DVec2) -> f64,
@@ -311,8 +311,8 @@ mod tests {
         );
     }
 
-    /// A wall of 6 m in a field of 16 m delays only the air near the ground, and over a hill only the air near its
-    /// slopes.
+    /// A wall of 6 m in a grid 16 m high delays only the air near the ground. On ground as high as the wall it delays
+    /// no air.
     #[test]
     fn the_delay_by_an_obstacle_ends_above_it_and_follows_the_ground() {
         let wall = volume(WindGridKind::Whole, |p| {

@@ -36,10 +36,11 @@ pub struct WindGrid {
 }
 
 impl WindGrid {
-    /// Checks that every field is in range. The error names the field that is not.
+    /// Checks that every field is in range.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`].
+    /// [`crate::Status::InvalidArgument`] for a field out of range, or a number of velocities that is not that of the
+    /// nodes. The message names the field.
     pub fn validate(&self) -> Result<()> {
         if !(self.origin.is_finite() && self.origin.length() <= 1e12) {
             return Err(Error::range("wind_grid.origin_m", "finite and within 1e12 m", self.origin));

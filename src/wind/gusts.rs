@@ -21,7 +21,7 @@ const LENGTHS_M: [f64; 2] = [8.1 * SCALE_M, 2.7 * SCALE_M];
 pub(super) const ACROSS: f64 = 0.8;
 /// Length of the wave by which the direction wanders, m: three minutes in the light winds that wander.
 const WANDER_M: f64 = 600.0;
-/// Number of orders of the wander's series: J_13(pi) is 1e-8.
+/// Number of orders of the wander's series. The first order left out is at most J_13(pi), 5e-8.
 const ORDERS: usize = 12;
 
 /// One wave: amplitude x cos(wavenumber s + phase), with the path s in m and the phase in rad.

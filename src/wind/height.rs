@@ -16,7 +16,7 @@ pub(crate) fn up_share(height_m: f64) -> f64 {
 /// Wind at a height above ground, m/s (east, north, up).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindAt {
-    /// Velocity with gusts at this time.
+    /// Velocity with wander and gusts at this time.
     pub velocity_m_s: DVec3,
     /// Mean velocity over ten minutes.
     pub mean_m_s: DVec3,

@@ -47,8 +47,8 @@ const DRAWN_OUT: f64 = 0.85;
 /// Wind added to a layer's own to get the direction of its fibres, m/s (east, north): there is shear even in a calm.
 const SHEAR_M_S: DVec2 = DVec2::new(2.0, 0.0);
 
-/// Returns the direction along which a layer's fibres are stretched (east, north), as a vector of length 1. The vector
-/// is shorter where the direction is hardly defined.
+/// Returns the direction along which a layer's fibres are stretched (east, north), as a vector of nearly length 1. The
+/// vector is shorter where the layer's wind and the shear nearly cancel, so that the direction is hardly defined.
 pub(crate) fn stretch_toward(slab: &CloudSlab) -> DVec2 {
     let along = DVec2::from_array(slab.wind_m_s) + SHEAR_M_S;
     along / (along.length_squared() + 0.1).sqrt()
@@ -111,8 +111,8 @@ impl LayerDrifts {
         let (mut base, mut changes) = timeline.parts();
         let mut at = self;
         match changes.first() {
-            // A timeline that has forgotten nothing may have changes before time 0. Counting then starts at the first
-            // of them, with the drift that the steady wind before it has at that time.
+            // A timeline that has forgotten nothing may have changes before time 0. The integral then starts at the
+            // first of them, with the drift that the steady wind before it has at that time.
             Some(first) if timeline.known_since_ever() && t < first.start_s => changes = &[],
             Some(first) if timeline.known_since_ever() && first.start_s < at.time_s => {
                 at = at.onward(LayerChanges { base, active: &[] }, first.start_s);

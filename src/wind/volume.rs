@@ -1,9 +1,9 @@
 //! Wind that varies in space, in the one form that queries and shaders read, whether from a host's [`WindGrid`] or from
 //! a solved field.
 //!
-//! Each node has the share of the weather's wind that it replaces, and its own velocity times that share. The wind at a
-//! place is own + (1 - share) x the weather's wind. With share 1 the own velocity is the whole wind; with share 0 it is
-//! added to the weather's wind; shares between 0 and 1 blend the two.
+//! Each node has the share of the weather's wind that it replaces, and a velocity of its own. The wind at a place is
+//! own + (1 - share) x the weather's wind. With share 1 the own velocity is the whole wind; with share 0 it is added to
+//! the weather's wind; shares between 0 and 1 blend the two. The own velocity already contains its weight in the blend.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -23,7 +23,7 @@ pub(crate) struct WindVolume {
     pub cell_m: DVec3,
     /// Numbers of nodes east, north and up.
     pub nodes: [u32; 3],
-    /// Velocity (east, north, up), m/s, times the share, and the share. East varies fastest, then north, then up.
+    /// Own velocity (east, north, up), m/s, and the share. East varies fastest, then north, then up.
     pub values: Vec<[f32; 4]>,
     /// First and last time for which the wind holds, s; `None` for all times.
     pub holds_s: Option<[f64; 2]>,
@@ -95,7 +95,7 @@ impl WindVolume {
         ((cells - cells.clamp(DVec3::ZERO, last)) * self.cell_m).length()
     }
 
-    /// Returns velocity times share, and share, at a position in cells from the origin; `None` outside.
+    /// Returns the own velocity, m/s, and the share at a position in cells from the origin; `None` outside.
     pub fn at(&self, cells: DVec3) -> Option<DVec4> {
         let value = |i: usize| DVec4::from(self.values[i].map(f64::from));
         Some(about(self.nodes, cells)?.into_iter().map(|(i, weight)| value(i) * weight).sum())

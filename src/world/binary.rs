@@ -12,7 +12,7 @@ pub(crate) fn binary_text(bytes: &[u8]) -> String {
     text
 }
 
-/// Returns the bytes that [`binary_text`] wrote; `None` if the text is not such digits.
+/// Returns the bytes that [`binary_text`] wrote; `None` for a text that it cannot have written.
 pub(crate) fn text_binary(text: &str) -> Option<Vec<u8>> {
     let mut values = [u8::MAX; 256];
     DIGITS.iter().zip(0..).for_each(|(digit, value)| values[usize::from(*digit)] = value);

@@ -22,7 +22,8 @@ pub(super) fn color_columns(planet: &Planet) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|k| [0, 1, 2].map(|c| conversion.matrix[c][k] / white[c] * lux))
 }
 
-/// Returns the colour of light, given as factors of sunlight at the planet's wavelengths.
+/// Returns the colour of light whose `spectrum` holds factors of the sunlight at the planet's wavelengths. `columns`
+/// are the colours of [`color_columns`].
 pub(crate) fn color_of(columns: &[[f64; 3]; 3], spectrum: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|k| columns[k][i] * spectrum[k]).sum())
 }

@@ -16,7 +16,7 @@ pub(super) struct DetourInputs {
     pub terrain: u64,
     /// Weather's wind (east, north) at 2 m and 20 m above ground, m/s.
     pub weathers_m_s: [DVec2; 2],
-    /// Distance that a patch of the weather's low layer drifts during its life, m.
+    /// Distance that a patch of the weather's low layer drifts during its life, m: taken as the size of a patch.
     pub life_m: f64,
 }
 

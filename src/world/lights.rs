@@ -32,7 +32,7 @@ const SNOW_ALBEDO: f64 = 0.82;
 /// light of a clear sky by less than a hundredth.
 const SNOW_STEPS: f64 = 16.0;
 
-/// Reflectance for light from above of the land with its snow.
+/// Reflectance of the land with its snow, for light from above.
 pub(super) struct LandSeen {
     /// Share of the land that snow covers.
     pub snow: f64,
@@ -91,6 +91,9 @@ pub(super) type UnderClouds = (Light, CloudLight);
 impl World {
     /// Returns sun and moon over `place` at simulation time `time_s`, under the weather `c` over land of the given
     /// albedo.
+    ///
+    /// # Errors
+    /// [`crate::Status::InvalidArgument`] if universal time then lies outside the almanac's years.
     pub(super) fn lights_over(
         &self,
         place: &Place,

@@ -2,9 +2,9 @@
 //! moon, the wind, and the host's shelters, occluder maps and lamps. The world names no effect. Effects with a state of
 //! their own are advanced along with the world ([`HeldEffect`]).
 //!
-//! Everything here is a function of (description, timeline, time, position): two worlds with the same input give the
-//! same answers on every machine, except that the sun's direction may differ by 1e-14 (`src/almanac/celestial.rs`). No
-//! device and no frame is needed.
+//! Everything here is a function of the description, the host's settings, the timeline, the states that effects
+//! publish, time and position. Two worlds with the same input give the same answers on every machine, except that the
+//! sun's direction may differ by 1e-14 (`src/almanac/celestial.rs`). No device and no frame is needed.
 
 mod air;
 mod binary;

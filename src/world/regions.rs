@@ -18,8 +18,8 @@ impl World {
     /// Replaces the rain areas.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`], or naming the field; the areas then stay as they
-    /// were.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_AREAS`] areas, and for a field out of range, which the
+    /// message names. The areas then stay as they were.
     pub fn set_regions(&mut self, areas: &[RainArea]) -> Result<()> {
         if areas.len() > MAX_AREAS {
             return Err(Error::range("rain_areas", &format!("at most {MAX_AREAS}"), areas.len()));
@@ -82,8 +82,8 @@ impl World {
     /// Replaces the weather regions.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] for more than [`MAX_WEATHER_REGIONS`], or naming the field; the regions then
-    /// stay as they were.
+    /// [`crate::Status::InvalidArgument`] for more than [`MAX_WEATHER_REGIONS`] regions, and for a field out of range,
+    /// which the message names. The regions then stay as they were.
     pub fn set_weather_regions(&mut self, regions: &[WeatherRegion]) -> Result<()> {
         if regions.len() > MAX_WEATHER_REGIONS {
             return Err(Error::range("weather_regions", &format!("at most {MAX_WEATHER_REGIONS}"), regions.len()));

@@ -37,7 +37,8 @@ pub(crate) struct SavedWorld {
     /// north, m.
     drifted: [f64; 4],
     /// Drifts of the cloud layers at the time of `drifted`, one for each slot of a layer: way east and north, in units
-    /// of the distance between clouds, and number of lives of clouds since time 0. Empty at time 0.
+    /// of the distance between clouds, and number of lives of clouds since time 0. Empty if no change has been
+    /// forgotten.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     layers_drifted: Vec<[f64; 3]>,
     /// Values that the context's description fixed.
@@ -95,7 +96,7 @@ fn layers_drifted_from(saved: &[[f64; 3]], time_s: f64) -> Result<LayerDrifts> {
     Ok(drifts)
 }
 
-/// Returns the drifts of the cloud layers as numbers; none at time 0.
+/// Returns the drifts of the cloud layers as numbers; none if no change has been forgotten, as all drifts are then 0.
 fn saved_layers(drifts: &LayerDrifts) -> Vec<[f64; 3]> {
     if *drifts == LayerDrifts::ZERO {
         return Vec::new();

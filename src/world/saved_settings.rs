@@ -1,4 +1,4 @@
-//! Saved settings of a context other than weather and time.
+//! Settings of a context, except its weather and time, in a saved state.
 
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ pub(super) struct SavedSettings {
     cloud_map: Option<SavedCloudMap>,
 }
 
-/// Settings of a context other than weather and time.
+/// Settings of a context, except its weather and time, read from a saved state and checked.
 pub(super) struct SetBeside {
     pub exposure: Exposure,
     pub tone: Option<ToneCurve>,

@@ -309,8 +309,9 @@ impl World {
         Ok((scene.ground.total_lux / LUX_PER_W_M2).round())
     }
 
-    /// Returns where a position lies on the map, m east and north of the world's origin. `local` is the local frame of
-    /// the position.
+    /// Returns where a position lies on the world's map, m east and north of the world's origin. On a round planet the
+    /// map is equirectangular, with lengths true at the latitude of the origin. `local` is the local frame of the
+    /// position.
     pub fn map_place(&self, position: DVec3, local: &LocalFrame) -> [f64; 2] {
         let p = &local.place;
         let o = &self.frame.origin;
@@ -327,12 +328,14 @@ impl World {
         }
     }
 
-    /// Returns where a position in the host's world lies on the map, m east and north of the world's origin.
+    /// Returns where a position in the host's world lies on the map of [`World::map_place`], m east and north of the
+    /// world's origin.
     pub fn map_at(&self, position: DVec3) -> DVec2 {
         DVec2::from_array(self.map_place(position, &self.frame.frame_at(position)))
     }
 
-    /// Returns the position in the host's world of a place on the map: the inverse of [`World::map_at`].
+    /// Returns the position in the host's world of a place on the map, at an altitude: the inverse of
+    /// [`World::map_at`].
     pub fn position_on_map(&self, map_m: DVec2, altitude_m: f64) -> DVec3 {
         let o = &self.frame.origin;
         if self.frame.kind == WorldKind::Flat {

@@ -166,7 +166,8 @@ impl World {
     /// Returns the weather at a time outside all regions, with the snow that its wind lifts from the snow lying now.
     ///
     /// # Errors
-    /// [`crate::Status::InvalidArgument`] if the time is not finite, out of range or forgotten.
+    /// [`crate::Status::InvalidArgument`] if the time is out of range or not finite, or if the weather at the time is
+    /// forgotten.
     pub fn weather_outside(&self, time_s: f64) -> Result<Conditions> {
         self.over().check_time(time_s)?;
         Ok(self.with_lifted_snow(self.timeline.at(time_s)))

@@ -36,8 +36,8 @@ impl World {
         Arc::new(HostWind { grid, volume })
     }
 
-    /// Returns the detours around a camera at `eye`: how far the air lags behind the wind's displacement. `None` where
-    /// no patches of the weather's low layer show them.
+    /// Returns the detours around a camera at `eye`: how far the air lags behind the wind's displacement. `None`
+    /// without a wind that varies in space, and where no patches of the weather's low layer show the detours.
     pub fn detour(&self, eye: DVec3, c: &Conditions, time_s: f64) -> Option<Detour> {
         // A fog law of the host replaces the weather's low layer, and with it the patches.
         if self.set.undimmed || !c.fog.is_patchy() {
@@ -94,8 +94,8 @@ impl World {
         })
     }
 
-    /// Returns the wind that carries particles falling past a place, m/s (east, north, up): the wind at 10 m with its
-    /// gusts, or the wind that varies in space where there is one.
+    /// Returns the wind that carries particles falling past a place, m/s (east, north, up): the weather's wind at 10 m
+    /// with its gusts, replaced or changed by the wind that varies in space where there is one.
     ///
     /// # Errors
     /// As [`World::weather_at`].

@@ -120,7 +120,8 @@ fn agrees_with_pictures(mut host: Host) {
                 for (i, (d, _, texel)) in level.all().skip(face * stride).take(stride).enumerate() {
                     // Only the picture has discs.
                     let is_disc = [light.sun, light.moon].iter().any(|l| d.angle_between(l.apparent) < 0.04);
-                    // Only the picture has bows of fog and rain, on the side away from the light.
+                    // The frame that looks at face 0 drew all faces. Its picture does not reach the bows of fog and
+                    // rain, so these faces lack the bows. Later pictures have them, on the side away from the light.
                     let is_bow = w >= 3 && d.dot(light.sun.apparent) < 0.0;
                     if is_disc || is_bow {
                         continue;

@@ -19,7 +19,7 @@ impl Kit {
     ///
     /// # Errors
     /// [`Status::DeviceLost`] if the GPU does not finish. [`Status::WrongOrder`] if nothing was drawn; the next call
-    /// tries again.
+    /// tries again. GPU faults.
     pub(super) fn begin(&self, build: &Build) -> Result<()> {
         let caps = self.device.caps();
         if caps.backend != wgpu::Backend::Gl || self.begun.load(Ordering::Acquire) {

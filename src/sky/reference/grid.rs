@@ -105,8 +105,8 @@ fn invert(value: f64, mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Directions over which radiance is integrated at one altitude: cosines of the zenith angle, with weights. The rule is
-/// Gauss's in the square root of the difference from the horizon's cosine, on each side of the horizon. Radiance has a
-/// steep gradient and a step there.
+/// Gauss's in the square root of the difference from the horizon's cosine, on each side of the horizon. At the horizon
+/// radiance has a steep gradient and a step.
 pub fn zenith_rule(medium: &Medium, altitude_m: f64, rule_below: &Gauss, rule_above: &Gauss) -> Vec<(f64, f64)> {
     let horizon = horizon_mu(medium, altitude_m);
     let side = |rule: &Gauss, far: f64| -> Vec<(f64, f64)> {

@@ -27,7 +27,7 @@ pub struct Sample {
 pub struct Cutting<'a> {
     /// Altitudes at which panels end, ascending; the first is 0, the last the top of the air.
     pub altitudes_m: &'a [f64],
-    /// Quadrature rule inside a panel.
+    /// Quadrature rule inside a panel, of at most 32 nodes.
     pub rule: &'a Gauss,
     /// Optical depth below which panels are not halved any more.
     pub panel_depth: f64,
@@ -35,8 +35,8 @@ pub struct Cutting<'a> {
 
 /// Optical depth beyond which the air hides everything (e^-46 = 1e-20).
 const BLACK: f64 = 46.0;
-/// Largest number of halvings of a panel. On any accepted planet, each of 2^24 pieces of the longest panel is shorter
-/// than a metre.
+/// Largest number of halvings of a panel. Each of 2^24 pieces of the longest panel is shorter than a metre on the
+/// Earth, and at most 140 m long on the largest planet that is accepted.
 const MAX_HALVINGS: u32 = 24;
 
 /// Fills `samples` (cleared first) with the samples of `ray` between the two distances of `span`, and returns each

@@ -43,8 +43,8 @@ pub enum Orders {
     /// Exactly this many, `[1, 1e4]`; the ground counts as a scatterer.
     Exactly(usize),
     /// Orders until the tail is a smaller share of the light than `tolerance`, `(0, 0.1]`, but at most `limit` orders.
-    /// Every grid point that has more than 1e-9 of the brightest one's light must fulfil this. The tail is estimated
-    /// from the last two orders as a geometric series, and is then added.
+    /// The tail is the light of all higher orders. Every grid point that has more than 1e-9 of the brightest one's
+    /// light must fulfil this. The tail is estimated from the last two orders as a geometric series, and is then added.
     Converged {
         /// Largest share of the light that the added tail may have.
         tolerance: f64,
@@ -217,7 +217,8 @@ impl Reference {
         self.orders
     }
 
-    /// Share of the tail in the light, estimated as a geometric series, at the grid point where it is largest.
+    /// Share of the tail (the light of the orders that were not computed one by one) in the light, estimated as a
+    /// geometric series, at the grid point where it is largest. 0 if fewer than 3 orders were computed.
     pub fn tail(&self) -> f64 {
         self.tail
     }

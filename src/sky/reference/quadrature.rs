@@ -13,7 +13,7 @@ pub struct Gauss {
     pub running: Vec<f64>,
 }
 
-/// Rule for smooth panels of optical paths.
+/// Rule with 16 nodes, for smooth panels of optical paths.
 pub static GAUSS_16: LazyLock<Gauss> = LazyLock::new(|| Gauss::new(16));
 
 impl Gauss {
@@ -102,7 +102,8 @@ pub fn cubic_weights(x: f64) -> [f64; 4] {
     [-a * b * c / 6.0, x * b * c / 2.0, -x * a * c / 2.0, x * a * b / 6.0]
 }
 
-/// Index of the lower neighbour and the share of the upper one, for linear interpolation among `n` nodes (at least 2).
+/// Index of the lower neighbour and the share of the upper one, for linear interpolation at `x` among `n` nodes (at
+/// least 2), otherwise as [`cubic`].
 pub fn linear(x: f64, n: usize) -> (usize, f64) {
     let x = x.clamp(0.0, (n - 1) as f64);
     let i = (x as usize).min(n - 2);

@@ -15,8 +15,8 @@ pub fn sun_transmittance(medium: &Medium, altitude_m: f64, mu_s: f64) -> [f64; 3
 }
 
 /// Samples of the sun's zenith angle over its disc, with their shares. The disc is cut into strips parallel to the
-/// horizon by the Gauss-Chebyshev rule of the second kind, which is exact for polynomials. With one strip the sun is a
-/// point.
+/// horizon by the Gauss-Chebyshev rule of the second kind, which is exact for polynomials of degree below twice the
+/// number of strips. With one strip the sun is a point.
 pub fn disc_strips(sun_zenith: f64, angular_radius: f64, strips: usize) -> Vec<(f64, f64)> {
     let n = strips.max(1);
     (1..=n)
@@ -80,7 +80,8 @@ impl SunTable {
 }
 
 /// Light scattered once into a ray by gas and by haze, without the phase functions, per unit irradiance of the sun.
-/// `samples` are those of the ray, with panels cut at the edges of the `shadow`.
+/// `samples` are those of the ray, with panels cut at the edges of the `shadow`. `sun` takes an altitude, m, and the
+/// cosine of the sun's zenith angle there, and returns the transmittance to the sun.
 pub fn scattered_once(
     ray: &Ray,
     samples: &[Sample],

@@ -99,8 +99,8 @@ fn cot(angle: f64) -> f64 {
 /// surface and ca the adhesion; Ng, Nc, Nq and Na are their factors.
 ///
 /// # Errors
-/// [`crate::error::Status::InvalidArgument`] naming a field of `inputs` outside its range. The three angles together
-/// must be at most pi - 0.05, and `friction` at least 0.01 if `soil_metal` is not 0.
+/// [`crate::error::Status::InvalidArgument`] naming a field of `inputs` outside its range. `rake`, `soil_metal` and
+/// `friction` together must be at most pi - 0.05, and `friction` at least 0.01 if `soil_metal` is not 0.
 pub fn cutting_force(inputs: &CuttingInputs) -> Result<CuttingForce> {
     inputs.validate()?;
     let failure = inputs.failure();

@@ -46,9 +46,9 @@ impl Amount {
 const UNKNOWN_COVER: f64 = 3.5 / 8.0;
 
 /// Returns the rule that a station follows, by its location indicator (ICAO Doc 7910). Sums hold in the United States
-/// with its territories and in Canada (K, C; P for Alaska, Hawaii and the Pacific islands, except Kiribati's PC and PL;
-/// TI, TJ; NSTU, MUGM); elsewhere each layer counts by itself. American bases abroad follow their own handbook under
-/// the host country's letters, and cannot be recognised.
+/// with its territories and in Canada, where indicators begin with K, C, TI, TJ, NSTU, MUGM or P (Alaska, Hawaii and
+/// the Pacific islands, without Kiribati's PC and PL). Elsewhere each amount is that of its layer alone. American bases
+/// abroad follow their own handbook under the host country's letters, and cannot be recognised.
 pub(super) fn rule_of(station: &str) -> CloudAmountRule {
     let under = |prefixes: &[&str]| prefixes.iter().any(|p| station.starts_with(p));
     let american = under(&["K", "C", "P", "TI", "TJ", "NSTU", "MUGM"]) && !under(&["PC", "PL"]);

@@ -24,14 +24,15 @@ pub const ASSUMED_FIELDS: [&str; 12] = [
 /// Relative humidity for a report without a dew point.
 const HUMIDITY: f64 = 0.7;
 
-/// Temperature assumed if snow falls or is blown, or if drops freeze, C.
+/// Highest temperature that is assumed if snow without rain, snow grains, ice pellets or ice crystals fall, snow is
+/// blown, or drops freeze, C.
 ///
 /// Below -0.4 C more snow than rain falls at 97.5 % of 6883 stations of the northern hemisphere (Jennings, Winchell,
 /// Livneh and Molotch 2018, Nature Communications 9, 1148). Freezing rain, freezing drizzle and ice pellets occur most
 /// often slightly below 0 C (Cortinas, Bernstein, Robbins and Strapp 2004, Weather and Forecasting 19, 377).
 const FROZEN_C: f64 = -1.0;
-/// Temperature assumed if rain and snow fall together, or an instrument cannot tell them apart, C. On average over the
-/// same stations, both are equally likely at this temperature (Jennings et al. 2018).
+/// Highest temperature that is assumed if rain and snow fall together, or an instrument cannot tell them apart, C. On
+/// average over the same stations, both are equally likely at this temperature (Jennings et al. 2018).
 const MIXED_C: f64 = 1.0;
 
 /// Returns the upper bound that a group of weather sets to the temperature, C; `None` without one.
@@ -58,7 +59,8 @@ fn temperature_of_dew_c(dew_c: f64) -> f64 {
 /// Adds the names of assumed fields to `assumed`.
 ///
 /// A missing temperature is 15 C, or follows from the dew point at a humidity of 70 %. It is at most the bound that the
-/// weather sets, but not below the reported dew point.
+/// weather at the station sets, but not below the reported dew point, and at most 60 C. Without a dew point the
+/// humidity is 70 %.
 pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mut Vec<&'static str>) {
     if let Some(t) = p.temperature_c {
         w.temperature_c = t;
@@ -80,7 +82,7 @@ pub(super) fn temperature_and_humidity(p: &Parsed, w: &mut Weather, assumed: &mu
 
 /// Returns the largest visibility that the present weather allows if the report gives none, m: 1 km in fog and in dust
 /// and sand storms; 5 km in mist, haze, smoke, volcanic ash, dust and sand (WMO-No. 306, code table 4678 and 15.8.17);
-/// infinite otherwise. Shallow, patchy, partial and drifting phenomena set no bound.
+/// infinite otherwise. Phenomena that are shallow, patchy, partial, drifting or only in the vicinity set no bound.
 pub(super) fn visibility_bound_m(p: &Parsed) -> f64 {
     use {Descriptor as D, Phenomenon as P};
     let bound = |g: &WeatherGroup| {

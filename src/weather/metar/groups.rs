@@ -16,7 +16,7 @@ const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// Hectopascals in an inch of mercury (ICAO, at 0 C).
 const INCH_HG_HPA: f64 = 33.8639;
 
-/// A figure that slashes may mark as missing.
+/// A figure of a report; `None` if slashes or the letter M mark it as missing, or the report leaves it out.
 pub(super) type Reading<T> = Option<T>;
 
 /// Reads all of `text` as a number of 1 to 6 digits.
@@ -50,14 +50,16 @@ pub(super) struct WindGroup {
     pub variable: bool,
 }
 
-/// Reads the speed of a wind: two or three digits, or P and digits for "more than".
+/// Reads the speed of a wind in the group's unit: two or three digits. P before them means "more than", and the digits
+/// are then taken as the speed.
 fn speed(text: &str) -> Option<f64> {
     let figures = text.strip_prefix('P').unwrap_or(text);
     if (2..=3).contains(&figures.len()) { digits(figures).map(f64::from) } else { None }
 }
 
 /// Reads a wind: `24009KT`, `18018G31KT`, `VRB02KT`, `02003MPS`, `24109G120KT`, `270P99KT`. The outer `None` is "not a
-/// wind", the inner one a missing wind (`/////KT`). Figures that are all zeros, however many, mean calm.
+/// wind", the inner one a missing wind (`/////KT`). Up to six zeros mean calm. A group with a speed above 120 m/s, or
+/// with a gust below the speed or above 150 m/s, is not a wind.
 pub(super) fn wind(text: &str) -> Option<Reading<WindGroup>> {
     let (figures, unit) = [("KT", KNOT_M_S), ("MPS", 1.0), ("KMH", 1.0 / 3.6), ("KPH", 1.0 / 3.6)]
         .iter()
@@ -99,8 +101,8 @@ pub(super) struct VisibilityGroup {
 }
 
 /// Reads `0150`, `9999`, `4500NDV`, `4500SW` (older reports), `12KM`; the inner `None` is missing (`////NDV`). 0000
-/// means below 50 m and becomes 25 m. 9999, also in a direction, and 10KM are lower bounds; larger numbers of
-/// kilometres are exact.
+/// means below 50 m and becomes 25 m. 9999, also in a direction, becomes 10 km. It and 10KM are lower bounds; other
+/// numbers of kilometres are exact.
 pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> {
     if text == "////NDV" {
         return Some(None);
@@ -122,7 +124,8 @@ pub(super) fn visibility_metres(text: &str) -> Option<Reading<VisibilityGroup>> 
 
 /// Reads `10SM`, `P6SM`, `1/2SM`, `M1/4SM` in statute miles; `whole` is the previous word if it is a number of miles.
 /// 10 is a lower bound, because automatic stations measure no further and most observers report no more (FMH-1, table
-/// 12-1); 11 and more are exact. A figure with M (less than) counts as the figure itself. The inner `None` is missing
+/// 12-1); 11 and more are exact. A figure with M (less than) is read as the figure itself, and one with P as a lower
+/// bound. The visibility is at least 25 m. More than 500 miles are no visibility. The inner `None` is missing
 /// (`////SM`).
 pub(super) fn visibility_miles(whole: Option<&str>, text: &str) -> Option<Reading<VisibilityGroup>> {
     let figures = text.strip_suffix("SM")?;
@@ -239,7 +242,8 @@ pub(super) fn cloud(text: &str) -> Option<CloudGroup> {
 /// Range of temperatures accepted in a report, C: the range of `Weather::temperature_c`.
 const CELSIUS: RangeInclusive<f64> = -90.0..=60.0;
 
-/// Reads a temperature: two digits, with M (or a minus) for below zero, or missing.
+/// Reads a temperature of two digits, with M or a minus before them if it is below zero. The inner `None` is missing
+/// (`//`, `XX`, `M`, `MM` or nothing).
 fn celsius(text: &str) -> Option<Reading<f64>> {
     if matches!(text, "//" | "" | "XX" | "M" | "MM") {
         return Some(None);
@@ -264,7 +268,7 @@ pub(super) fn temperatures(text: &str) -> Option<(Reading<f64>, Reading<f64>)> {
     if text.len() > 2 { Some((celsius(t)?, celsius(d)?)) } else { None }
 }
 
-/// Reads `Q1009`, `Q998`, `A2986`, `Q////`: pressure at sea level, hPa.
+/// Reads `Q1009`, `Q998`, `A2986`, `Q////`: pressure at sea level, hPa, from 800 to 1100.
 pub(super) fn pressure(text: &str) -> Option<Reading<f64>> {
     let (unit, figures) = split(text, 1)?;
     let factor = match unit {

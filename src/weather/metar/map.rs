@@ -16,10 +16,12 @@ const ASSUMED_BASE_M: f64 = 600.0;
 /// Vertical visibility of an obscured sky without a figure, m.
 const ASSUMED_VERTICAL_M: f64 = 60.0;
 
-/// Returns the rates for light, moderate and heavy, mm/h: the middles of the classes (the heavy class is open).
+/// Returns the rates for light, moderate and heavy precipitation, mm/h: about the middles of the classes (the heavy
+/// class is open).
 ///
 /// Rain: AMS Glossary (bounds 2.5 and 7.6 mm/h). Showers: WMO-No. 8 (2.5, 10 and 50). Drizzle: AMS (0.3 and 0.5). Snow
-/// in melted water: Rasmussen et al. 1999 (1.0 and 2.5), used only if visibility does not give the rate.
+/// in melted water: Rasmussen et al. 1999 (1.0 and 2.5). The row of snow is not used: [`snow_rate_mm_h`] computes that
+/// rate from the visibility.
 fn class_rate_mm_h(kind: PrecipitationKind, convective: bool) -> [f64; 3] {
     use PrecipitationKind as K;
     match kind {
@@ -58,15 +60,17 @@ fn class(intensity: Intensity) -> usize {
     }
 }
 
-/// Returns the melted rate of snow, mm/h: the one that gives the reported visibility. `extinction_per_m` is the
-/// extinction of this visibility minus that of the air. If fog or blowing snow take part (`shared`), snow gets six
-/// tenths of it. The rate is limited to the bounds of the reported intensity.
+/// Returns the rate of snow that gives the reported visibility, mm/h of melted water. `extinction_per_m` is the
+/// extinction of this visibility minus that of the air. `shared` says that the report also names fog, mist or any
+/// matter lifted by the wind: snow then gets six tenths of the extinction. The rate is limited to the bounds of the
+/// reported intensity.
 fn snow_rate_mm_h(intensity: Intensity, extinction_per_m: f64, shared: bool) -> f64 {
     let (lo, hi) = SNOW_CLASSES_MM_H[class(intensity)];
     hydrometeors::snow_rate_mm_h(extinction_per_m * if shared { 0.6 } else { 1.0 }).clamp(lo, hi)
 }
 
-/// Returns the kind of a group's precipitation, and its liquid share.
+/// Returns the kind of a group's precipitation, and its liquid share if the group names liquid and frozen forms. `None`
+/// means the usual share of the kind.
 fn falling_kind(g: &WeatherGroup, temperature_c: f64) -> (PrecipitationKind, Option<f64>) {
     use {Phenomenon as P, PrecipitationKind as K};
     let has = |p: P| g.phenomena.contains(&p);
@@ -246,7 +250,8 @@ fn visibility_m(p: &Parsed, w: &Weather, assumed: &mut Vec<&'static str>) -> f64
 /// Converts a report to its weather and circumstances.
 ///
 /// # Errors
-/// [`Status::Parse`] if the values are not consistent; the groups' own ranges prevent that.
+/// [`Status::Parse`] if [`Weather::validate`] refuses the weather. This guards against a group that is read with a
+/// wider range than its field has.
 pub(super) fn report(p: Parsed, options: &MetarOptions) -> Result<MetarReport> {
     let rule = match options.cloud_amounts {
         CloudAmountRule::ByStation => amounts::rule_of(&p.station),

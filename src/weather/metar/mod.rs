@@ -32,8 +32,8 @@ impl Weather {
     ///
     /// # Errors
     /// [`crate::Status::Parse`] for a text that is longer than [`MAX_METAR_BYTES`], or has no station, no observation
-    /// (NIL) or no weather group. Unless the text is too long, the message gives line and column (both from 1, in
-    /// characters), what was expected there and what was found. Never panics, whatever the text.
+    /// (NIL), or neither a weather group nor remarks. Unless the text is too long, the message gives line and column
+    /// (both from 1, in characters), what was expected there and what was found. Never panics, whatever the text.
     pub fn from_metar(text: &str) -> Result<MetarReport> {
         Self::from_metar_with(text, &MetarOptions::default())
     }

@@ -2,8 +2,8 @@
 //!
 //! Stations leave out what they could not measure (FMH-1, 12.5), mark it (`////`, `M`), join groups without a space,
 //! change their order and add words of their own. A word is therefore read as any group that it fits, in any order up
-//! to the pressure. Words after the pressure no longer describe the weather at the time of the report. A word that is
-//! no group is kept as unread.
+//! to the pressure. Of the words after the pressure, only temperatures, the sea and marks of missing groups still
+//! describe the weather at the time of the report. A word that is no group is kept as unread.
 
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ pub(super) struct Parsed {
     pub lowest_visibility_m: Option<f64>,
     pub runways: Vec<RunwayVisualRange>,
     pub weather: Vec<WeatherGroup>,
-    /// Whether the station could not tell the present weather (`//`, PWINO).
+    /// Whether the station could not tell the present weather (`//`, PWINO), or the report has no weather group at all.
     pub weather_unknown: bool,
     pub clouds: Vec<CloudGroup>,
     pub temperature_c: Reading<f64>,
@@ -45,7 +45,7 @@ pub(super) struct Parsed {
     pub places: MetarPlaces,
     /// Whether the words from here on no longer describe the weather at the time of the report.
     ended: bool,
-    /// Number of weather groups so far, with those marked as missing.
+    /// Number of weather groups so far, including those marked as missing.
     groups: usize,
 }
 
@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
         Some(value)
     }
 
-    /// Returns the byte at which word `index` begins, or at which the last word ends.
+    /// Returns the byte at which word `index` begins; if there is no such word, the byte at which the last one ends.
     fn at(&self, index: usize) -> usize {
         let end = self.words.last().map_or(0, |w| w.at + w.text.len());
         self.words.get(index).map_or(end, |w| w.at)
@@ -129,8 +129,9 @@ fn is_trend(text: &str) -> bool {
 /// Reads all groups.
 ///
 /// # Errors
-/// [`Status::Parse`] with line, column and what was expected, if there is no station, no observation, or no weather
-/// group. [`Status::Parse`] without line and column, if the text is longer than [`MAX_METAR_BYTES`].
+/// [`Status::Parse`] with line, column and what was expected, if there is no station, no observation, or neither a
+/// weather group nor remarks. [`Status::Parse`] without line and column, if the text is longer than
+/// [`MAX_METAR_BYTES`].
 pub(super) fn parse(report: &str) -> Result<Parsed> {
     if report.len() > MAX_METAR_BYTES {
         let message = format!("METAR must be at most {MAX_METAR_BYTES} bytes, got {}", report.len());
@@ -218,7 +219,8 @@ fn runway(r: &Reader<'_>, word: &str, p: &mut Parsed) -> bool {
     true
 }
 
-/// Reads marks in place of a group that could not be measured: slashes, and the letter M of American stations.
+/// Reads marks in place of a group that could not be measured: slashes, the letter M of American stations, MISG, or a
+/// unit of wind without figures.
 fn missing(word: &str, p: &mut Parsed) -> bool {
     let slashes = word.bytes().all(|b| b == b'/');
     // Two slashes stand for the present weather, six and more for the clouds.
@@ -230,7 +232,7 @@ fn missing(word: &str, p: &mut Parsed) -> bool {
 }
 
 /// Reads temperatures and pressure, at any place in the report. Some stations give the pressure in both units; the
-/// first counts.
+/// first one is kept.
 fn air(word: &str, p: &mut Parsed) -> bool {
     if let Some(pressure) = groups::pressure(word) {
         p.pressure_hpa = p.pressure_hpa.or(pressure);
@@ -347,7 +349,8 @@ fn one(word: &str, p: &mut Parsed) -> bool {
 }
 
 /// Reads a visibility. The first one is the prevailing visibility. A further one has a direction, or none if an
-/// automatic station cannot tell the direction (`9999 3100`).
+/// automatic station cannot tell the direction (`9999 3100`). It must be in metres or kilometres, and stand before all
+/// runway visual ranges, weather and clouds. Returns `false` if the visibility cannot be one of these.
 fn visibility(word: &str, sight: Reading<VisibilityGroup>, p: &mut Parsed) -> bool {
     if p.visibility.is_none() && !p.cavok {
         p.visibility = sight;

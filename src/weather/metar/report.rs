@@ -52,7 +52,7 @@ pub struct MetarReport {
     pub special: bool,
     /// Whether the report was made without an observer (AUTO).
     pub automatic: bool,
-    /// Whether the report is a correction (COR).
+    /// Whether the report is a correction (COR; in Canada CC and a letter).
     pub corrected: bool,
     /// Whether the report gives only a lower bound of the visibility (CAVOK, 9999, 10SM, P6SM), or no visibility.
     /// `weather.visibility_m` is then [`crate::weather::unlimited_visibility_m`] for its humidity and precipitation,
@@ -64,10 +64,10 @@ pub struct MetarReport {
     pub lowest_visibility_m: Option<f64>,
     /// Rule by which the cloud amounts were read: sums or layers.
     pub cloud_amounts: CloudAmountRule,
-    /// Runway visual ranges, in the report's order.
+    /// Runway visual ranges, in the report's order, without those marked as missing.
     pub runways: Vec<RunwayVisualRange>,
-    /// Fields of `weather` that the report leaves out or marks as missing: names from [`super::ASSUMED_FIELDS`]. They
-    /// hold defaults, or values that the rest of the report makes likely.
+    /// Fields of `weather`, and the time, that the report leaves out or marks as missing: names from
+    /// [`super::ASSUMED_FIELDS`]. The fields hold defaults, or values that the rest of the report makes likely.
     pub assumed: Vec<&'static str>,
     /// Words that are no group of the code, in the report's order. They have no effect.
     pub unread: Vec<String>,
