@@ -1,12 +1,14 @@
 //! Edge flux between the cells of a height field: how much of a granular material slides across each edge in a sweep.
 //!
-//! Material lies at rest up to a gradient, the tangent of its angle of repose. Rules that let a cell slide to its
-//! neighbours wherever the drop between two cells is too steep judge the slope along eight directions only, and heaps
-//! become polygons: their radius is off by 7 to 33 %, depending on the azimuth. Here each edge is judged by the full
-//! gradient: with `a` the drop across the edge and `b` the mean of the four drops beside it, both over one cell, the
-//! slope is `s = sqrt(a^2 + b^2)`. Where it exceeds the gradient `t` at which the higher cell's material rests,
-//! `RATE (s - t) a / s` slides across the edge. Heaps are then round within 1 %. This rule sees every pattern of cells.
-//! Gradients at the corners of cells would miss a checkerboard.
+//! Material lies at rest up to a gradient, the tangent of its angle of repose. A simple rule compares a cell with each
+//! of its eight neighbours, and material slides where the drop between the two is too steep. Such a rule judges the
+//! slope along eight directions only, and heaps become polygons: their radius is off by 7 to 33 %, depending on the
+//! azimuth. Here each edge is judged by the full gradient. Let `a` be the drop across the edge, and `b` the mean of
+//! four drops along the edge: between each of its two cells and this cell's neighbours on both sides. Each drop is over
+//! one cell. The slope is `s = sqrt(a^2 + b^2)`. Where it exceeds the gradient `t` up to which the higher cell's
+//! material rests, `RATE (s - t) a / s` slides across the edge. Heaps are then round within 1 %. Every drop between two
+//! cells enters the slope of their edge, so no pattern of heights is missed. Gradients at the corners of cells would be
+//! 0 on a checkerboard of high and low cells.
 //!
 //! Heights and flows are whole numbers of units in f64. Flows are truncated to whole units, so that sums are exact, and
 //! the material comes to rest. The caller moves the material, because only it knows what the material consists of.
@@ -27,8 +29,8 @@ pub(crate) struct SlopeInputs<'a> {
     pub grades: &'a [f64],
 }
 
-/// Drop over one cell in the direction of an edge, from the heights of a cell and of its neighbours on both sides in
-/// that direction; 0 where neither neighbour has ground.
+/// Drop over one cell along an edge, from the heights of a cell at the edge and of its two neighbours along the edge;
+/// 0 where neither neighbour has ground.
 fn side_drop(middle: f64, lower: f64, upper: f64) -> f64 {
     match (lower.is_nan(), upper.is_nan()) {
         (false, false) => 0.5 * (upper - lower),
@@ -39,7 +41,7 @@ fn side_drop(middle: f64, lower: f64, upper: f64) -> f64 {
 }
 
 /// Flow across the edge between a cell and `cell + step`; `aside` is the distance in memory from a cell to its
-/// neighbours in the direction of the edge.
+/// neighbours along the edge.
 #[inline(always)]
 fn edge_flow(inputs: &SlopeInputs<'_>, cell: usize, step: usize, aside: usize) -> f64 {
     let (heights, other) = (inputs.heights, cell + step);

@@ -68,7 +68,8 @@ struct FogUniform {
     curtain_waves: array<vec4f, 8>,
     // Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     falling: vec4f,
-    // Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
+    // Light at the camera as a share of the light above the layer. Inside the layer, the light that clear air
+    // scatters is reduced to this share.
     lit: f32,
     // Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     curtain_amount: f32,
@@ -127,8 +128,8 @@ struct LowAir {
     detour_fade: f32,
     // Numbers of all banks, and of those that the camera may see.
     bank_count: vec2u,
-    // Lags of the air behind free air at the nodes, m east and north. Each vector has two nodes; nodes are in order
-    // from west to east, then south to north.
+    // Lags at the nodes, m east and north: how much less far the wind has carried the air than free air. Each vector
+    // has two nodes; nodes are in order from west to east, then south to north.
     lags: array<vec4f, 288>,
     // Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
     // lowest bits.

@@ -1,5 +1,6 @@
 // Wind that varies in space: a texture with one texel per node (src/surroundings/wind.rs). w: share of the weather's
-// wind that the node's own wind replaces, 0 to 1. xyz: the node's own velocity (east, north, up) times this share, m/s.
+// wind that the node's own wind replaces, 0 to 1. xyz: the node's own velocity (east, north, up), m/s, which already
+// contains its weight in the blend. With w = 1 it is the whole wind; with w = 0 it is added to the weather's wind.
 // Sample the texture at `wind_place` with its sampler (linear, clamped), and pass the result to `wind_at`, which
 // returns xyz + (1 - w) weathers.
 

@@ -71,17 +71,18 @@ pub const WK_DEPTH_ACCESS_READ_WRITE: wk_depth_access = 1;
 
 /// A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
 /// from black over blue, green, yellow and red to white. In the descriptions of the quantities, "a step" leads from one
-/// of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture, and
-/// other calls of the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity,
-/// all is black.
+/// of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture.
+/// Other calls of the frame draw nothing, except that a call with the stage SURFACE still draws the sea and the terrain
+/// if the depth may be written (wk_depth_access). Masked pixels stay the host's. If the frame contains nothing of the
+/// quantity, all is black.
 pub type wk_diagnostic = u32;
 /// The picture itself, not in false colours.
 pub const WK_DIAGNOSTIC_NONE: wk_diagnostic = 0;
 /// Distance along the ray, on a logarithmic scale: black for 1 m or less, white for 100 km or more and for the sky.
 /// Stage MEDIUM.
 pub const WK_DIAGNOSTIC_DISTANCE: wk_diagnostic = 1;
-/// Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
-/// more. The columns of rain areas are left out. Stage MEDIUM.
+/// Optical depth of air, fog, precipitation and clouds between the eye and the visible surface, in the sky without the
+/// clouds: black 0, 1 a step, white 5 or more. The columns of rain areas are left out. Stage MEDIUM.
 pub const WK_DIAGNOSTIC_OPTICAL_DEPTH: wk_diagnostic = 2;
 /// Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE.
 pub const WK_DIAGNOSTIC_WETNESS: wk_diagnostic = 3;

@@ -59,7 +59,7 @@ pub const WK_WATER_TYPE_1C: wk_water_type = 4;
 pub const WK_WATER_TYPE_3C: wk_water_type = 5;
 /// Coast 5C.
 pub const WK_WATER_TYPE_5C: wk_water_type = 6;
-/// Coast 7C, the most turbid.
+/// Coast 7C, the most turbid of these eight.
 pub const WK_WATER_TYPE_7C: wk_water_type = 7;
 
 /// Kind of water inside a region.
@@ -87,7 +87,7 @@ pub struct wk_sea_swell {
     pub period_s: f64,
     /// Direction that the swell comes from, degrees clockwise from true north. Range [0, 360], default 0.
     pub from_deg: f64,
-    /// Directional width, degrees. Range [1, 60]; 0, the default, means 15.
+    /// Directional width, degrees. Range [1, 60]; 0, the default, means 15.07.
     pub spread_deg: f64,
 }
 

@@ -29,7 +29,7 @@ include!(concat!(env!("OUT_DIR"), "/init_snowpack.rs"));
 pub type wk_snow_friction = u32;
 /// No snow, or so little that it covers less than 30 % of the ground.
 pub const WK_SNOW_FRICTION_BARE: wk_snow_friction = 0;
-/// Loose, dry snow.
+/// Loose snow, dry or with at most half of the liquid water that it can hold.
 pub const WK_SNOW_FRICTION_LOOSE: wk_snow_friction = 1;
 /// Snow above 350 kg/m^3: pressed, or packed by wind.
 pub const WK_SNOW_FRICTION_PACKED: wk_snow_friction = 2;

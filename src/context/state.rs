@@ -1,10 +1,10 @@
 //! Saving and loading of a context, and a hash by which channels compare their contexts.
 //!
 //! A state is text: a line with the format and a checksum of everything after it, then TOML. Settings that the
-//! description of a context fixes are compared on load with those of the loading context. Everything that was set or
-//! simulated after the creation of the context is restored: by the world, and by each effect for its own state. New
-//! keys may be added within a format if a state without them keeps its meaning. A key whose meaning changes requires a
-//! new format.
+//! description of a context fixes are compared on load with those of the loading context. What was set or simulated
+//! after the creation of the context is restored as far as [`Context::save`] lists it: by the world, and by each effect
+//! for its own state. New keys may be added within a format if a state without them keeps its meaning. A key whose
+//! meaning changes requires a new format.
 
 use super::shared_world::Context;
 use crate::{
@@ -92,8 +92,9 @@ impl Context {
     }
 
     /// Loads a state that [`Context::save`] wrote, in place of the present one. The context must have been created with
-    /// the same world, place, seed and ground model. A state from an earlier version without planet and tone curve also
-    /// needs a context with the same planet and tone curve. Occluder maps stay as they are.
+    /// the same world, place, seed and ground model. A state from a version in which planet and tone curve could not
+    /// yet be set does not restore these two: the context must already have the same planet and tone curve. Occluder
+    /// maps stay as they are.
     ///
     /// # Errors
     /// [`Status::Parse`] for bytes that are not a state, are truncated or changed, or have another format, which the

@@ -146,8 +146,8 @@ impl Swirl {
 struct FlakeMode {
     /// Extinction, 1/m.
     extinction_per_m: f64,
-    /// Slope of the exponential distribution of melted diameters, 1/mm; Holroyd's density relates them to diameters. If
-    /// the slope is 0, flakes in ranges of diameters with equal ratios of their ends hide equal areas.
+    /// Slope of the exponential distribution of melted diameters, 1/mm. By Holroyd's density each diameter has one
+    /// melted diameter. A slope of 0 says that the hidden area is spread evenly over the logarithm of the diameter.
     lambda: f64,
     /// Smallest and largest diameter, mm.
     range_mm: (f64, f64),
@@ -199,8 +199,8 @@ impl FlakeSizes {
         let kinds = falling.snow_kinds_mm_h();
         let share = |i: usize| if falling.snow_mm_h > 0.0 { kinds[i] / falling.snow_mm_h } else { 0.0 };
         let colder = libm::exp10(0.0245 * (temperature_c - GUNN_MARSHALL_C).clamp(-40.0, 0.0));
-        // Applies the factor on the slope over D as its power 2/3 to the slope over Dm, because D is proportional to
-        // Dm^(3/2).
+        // Cold divides the slope over D by `colder`. The slope over Dm is divided by the power 2/3 of `colder`, because
+        // D is proportional to Dm^(3/2).
         let lambda = 2.55 * libm::pow(kinds[0].max(LEAST_MM_H), -0.48) / libm::pow(colder, 2.0 / 3.0);
         let part =
             |i: usize, lambda: f64, range_mm| FlakeMode { extinction_per_m: extinction * share(i), lambda, range_mm };
@@ -268,8 +268,8 @@ impl FlakeSizes {
                 flux += self.speed_m_s(part, d) * 0.5 * self.parts[part].extinction_per_m / PANELS as f64;
             }
         }
-        // Computes the rate in kg/(m^2 s) for c = 1 kg/m^2. A sphere of density c / D has the mass (pi/6) c D^2 and a
-        // disc of (pi/4) D^2; the ratio is (2/3) c.
+        // Computes the rate in kg/(m^2 s) for c = 1 kg/m^2. A sphere of density c / D has the mass (pi/6) c D^2. Its
+        // disc has the area (pi/4) D^2. The ratio of mass to area is (2/3) c.
         let of_one = flux / AREA_RATIO * (2.0 / 3.0);
         if of_one > 0.0 { self.rate_mm_h / 3600.0 / of_one } else { 0.0 }
     }

@@ -67,8 +67,8 @@ impl Stone {
 }
 
 /// Returns the speed of a sphere of ice, m/s, in air of a density, kg/m^3. It follows from the Reynolds number Re as a
-/// function of the Best number X (drag coefficient times Re^2): Re = (d^2 / 4) ((1 + 4 sqrt(X) / (d^2 sqrt(C)))^(1/2) -
-/// 1)^2 with d = 8.0 (`DELTA`) and C = 0.35 (Heymsfield and Westbrook 2010).
+/// function of the Best number X (drag coefficient times Re^2): Re = (delta^2 / 4) ((1 + 4 sqrt(X) / (delta^2
+/// sqrt(C)))^(1/2) - 1)^2 with delta = 8.0 and C = 0.35 (Heymsfield and Westbrook 2010).
 fn sphere_speed_m_s(diameter_mm: f64, density: f64) -> f64 {
     const DELTA: f64 = 8.0;
     const C: f64 = 0.35;

@@ -17,8 +17,8 @@ use crate::weather::{Conditions, ONSET_M};
 /// Largest number of rain areas at a time.
 pub const MAX_AREAS: usize = 16;
 
-/// Returns three random words for a key: the hash pcg3d (Jarzynski and Olano 2020). Twin of `random3` in
-/// `shaders/common/hash.wgsl`.
+/// Returns three random words for a key: the hash pcg3d (Jarzynski and Olano 2020). `random3` of
+/// `shaders/common/hash.wgsl` returns the same words.
 pub fn random3(key: [u32; 3]) -> [u32; 3] {
     let [mut x, mut y, mut z] = key.map(|k| k.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     x = x.wrapping_add(y.wrapping_mul(z));

@@ -106,7 +106,8 @@ pub struct FogModel {
     pub ground_radiance: DVec3,
     /// Solutions of the layer's light per channel; `None` without a layer.
     pub solutions: Option<[Solution; 3]>,
-    /// Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
+    /// Light at the camera as a share of the light above the layer. Inside the layer, the light that clear air
+    /// scatters is reduced to this share.
     pub lit: f64,
     /// Strength of the patches, 0 (even) to 1.
     pub patch_amount: f64,

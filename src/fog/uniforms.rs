@@ -13,8 +13,8 @@ use crate::{regions::MAX_REGION_CORNERS, wind::DETOUR_SIDE};
 /// Largest number of banks in a picture: `MOST_BANKS` of `shaders/fog/uniform.wgsl`.
 pub(super) const MOST_BANKS: usize = 8;
 
-/// Depth, m, below which a slab's lower edge is left out: depth under the ground or the camera, whichever is lower. The
-/// margin covers valleys and pits that hosts draw.
+/// Depth under the ground or under the camera, whichever is lower, m. A slab's lower edge that lies deeper is left out.
+/// The depth is large enough for valleys and pits that hosts draw.
 const MARGIN_M: f64 = 2000.0;
 
 impl FogModel {
@@ -113,7 +113,7 @@ pub struct FogVariant {
 }
 
 impl FogVariant {
-    /// All features except detours.
+    /// All features except detours and banks.
     pub const ALL: Self = Self {
         kinds: 63,
         absorbing: true,
@@ -127,7 +127,7 @@ impl FogVariant {
         banks_overlap: false,
     };
 
-    /// Returns all features, with detours only if the model has any.
+    /// Returns all features except banks, with detours only if the model has any.
     pub fn all_of(model: &FogModel) -> Self {
         Self { detour: model.detour.is_some(), ..Self::ALL }
     }
@@ -167,7 +167,7 @@ fn term(t: &Term) -> [[f32; 4]; 2] {
 /// [`FogModel`] in the layout of the shaders; tests compare the offsets with naga's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
+#[allow(missing_docs)] // The members and their docs are those of the WGSL struct.
 pub struct FogUniform {
     /// Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     pub to_sun: [f32; 3],
@@ -235,7 +235,8 @@ pub struct FogUniform {
     pub curtain_waves: [[f32; 4]; CURTAIN_WAVES],
     /// Precipitation: extinction at 550 nm, 1/m; altitudes between which it decreases to 0, m; 1/their difference, 1/m.
     pub falling: [f32; 4],
-    /// Share of the light above the layer that reaches the camera. The air inside the layer is lit by this share.
+    /// Light at the camera as a share of the light above the layer. Inside the layer, the light that clear air
+    /// scatters is reduced to this share.
     pub lit: f32,
     /// Amplitude of each wave of the curtains, relative to the extinction of all that falls.
     pub curtain_amount: f32,
@@ -279,7 +280,7 @@ pub struct FogBankUniform {
 /// obstacles to the wind.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // The members are those of the WGSL struct, where each is explained.
+#[allow(missing_docs)] // The members and their docs are those of the WGSL struct, which has no `pad`.
 pub struct LowAirUniform {
     /// Fog of the frame outside all banks.
     pub fog: FogUniform,
@@ -293,13 +294,13 @@ pub struct LowAirUniform {
     pub detour_fade: f32,
     /// Numbers of all banks, and of those that the camera may see.
     pub bank_count: [u32; 2],
-    /// Lags of the air behind free air at the nodes, m east and north. Each vector has two nodes; nodes are in order
-    /// from west to east, then south to north.
+    /// Lags at the nodes, m east and north: how much less far the wind has carried the air than free air. Each vector
+    /// has two nodes; nodes are in order from west to east, then south to north.
     pub lags: [[f32; 4]; DETOUR_SIDE * DETOUR_SIDE / 2],
     /// Indices of the banks that the camera may see, from far to near: four bits each, with the farthest bank in the
     /// lowest bits.
     pub bank_order: u32,
-    /// Padding.
+    /// Padding, which WGSL adds by itself.
     pub pad: [u32; 3],
     /// Banks in the order of the world's regions.
     pub banks: [FogBankUniform; MOST_BANKS],

@@ -20,12 +20,13 @@ use crate::{
 /// Height above the ground of the point for which shelter from rain is tested, m.
 const SURFACE_M: f64 = 0.02;
 
-/// Number of thirds of the rain that the boxes keep off each cell.
+/// Rain that the boxes keep off each cell, in thirds. The rain's water is sorted by drop size and divided into three
+/// equal parts, and a box keeps each third off a cell as a whole or not at all.
 #[derive(Default)]
 struct Shadow {
     /// Inputs of `thirds`: fall speeds, m/s, wind, east and north, m/s, and boxes.
     made_for: Option<([f64; 3], DVec2, Vec<Shelter>)>,
-    /// Thirds kept off, by cell; empty if nothing is kept off anywhere.
+    /// Number of thirds kept off, 0 to 3, by cell; empty without boxes at rest.
     thirds: Vec<u8>,
 }
 
@@ -50,7 +51,8 @@ struct Glaze {
 pub(super) struct RainStep<'a> {
     /// Weather in the middle of the step, and its effect on the ground.
     pub conditions: &'a Conditions,
-    /// Rain and evaporation of the step.
+    /// Evaporation in the step, and the liquid that reaches the ground: unfrozen rain and drizzle, and meltwater. Snow
+    /// that is simulated takes up the rain that falls on it and adds its run-off.
     pub forcing: &'a Forcing,
     /// Length of the step, s.
     pub seconds: f64,
@@ -72,9 +74,11 @@ pub(super) struct GridRain {
     shadow: Shadow,
     /// Ice on the grid.
     glaze: Glaze,
-    /// Precipitation on every cell in the last step, mm, before boxes keep any of it off; `None` if cells differ.
+    /// Liquid that reached the ground of every cell in the last step, with meltwater, mm, before boxes keep any of it
+    /// off; `None` if cells differ.
     even_mm: Option<f64>,
-    /// Precipitation on each cell in the last step, mm, less the part that boxes keep off, if `even_mm` is `None`.
+    /// Liquid that reached the ground of each cell in the last step, with meltwater, mm, less the part that boxes keep
+    /// off, if `even_mm` is `None`.
     rates: Vec<f64>,
 }
 
@@ -114,7 +118,8 @@ impl GridRain {
     }
 
     /// Finds the rain that boxes at rest keep off each cell. Returns whether it may have changed. `falls_m_s` are the
-    /// fall speeds of the drops in the middle of each third of the water; `wind` is the wind, east and north, m/s.
+    /// fall speeds of the median drops of the three thirds of the water, sorted by drop size. `wind` is the wind, east
+    /// and north, m/s.
     fn shade(
         &self,
         grid: &CellGrid<'_>,
@@ -242,7 +247,7 @@ impl GridRain {
         self.glaze.ice > 0.0
     }
 
-    /// Finds how much falls on each cell in a step.
+    /// Finds how much liquid reaches the ground of each cell in a step.
     pub fn fall(&mut self, grid: &CellGrid<'_>, step: &RainStep<'_>, overs: &AreasOverGrid, shelters: &[Shelter]) {
         let RainStep { conditions: c, forcing, seconds } = *step;
         self.shade_rain(grid, c, overs, shelters);
@@ -263,7 +268,8 @@ impl GridRain {
         }
     }
 
-    /// Returns whether anything falls on a run of cells in the step of [`Self::fall`].
+    /// Returns whether liquid may reach the ground in a run of cells in the step of [`Self::fall`]. If all cells get
+    /// the same precipitation, what boxes keep off is ignored.
     pub fn rains_on(&self, run: usize) -> bool {
         match self.even_mm {
             Some(mm) => mm != 0.0,
@@ -271,7 +277,8 @@ impl GridRain {
         }
     }
 
-    /// Returns the precipitation on a cell in the step of [`Self::fall`], mm.
+    /// Returns the liquid that reaches the ground of a cell in the step of [`Self::fall`], with meltwater, mm, less the
+    /// part that boxes keep off.
     pub fn fallen_mm(&self, cell: usize) -> f64 {
         match self.even_mm {
             Some(mm) => mm * self.shadow.share(cell),
@@ -279,8 +286,8 @@ impl GridRain {
         }
     }
 
-    /// Returns the water with which each cell begins: `water`, that of level, open ground, but more in rain areas, and
-    /// less where boxes keep rain off.
+    /// Returns the water with which each cell begins. This is `water`, the water of level, open ground, but with more
+    /// of it in rain areas and less where boxes keep rain off.
     pub fn first_water(
         &mut self,
         grid: &CellGrid<'_>,
@@ -328,7 +335,8 @@ impl GridRain {
         })
     }
 
-    /// Returns rain and drizzle at a cell, mm/h, with the shares that are uniform over the whole grid.
+    /// Returns rain and drizzle at a cell, mm/h. Shares of areas that are uniform over the whole grid are taken from
+    /// `overs.evens`, all others are computed for the cell.
     fn liquid(&self, grid: &CellGrid<'_>, overs: &AreasOverGrid, own: f64, cell: usize) -> f64 {
         self.liquid_with(grid, overs, &overs.evens, own, cell)
     }

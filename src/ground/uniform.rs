@@ -22,8 +22,8 @@ use crate::{
     weather::{Falling, SurfaceCover, snow_cover},
 };
 
-/// Side of a cell of the rings' grid, m. `shaders/ground/hollows.wgsl` has twins of this constant and of the two that
-/// follow.
+/// Side of a cell of the rings' grid, m. This constant and the two that follow have the same values in
+/// `shaders/ground/hollows.wgsl` (tested).
 const RING_CELL_M: f64 = 0.2;
 /// Length of a time slot of the rings, s.
 const RING_SLOT_S: f64 = 0.6;
@@ -150,8 +150,8 @@ fn look_of(wetness: f64) -> (f64, f64) {
     (smoothstep(0.0, 0.3, wetness), smoothstep(0.3, 1.0, wetness))
 }
 
-/// Level that is deeper than any hollow, in units of the root mean square depth. At this level no water stands. Twin of
-/// `NO_LEVEL` in `shaders/ground/hollows.wgsl`.
+/// Level that is deeper than any hollow, in units of the root mean square depth. At this level no water stands.
+/// `NO_LEVEL` of `shaders/ground/hollows.wgsl` has the same value (tested).
 const NO_LEVEL: f32 = 1000.0;
 
 /// Height of the sea's crests above the camera if there is no sea, m: no surface lies as low.

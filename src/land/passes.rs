@@ -16,8 +16,8 @@ use crate::{
     stage::{OpaqueDraw, OpaqueTarget},
 };
 
-/// Vertices of the pages, and depths of the shadow maps: the other textures of the bind group are replaced together
-/// with these.
+/// Key of the bind group: the textures of the pages' vertices and of the shadow maps' depths. These two suffice: the
+/// other textures of the pages and of the shadow maps are replaced together with them.
 type BoundTextures = (wgpu::Texture, Option<wgpu::Texture>);
 
 /// Resources of a view.

@@ -1,4 +1,4 @@
-//! Air in which drops and flakes fall near the camera, and the share of precipitation that has left the cloud.
+//! Air in which drops and flakes fall near the camera, and the share of precipitation that has begun to fall.
 
 use glam::DVec3;
 
@@ -33,11 +33,12 @@ impl MovingAir {
     }
 }
 
-/// Number of steps to which the share of precipitation that has left the cloud is rounded.
+/// Number of steps to which the share of precipitation that has begun to fall is rounded.
 const ONSET_STEPS: f64 = 32.0;
 
-/// Rounds the share of precipitation that has left the cloud up to the next step, so that drops or flakes are not
-/// recounted in each frame of a climbing camera.
+/// Rounds the share of precipitation that has begun to fall ([`crate::weather::Conditions::begun`]) up to the next
+/// step, so that drops or flakes are not recounted in each frame of a climbing camera. Precipitation begins inside its
+/// cloud, above the base.
 pub(crate) fn begun_in_steps(begun: f64) -> f64 {
     (begun * ONSET_STEPS).ceil() / ONSET_STEPS
 }

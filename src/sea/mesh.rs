@@ -30,8 +30,8 @@ pub(super) const MOST_BLOCKS: usize = 64 + 48 * (LEVELS as usize - 1);
 /// Step of the anchor, m. Places on the lattice are relative to an anchor near the camera, whose coordinates are
 /// multiples of this step.
 const ANCHOR_M: f64 = 16.0;
-/// Least ratio of a cell's distance to its length, for all cells but the finest. The shaders' twin is
-/// `SEA_CELLS_TO_DISTANCE`.
+/// Least ratio of a cell's distance to its length, for all cells but the finest. `SEA_CELLS_TO_DISTANCE` of the shaders
+/// has the same value (tested).
 pub(super) const CELLS_TO_DISTANCE: f64 = 11.9;
 
 /// Marks of blocks.

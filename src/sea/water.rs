@@ -115,7 +115,8 @@ fn reflectance_by_steps((cos_view, variance): (f64, f64), index: f64, steps: i32
 
 /// Numbers of columns and rows of [`reflectance_table`].
 pub(super) const TABLE_SIDES: [usize; 2] = [64, 32];
-/// Largest root mean square slope of [`reflectance_table`]. Twin of `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl`.
+/// Largest root mean square slope of [`reflectance_table`]. `SEA_MOST_SLOPE` of `shaders/sea/light.wgsl` has the same
+/// value.
 pub(super) const TABLE_MOST_SLOPE: f64 = 0.4;
 
 /// Returns the mean reflectance of rough water row by row. The rows belong to root mean square slopes along one axis,

@@ -144,8 +144,8 @@ mod tests {
 
     #[test]
     fn black_target_at_the_optical_range_is_at_the_threshold() {
-        // The air is curved and stratified, and eye and target are 2 m up: a little more than 5 % arrives (haze with a
-        // scale height of 1.2 km).
+        // The air is curved and stratified. The eye is 2 m up and looks horizontally, so the target at 50 km is 198 m
+        // above the ground. Therefore a little more than 5 % arrives (haze with a scale height of 1.2 km).
         for (visibility, contrast) in [(50.0, 0.05), (5000.0, 0.0503), (50_000.0, 0.0572)] {
             let level = [visibility, 0.0, R + 2.0];
             let seen = sight(&fog(visibility), place(2.0, 0.0), level).unwrap();

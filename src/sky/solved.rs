@@ -49,9 +49,9 @@ const STEPS_PER_DEG: f64 = 2.0;
 /// Smallest light whose logarithm is taken.
 const LEAST: f64 = 1e-30;
 
-/// Options for queries. Solving takes a quarter to a third of the time that [`Options::default`] takes, and for 95 % of
-/// directions the luminance is within 2 % of the default's. Few altitudes and ray points suffice. Fewer sun angles
-/// would cause errors in twilight, and fewer zeniths and azimuths in haze.
+/// Options for queries. Compared with [`Options::default`] with 3 `disc_strips`, solving takes a quarter to a third of
+/// the time, and for 95 % of directions the luminance differs by less than 2 % (tested). Few altitudes and ray points
+/// suffice. Fewer sun angles would cause errors in twilight, and fewer zeniths and azimuths in haze.
 const QUERY: Options = Options {
     orders: Orders::Converged { tolerance: 0.1, limit: 7 },
     resolution: Resolution {

@@ -6,8 +6,8 @@ use super::Planet;
 use super::reference::medium::Medium;
 use super::settings::SkySettings;
 use crate::planet::spectral::SpectralTriple;
-/// Factor by which the texels of the light table are larger than the light that they store. Twin of `LIGHT_SCALE` of
-/// `sky/build.wgsl` and `SKY_LIGHT_SCALE` of `sky/lookup.wgsl`.
+/// Factor by which the texels of the light table are larger than the light that they store. `LIGHT_SCALE` of
+/// `sky/build.wgsl` and `SKY_LIGHT_SCALE` of `sky/lookup.wgsl` have the same value.
 pub(crate) const LIGHT_SCALE: f32 = 4096.0;
 
 /// Mirrors `SkyAir` of `sky/air.wgsl`.

@@ -8,11 +8,12 @@ use crate::plan::{Listed, StepWork, Units, Work};
 /// The importance, 0.7, is that of particles, as for rain ([`crate::rain::candidates::RAIN`]).
 pub const SNOW: Part = Part { name: "snow", rungs: &["flakes", "none"], importance: 0.7, worth: Worth::Unseen(3) };
 
-/// Work per pixel of the layer of rain and snow. The unit is the work of a pixel in a picture without any part of the
-/// plan. Derived from the times that `cargo bench --bench speed -- falling` prints, whose unit is a copy of the
-/// picture.
+/// Work per pixel of the layer of rain and snow, for the plan. The unit is the work of a pixel in a picture without any
+/// part of the plan. The value is derived from the times of `cargo bench --bench speed -- falling`. Their unit is
+/// another one: the time of a pass that copies the picture. `cargo bench --bench speed -- parts` prints the work of
+/// snow in the plan's unit.
 const LAYER_OF_PIXEL: f64 = 0.1;
-/// Work of one flake of the lattice, in the same unit as [`LAYER_OF_PIXEL`].
+/// Work of one flake of the lattice, for the plan, in the same unit as [`LAYER_OF_PIXEL`].
 const ONE_FLAKE: f64 = 0.5;
 
 /// Returns the work that the step from flakes to none saves, for a picture of `pixels` pixels with `flakes` flakes. The
@@ -22,13 +23,14 @@ pub(crate) fn snow_work(pixels: u64, flakes: u32) -> [StepWork; 1] {
     [StepWork { fixed, ..StepWork::default() }]
 }
 
-/// Work of one flake of the lattice: its place, the test whether it is in the picture, and the pixels of the few flakes
-/// that are in the picture.
+/// Work of one flake of the lattice in the lab's model of cost: its place, the test whether it is in the picture, and
+/// the pixels of the few flakes that are in the picture.
 const FLAKE: Units = Units { samples: 8.0, texels: 1.0, bytes: 8.0 };
-/// Work of each pixel whenever snow falls: the layer is cleared, read and composited.
+/// Work of each pixel in the lab's model of cost whenever snow falls: the layer is cleared, read and composited.
 const LAYER: Units = Units { samples: 0.2, texels: 1.0, bytes: 16.0 };
 
-/// Returns the work of drawing snow with these settings. A default number of flakes is taken as that on a GPU.
+/// Returns the work of drawing snow with these settings. If they leave the largest number of flakes open, the default
+/// number on a GPU is used.
 fn work(settings: &SnowSettings) -> Work {
     match settings.model {
         // Adds a little work for the snow in the fog, which is drawn anyway. There is no layer.

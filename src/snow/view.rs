@@ -35,7 +35,8 @@ struct Counted {
     temperature_c: f64,
     /// Factor on fall speeds by the air's density ([`drops::factor_in`]).
     factor: f64,
-    /// Share of the flakes that has begun to fall at the camera's altitude, rounded by [`begun_in_steps`].
+    /// Share of the flakes that begin to fall above the camera's altitude, inside their cloud
+    /// ([`crate::weather::Conditions::begun`]), rounded by [`begun_in_steps`].
     begun: f64,
     /// Largest number of drawn flakes.
     most: u32,
@@ -59,7 +60,7 @@ pub(crate) struct SnowView {
     over: bool,
     /// Whether flakes were stepped in the last frame.
     is_stepped: bool,
-    /// Cache of the winds at the times from which the step asks for the air's displacement.
+    /// Cache of the wind at earlier times. A step of the flakes needs the displacement of the air since the last step.
     last_wind: Remembered,
     /// Identifier of the last drawn frame, and the report of its snow.
     drawn: (u64, SnowReport),
@@ -157,8 +158,8 @@ impl DrawnEffect for SnowView {
         put(&candidates::SNOW, is_there, &candidates::snow_work(context.pixels(), flakes));
     }
 
-    /// Returns the extinction that flakes replace in the fog, the layer in front of the picture, and the reach
-    /// within which shelters matter to flakes.
+    /// Returns the contribution of snow to a draw. It contains the extinction that flakes replace in the fog, the layer
+    /// in front of the picture, and the reach within which shelters matter to flakes.
     fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
         let mut to = Contribution::none();
         self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };

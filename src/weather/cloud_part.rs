@@ -1,10 +1,10 @@
 //! Parts of a cloud layer above or below a place, and how they transmit and reflect light.
 //!
 //! # Model
-//! The share of its cover and of its optical depth that a layer has above a height depends on its shape. The laws are
-//! fitted to means over the drawn clouds (`clouds::field`), for all kinds between sheets, cells, cumulus, towers and
-//! fibres. A slant beam meets more of broken clouds than a vertical one, because it also meets their sides
-//! ([`SlabPart::meet`]). Some of the cloud that a slant beam meets is thin.
+//! The shape of a layer determines which share of the layer's cover and which share of its optical depth lie above a
+//! height. The laws are fitted to means over the drawn clouds (`clouds::field`), for all kinds between sheets, cells,
+//! cumulus, towers and fibres. A slant beam meets more of broken clouds than a vertical one, because it also meets
+//! their sides ([`SlabPart::meet`]). Some of the cloud that a slant beam meets is thin.
 //!
 //! # Error
 //! `cargo test --lib clouds::light::mean_light -- --nocapture` prints the error against the drawn clouds, for each
@@ -18,8 +18,9 @@ use crate::numerics::smoothstep;
 /// Sine of the lowest elevation of the sun at which its beam is traced through clouds. The light of a lower sun is
 /// treated as coming from this elevation.
 pub(super) const LOWEST: f64 = 0.03;
-/// Upper limit of the spread of optical depths in broken clouds: the spread of the deepest clouds to which the law of
-/// `SlabPart::through` was fitted.
+/// Upper limit of the spread of optical depths in broken clouds. The spread is 1 / nu, where nu is the shape parameter
+/// of their gamma distribution. The limit is the spread of the deepest clouds to which the law of `SlabPart::through`
+/// was fitted.
 const MOST_SPREAD: f64 = 2.6;
 /// Covers between which clouds change from broken to closed (`CLOSES` of `clouds::field`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
@@ -45,8 +46,8 @@ impl CloudSlab {
         (2.0 * self.convection).min(1.0) * (1.0 - self.cellular)
     }
 
-    /// Returns the degree to which the layer is closed, 0 to 1. A layer without spacing between clouds is closed at any
-    /// cover.
+    /// Returns the degree to which the layer is closed, 0 to 1. A layer with an infinite `scale_m`, such as that of
+    /// the clouds over rain areas, is closed at any cover.
     fn closed(&self) -> f64 {
         if self.scale_m.is_finite() { smoothstep(CLOSES[0], CLOSES[1], self.cover) } else { 1.0 }
     }

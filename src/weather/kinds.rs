@@ -69,8 +69,9 @@ kinds! {
 kinds! {
     /// Fog and mist: suspended droplets at the ground.
     FogKind, "fog.kind" {
-        /// No fog is named. Haze, dust, sand, smoke and volcanic ash account for any visibility. Other aerosols account
-        /// for 5 km and more; for less, `derive` adds mist.
+        /// No fog is reported. The extinction that the visibility requires beyond that of clean air and precipitation
+        /// is aerosol. Haze, dust, sand, smoke and volcanic ash may take all of it. Other aerosols take at most that of
+        /// a visibility of 5 km (`Overrides::visibility_above_fog_m`), and the rest is mist or fog all the same.
         None = 0, "none";
         /// Mist (METAR BR): droplets, with a visibility of 1 to 5 km.
         Mist = 1, "mist";

@@ -22,9 +22,9 @@ use crate::{
     wind::Blowing,
 };
 
-/// Luminance of a moonless sky, cd/m^2, and the sky's light on level ground, lux, while the sun is so high that both
-/// are less than 1e-4 of the sunlight that the sky scatters. With a lower sun,
-/// [`Couplings::night_lux`](super::Couplings::night_lux) gives the brightness.
+/// Luminance of the moonless sky without sunlight, cd/m^2, and its light on level ground, lux. These constants are used
+/// while the sun is above the elevations [`NIGHT_BEGINS_DEG`]: both are then less than 1e-4 of the sunlight that the
+/// sky scatters. With a lower sun, both follow from [`Couplings::night_lux`](super::Couplings::night_lux).
 const UNSEEN_NIGHT_CD_M2: [f64; 3] = [1.9e-4, 1.7e-4, 1.9e-4];
 const UNSEEN_NIGHT_LUX: f64 = 8e-4;
 /// Elevations of the sun, degrees, between which the computed light of the night replaces [`UNSEEN_NIGHT_CD_M2`] and
@@ -78,10 +78,10 @@ impl ZenithDepths {
     }
 }
 
-/// Look-ahead times for a change of the weather, s. The sky's tables at the two ends of such a time are mixed for the
-/// air in between; the error of the mix grows with the change of the air's vertical optical depth. The first time with
-/// a change of at most [`AHEAD_DEPTH`] is used, else the last one, which is still far longer than a draft of the tables
-/// takes.
+/// Look-ahead times for a change of the weather, s. The sky builds tables for the air at both ends of such a time and
+/// mixes them for the air in between. The error of the mix grows with the change of the air's vertical optical depth.
+/// The first time over which this depth changes by at most [`AHEAD_DEPTH`] is used, otherwise the last. The last is
+/// still far longer than the sky takes to build a draft (small tables, shown until the full ones are built).
 const AHEAD_S: [f64; 3] = [20.0, 10.0, 5.0];
 /// Largest change of the air's vertical optical depth over a look-ahead time other than the last.
 const AHEAD_DEPTH: f64 = 0.15;
@@ -179,8 +179,8 @@ fn adaptation(total: f64, sky: f64, direct: f64, sun: &Light, altitude_m: f64) -
     ground + (0.15 * direct / PI - ground).max(0.0) * smoothstep(10e3, 80e3, altitude_m)
 }
 
-/// Returns the clouds' mean total transmittance: the share that they leave of the light scattered in the air below
-/// them.
+/// Returns the mean share of sunlight, direct and diffuse, that the clouds let through to the air below them. The light
+/// that this air scatters is reduced to the same share.
 fn medium_share(left: &CloudLight) -> f64 {
     (left.direct + left.diffuse).clamp(0.0, 1.0)
 }
@@ -224,9 +224,10 @@ impl World {
         Ok([mapped, under_areas])
     }
 
-    /// Returns the planet under the weather that will be at `position` after one of the times [`AHEAD_S`]. The timeline
-    /// and moving regions change the weather. `now` is the planet under the present weather. `None` if no change of the
-    /// timeline is under way and there are no weather regions.
+    /// Returns the planet with the air that it will have at `position` after one of the times [`AHEAD_S`], when the
+    /// timeline or moving regions have changed the weather. `now` is the planet with the air of the present weather.
+    /// `None` if no change of the timeline is under way and there are no weather regions, or if the weather is not
+    /// known at these times.
     pub fn planet_ahead(&self, position: DVec3, now: &Planet) -> Option<Planet> {
         let now_s = self.time_s;
         if !self.timeline.changes_between(now_s, now_s) && self.set.weather_regions.is_empty() {

@@ -1,5 +1,5 @@
 //! Query for the layers over a place: the weather's layers where the wind has carried them, with a host's map of cover
-//! and the cells over rain areas. Both pictures and queries use it.
+//! and the cells of cloud over rain areas (`cells.rs`). Both pictures and queries use it.
 
 use std::sync::Arc;
 
@@ -22,16 +22,16 @@ use crate::{
     weather::{CloudMap, CloudSlab},
 };
 
-/// Difference between the excess that an anvil needs in a layer and in a cell over a rain area, where it needs less.
-/// Excess is the map's number less the threshold; cloud grows where it is above 0. Across a cell's edge, outwards, the
-/// excess falls by `EDGE_SLOPE` per distance from cloud to cloud. The lower need therefore moves the anvil's border
-/// outwards by `ANVIL_WIDER / EDGE_SLOPE` of these distances.
+/// Amount by which the excess that an anvil needs is lower in a cell over a rain area than in a layer of the weather.
+/// Excess is the noise map's number less the threshold; cloud grows where it is above 0. Outwards across a cell's edge
+/// the excess falls by `EDGE_SLOPE` over each length of [`Shape::scale_m`], the distance from cloud to cloud. The lower
+/// need therefore moves the anvil's border outwards by `ANVIL_WIDER / EDGE_SLOPE` of these lengths.
 const ANVIL_WIDER: f64 = 2.2;
-/// Ratio of a cell's thickness to the distance from cloud to cloud above which the heads (bulges) of its clouds grow in
-/// proportion to its thickness. With smaller heads, the sides of so deep a cell would look like hanging cloth.
+/// Ratio of a cell's thickness to the distance from cloud to cloud. In a cell of a larger ratio, the heads (bulges) of
+/// the clouds grow in proportion to the thickness. With smaller heads, the sides of so deep a cell would look like
+/// hanging cloth.
 const HEADS: f64 = 2.0;
-/// Largest value to which larger heads raise the [`Shape::rough`] of a cell: amplitude of the solid noise, as an
-/// excess.
+/// Largest [`Shape::rough`] (amplitude of the solid noise, as an excess) to which larger heads raise that of a cell.
 const MOST_ROUGH: f64 = 2.1;
 
 /// Query for the layers of cloud at a place and a time.
@@ -115,7 +115,8 @@ impl CloudLayers {
     /// cells or the list of layers is full.
     ///
     /// In a deep cell the heads grow by the factor k = thickness / (`HEADS` x distance from cloud to cloud), at least
-    /// 1: the cube of solid noise by k, and its amplitude by k^2 up to `MOST_ROUGH`.
+    /// 1. The side of the cube in which the solid noise repeats grows by k, and the noise's amplitude by k^2 up to
+    /// `MOST_ROUGH`.
     fn bring(&mut self, scene: &Scene, clouds: &AreaClouds) -> Option<usize> {
         let others = self.all().iter().zip(&self.maps).map(|(layer, map)| (&layer.slab, map.is_some()));
         let slab = clouds.slab(others)?;

@@ -206,7 +206,7 @@ impl Ray {
         let at = |altitude: f64| {
             let u = self.u_of_altitude(altitude).clamp(a, b);
             let (t, r) = (u * (2.0 * rp + u * u).sqrt(), rp + u * u);
-            // With r_p below a millimetre the second term is negligible, and its logarithm would not be finite.
+            // With r_p below a millimetre the second term is negligible. With r_p = 0, asinh(t / r_p) is not finite.
             let bend = if rp > 1e-3 { rp * rp * (t / rp).asinh() } else { 0.0 };
             (t, 0.5 * (t * r + bend))
         };
