@@ -109,16 +109,18 @@ windows-accept: setup-build ## the library's Rust tests for Windows, under Wine
 docs: setup-build ## the Rust documentation, warnings are errors
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 
-# Lint, documentation, its examples, then every test; the header's drift and the C examples are among the tests.
-test: setup lint docs ## all checks, at most 25 minutes on two cores from a clean clone
+# The examples of the documentation, then the tests; the header's drift and the C examples are among them. The profile
+# `ci` of .config/nextest.toml (NEXTEST_PROFILE=ci) adds those that take longer than six seconds.
+test: setup ## the tests, at most 25 minutes on two cores from a clean clone
 	$(MAKE) --no-print-directory lib PROFILE=dev
 	cargo test --locked --workspace --doc
 	WELKIN_LIB="$(abspath $(TARGET_DIR)/debug/$(SHARED))" $(RUN_TESTS)
 
-ci: test windows drivers ## all checks, Windows under Wine and other drivers, in this order
+ci: export NEXTEST_PROFILE = ci
+ci: lint docs test windows drivers ## every check: lint, documentation, all tests, Windows under Wine, other drivers
 
-# What `make test` checks already, lint and documentation, is not checked twice. Benchmarks assert nothing and need an
-# idle machine for longer than this takes: `make bench` runs those that a change is about.
+# Lint and documentation have targets of their own. Benchmarks assert nothing and need an idle machine for longer than
+# this takes: `make bench` runs those that a change is about.
 accept: export FEATURES = shared-build
 accept: setup ## the long sweeps in release, under Wine too, at most 90 minutes on two cores
 	$(MAKE) --no-print-directory lib PROFILE=release

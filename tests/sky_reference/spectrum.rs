@@ -21,7 +21,7 @@ fn cases() -> Vec<(f64, Option<(f64, f64)>)> {
 /// Transfers of every case at three wavelengths. Without `WELKIN_ACCEPT` single scattering is enough, because its
 /// spectra vary as much.
 fn transfers(planet: &Planet) -> Vec<[f64; 3]> {
-    let orders = if accept() { Options::default().orders } else { Orders::Exactly(1) };
+    let orders = Orders::Exactly(if accept() { 4 } else { 1 });
     let resolution = Resolution {
         altitudes: 10,
         sun_angles: 30,
