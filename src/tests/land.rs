@@ -227,6 +227,17 @@ fn the_finest_level_is_the_ground_of_the_queries() {
 }
 
 #[test]
+fn the_underside_of_the_ground_is_not_drawn() {
+    let mut host = host();
+    let ground = host.terrain().height_at(DVec2::new(201.3, 188.7)).unwrap();
+    let below = ORIGIN + DVec3::new(201.3, 188.7, ground - 6.0);
+    host.draw(&looking(below, DVec3::new(0.01, 0.02, 1.0)));
+    assert!(host.depths(0).iter().all(|depth| *depth == 0.0));
+    host.draw(&looking(below + DVec3::Z * 12.0, DVec3::new(0.01, 0.02, -1.0)));
+    assert!(host.depths(0).iter().all(|depth| *depth > 0.0));
+}
+
+#[test]
 fn a_hole_is_not_drawn_and_what_lies_behind_it_is_seen() {
     let mut host = host();
     let hole = [None; 35];
