@@ -22,6 +22,8 @@ use std::{
     time::Instant,
 };
 
+use glam::DVec3;
+
 pub use super::boundary::objects::view::*;
 use super::{
     boundary::{
@@ -38,7 +40,7 @@ use super::{
     weather_convert::{from_c, overrides},
 };
 use crate::{
-    error::{Result, Status},
+    error::{Error, Result, Status},
     frame::{CostItem, MOST_CALLS, MOST_FRAMES, Stages, View, time_limit},
     weather::{Conditions, derive_with},
 };
@@ -299,7 +301,8 @@ pub unsafe extern "C" fn wk_view_record(
 
 /// Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
 /// and hardly any later frame waits for one. Each weather is drawn during the change from the previous weather of the
-/// list (for the first, from the context's own), after the change, and with the sun at several heights. Call this
+/// list (for the first, from the context's own), after the change, and with the sun at several heights. Where the
+/// context has weather regions, each weather is also drawn with them around the camera: set them before. Call this
 /// function behind a loading screen, before the view's first frame: the next frame begins as a view's first one does.
 /// Afterwards the context is as before.
 ///
@@ -339,7 +342,10 @@ pub unsafe extern "C" fn wk_view_prepare(
         let most = time_limit(most_s)?;
         object.cell.check_not_lost()?;
         object.cell.drain();
-        let rehearsal = object.lock().begin_rehearsal(&object.context.read(), &calls, weathers)?;
+        let eye = DVec3::from_array(c.position_m);
+        let begun_rehearsal = object.lock().begin_rehearsal(&object.context.read(), &calls, weathers, eye);
+        let named = |e: Error| e.renamed("frame.camera.position", "frame.position_m");
+        let rehearsal = begun_rehearsal.map_err(named)?;
         loop {
             let Some(moment) = object.lock().next_moment(&rehearsal) else { return Ok(Status::Ok) };
             let entered = rehearsal.enter(&mut object.context.write(), moment);
@@ -347,7 +353,7 @@ pub unsafe extern "C" fn wk_view_prepare(
             let drawn = entered.and_then(|()| unsafe { rehearse(call, &object, &c, &calls) });
             object.lock().end_moment(&drawn);
             rehearsal.leave(&mut object.context.write())?;
-            drawn.map_err(|e| e.renamed("frame.camera.position", "frame.position_m"))?;
+            drawn.map_err(named)?;
             if begun.elapsed() >= most {
                 let rest = object.lock().next_moment(&rehearsal);
                 return Ok(if rest.is_some() { Status::Pending } else { Status::Ok });

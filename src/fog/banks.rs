@@ -36,7 +36,7 @@ use super::{
 use crate::{
     error::Result,
     moment::Scene,
-    regions::{HeldRegion, MAX_REGION_CORNERS, MAX_WEATHER_REGIONS, RegionShape, RegionWay, SeenRegion},
+    regions::{HeldRegion, MAX_REGION_CORNERS, MAX_WEATHER_REGIONS, RegionShape, RegionWay, SeenRegion, turns},
     scene::{Camera, WorldFrame},
     stage::FrameContext,
     weather::{GroundLayer, WeatherParts},
@@ -101,16 +101,6 @@ impl FogBank {
         })
     }
 
-    /// Returns the kind of the shape in shaders.
-    fn kind(&self) -> u32 {
-        match &self.shape {
-            RegionShape::Rectangle { .. } => 0,
-            RegionShape::Ellipse { .. } => 1,
-            RegionShape::Polygon { corners_m, count } if is_convex(&corners_m[..*count]) => 2,
-            RegionShape::Polygon { .. } => 3,
-        }
-    }
-
     /// Returns the bank in the layout of shaders.
     pub fn uniform(&self) -> FogBankUniform {
         let (mut half, mut corner, mut count) = ([1.0; 2], 0.0, 0);
@@ -137,27 +127,13 @@ impl FogBank {
             perimeter: self.perimeter_m as f32,
             strength: self.strength as f32,
             radius: self.shape.radius_m() as f32,
-            kind: self.kind(),
+            kind: self.shape.kind(),
             count: count as u32,
             overlaps: self.overlaps,
             merges: u32::from(self.merges),
             corners: std::array::from_fn(|i| two(corners[2 * i], corners[2 * i + 1])),
         }
     }
-}
-
-/// Returns the turn at each corner of a polygon: above 0 to the left.
-fn turns(corners: &[[f64; 2]]) -> impl Iterator<Item = f64> {
-    let count = corners.len();
-    let corner = move |i: usize| DVec2::from(corners[i % count]);
-    (0..count).map(move |i| (corner(i + 1) - corner(i)).perp_dot(corner(i + 2) - corner(i + 1)))
-}
-
-/// Whether a polygon is convex.
-fn is_convex(corners: &[[f64; 2]]) -> bool {
-    let (left, right) = (turns(corners).any(|turn| turn > 0.0), turns(corners).any(|turn| turn < 0.0));
-    // A polygon that does not cross itself, and whose corners all turn one way, makes one full turn.
-    left != right
 }
 
 /// Returns the regions whose banks are drawn, in the order of the world's regions: the nearest [`MOST_BANKS`] of the
@@ -246,7 +222,7 @@ impl FogBanks {
 
     /// Returns the shapes of the banks, bit k for kind k.
     pub fn shapes(&self) -> u32 {
-        self.0.iter().fold(0, |set, bank| set | 1 << bank.kind())
+        self.0.iter().fold(0, |set, bank| set | 1 << bank.shape.kind())
     }
 
     /// Whether regions of banks overlap.

@@ -3,6 +3,8 @@
 
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
+
 use super::{history::FrameHistory, rehearsed::RehearsedView, view::View};
 use crate::{
     context::{Context, Rehearsal},
@@ -49,10 +51,11 @@ impl View {
     /// Draws weathers that may come, into small images of the view's own. The pipelines of these weathers are then
     /// compiled and their first tables made, so that hardly any frame waits for them when the weather comes. Each
     /// weather is drawn at several moments: while the previous weather changes to it, after the change, and with the
-    /// sun at several heights. `frame` has the settings of the coming frames, and images with the same formats, samples
-    /// and usages as in these frames. The images of `frame` are not drawn into. `calls` are the stages of the calls of
-    /// one frame, in order, at most seven. Call this function before the first frame or behind a loading screen: the
-    /// next frame begins as a view's first one does. On return the context is as it was before the call.
+    /// sun at several heights. Where the context has weather regions, each weather is also drawn with them around the
+    /// camera: set them before. `frame` has the settings of the coming frames, and images with the same formats,
+    /// samples and usages as in these frames. The images of `frame` are not drawn into. `calls` are the stages of the
+    /// calls of one frame, in order, at most seven. Call this function before the first frame or behind a loading
+    /// screen: the next frame begins as a view's first one does. On return the context is as it was before the call.
     ///
     /// One call draws for about `most`, and at least one moment of a weather. [`Status::Pending`] says that moments
     /// remain: call this function again with the same weathers. Other weathers begin a new rehearsal.
@@ -71,7 +74,7 @@ impl View {
         let begun = Instant::now();
         let one = |(i, weather): (usize, &Weather)| derive(weather).map_err(|e| e.within(&format!("weathers[{i}]")));
         let weathers = weathers.iter().enumerate().map(one).collect::<Result<_>>()?;
-        let rehearsal = self.begin_rehearsal(context, calls, weathers)?;
+        let rehearsal = self.begin_rehearsal(context, calls, weathers, frame.camera.position)?;
         while let Some(moment) = self.next_moment(&rehearsal) {
             let entered = rehearsal.enter(context, moment);
             let drawn = entered.and_then(|()| {
@@ -101,12 +104,13 @@ impl View {
         context: &Context,
         calls: &[Stages],
         weathers: Vec<Conditions>,
+        eye: DVec3,
     ) -> Result<Rehearsal> {
         if calls.is_empty() || calls.len() > MOST_CALLS {
             return Err(Error::range("calls", &format!("1 to {MOST_CALLS}"), calls.len()));
         }
         calls.iter().try_for_each(|stages| Stages::from_bits(stages.0).map(|_| ())).map_err(|e| e.within("calls"))?;
-        let rehearsal = Rehearsal::new(context, weathers)?;
+        let rehearsal = Rehearsal::new(context, weathers, eye)?;
         if self.rehearsal.weathers != rehearsal.weathers() {
             (self.rehearsal.weathers, self.rehearsal.done) = (rehearsal.weathers().to_vec(), 0);
         }

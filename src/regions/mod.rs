@@ -48,5 +48,6 @@ pub(crate) use merge::RegionsHere;
 pub(crate) use region::HeldRegion;
 pub use region::{MAX_WEATHER_REGIONS, RegionPlan, WeatherRegion};
 pub(crate) use seen::SeenRegion;
+pub(crate) use shape::turns;
 pub use shape::{MAX_REGION_CORNERS, RegionShape};
 pub(crate) use way::RegionWay;

@@ -58,6 +58,17 @@ impl RegionShape {
         }
     }
 
+    /// Returns the kind of the shape, by which shaders and their pipelines differ: 0 rectangle, 1 ellipse, 2 convex
+    /// polygon, 3 other polygon.
+    pub(crate) fn kind(&self) -> u32 {
+        match self {
+            Self::Rectangle { .. } => 0,
+            Self::Ellipse { .. } => 1,
+            Self::Polygon { corners_m, count } if is_convex(&corners_m[..*count]) => 2,
+            Self::Polygon { .. } => 3,
+        }
+    }
+
     /// Returns the distance of a point of the plan from the border, m: positive outside, negative inside.
     pub(crate) fn distance(&self, p: DVec2) -> f64 {
         match self {
@@ -81,6 +92,20 @@ impl RegionShape {
             }
         }
     }
+}
+
+/// Returns the turn at each corner of a polygon: above 0 to the left.
+pub(crate) fn turns(corners: &[[f64; 2]]) -> impl Iterator<Item = f64> {
+    let count = corners.len();
+    let corner = move |i: usize| DVec2::from(corners[i % count]);
+    (0..count).map(move |i| (corner(i + 1) - corner(i)).perp_dot(corner(i + 2) - corner(i + 1)))
+}
+
+/// Whether a polygon is convex.
+fn is_convex(corners: &[[f64; 2]]) -> bool {
+    let (left, right) = (turns(corners).any(|turn| turn > 0.0), turns(corners).any(|turn| turn < 0.0));
+    // A polygon that does not cross itself, and whose corners all turn one way, makes one full turn.
+    left != right
 }
 
 /// Checks the half extents of a rectangle or an ellipse.

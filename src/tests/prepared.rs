@@ -9,8 +9,9 @@ use crate::{
     error::Status,
     frame::{Frame, Shared, Stages, View},
     gpu::{Device, DeviceOptions, counts::DeviceWork, flat_texture},
+    regions::{RegionPlan, RegionShape, WeatherRegion},
     scene::Camera,
-    weather::{Precipitation, Weather},
+    weather::{Fog, FogKind, Precipitation, Weather, WeatherParts},
 };
 
 const SIZE: (u32, u32) = (160, 90);
@@ -111,6 +112,38 @@ fn prepared_weathers_come_with_hardly_a_new_pipeline() {
         assert!(calls > 50, "a call of no time draws one moment: {calls}");
         // Three of 84 are not rehearsed: those of a bow that fades in fog before snow.
         assert!(20 * with.iter().sum::<u64>() <= without.iter().sum::<u64>(), "{with:?} of {without:?}");
+    }
+}
+
+/// A fog bank with a radius of 500 m, this far to the north.
+fn bank(north_m: f64) -> WeatherRegion {
+    let fog = Weather { visibility_m: 300.0, fog: Fog::of(FogKind::Fog), ..Weather::default() };
+    let shape = RegionShape::Ellipse { half_m: [500.0; 2] };
+    let plan = RegionPlan { shape, center_m: [0.0, north_m, 0.0], ..RegionPlan::default() };
+    WeatherRegion { plan, has: WeatherParts::FOG, weather: fog, ..WeatherRegion::default() }
+}
+
+#[test]
+fn regions_far_away_are_rehearsed_too() {
+    for is_gpu in [false, true] {
+        let created = |prepares: bool| {
+            let mut simulator = Simulator::new(is_gpu);
+            simulator.context.set_weather_regions(&[bank(90e3), bank(93e3)]).expect("regions");
+            while prepares
+                && simulator.prepare(&[preset("clear")], Duration::from_secs(60)).expect("a rehearsal")
+                    == Status::Pending
+            {}
+            simulator.play(2.0);
+            let before = simulator.pipelines();
+            for near in [vec![bank(4000.0)], vec![bank(300.0)], vec![bank(300.0), bank(900.0)]] {
+                simulator.context.set_weather_regions(&near).expect("regions");
+                simulator.play(2.0);
+            }
+            simulator.pipelines() - before
+        };
+        let [without, with] = [false, true].map(created);
+        println!("as a GPU: {is_gpu}: {without} without, {with} after a rehearsal");
+        assert!(without >= 3 && with == 0, "{with} of {without}");
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{
         area::{AreaMotion, RainArea},
     },
     moment::Region,
-    regions::{HeldRegion, MAX_WEATHER_REGIONS, WeatherRegion},
+    regions::{HeldRegion, MAX_WEATHER_REGIONS, RegionPlan, WeatherRegion},
     weather::{Timeline, timeline::MAX_TIME_S},
 };
 
@@ -100,6 +100,17 @@ impl World {
         self.set.weather_regions = held.collect::<Result<_>>()?;
         self.regions_revision += 1;
         Ok(())
+    }
+
+    /// Keeps some of the weather regions, whose indices are in `kept`, and brings their centres to a position of the
+    /// host's world, m, where they rest at full strength.
+    pub fn bring_weather_regions(&mut self, kept: &[usize], center_m: DVec3) {
+        let brought = |region: &HeldRegion| {
+            let plan = RegionPlan { center_m: center_m.into(), velocity_m_s: [0.0; 2], strength: 1.0, ..region.plan };
+            HeldRegion { plan, ..region.clone() }
+        };
+        self.set.weather_regions = kept.iter().map(|i| brought(&self.set.weather_regions[*i])).collect();
+        self.regions_revision += 1;
     }
 
     /// Whether saved weather regions are possible in this world.
