@@ -10,13 +10,14 @@ use std::{
 };
 
 use super::{
+    area,
     boundary::{
         Host, handles,
         layout::{self, FieldKind, STRUCTS, StructInfo},
         objects::{ViewObject, wk_context, wk_device, wk_view},
     },
-    clouds, context, device, fog_law, lightning, plan, rain, report, sea, sky, snow, stars, status, terrain, timeline,
-    view, weather, wind_field, windscreen,
+    clouds, context, device, fog_law, light, lightning, plan, rain, region, report, sea, sky, snow, stars, status,
+    terrain, timeline, view, weather, wind_field, windscreen,
 };
 use crate::{context::Context, frame::View, gpu::Device};
 
@@ -194,6 +195,15 @@ fn bytes_of<T: layout::Layout>(value: &T) -> StructBytes {
     sealed(T::INFO.name, &bytes).unwrap_or(bytes)
 }
 
+/// Element of a list of the C interface: its own struct, and the weather that it points to, if it has one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedItem {
+    /// Bytes of the element's struct.
+    pub own: StructBytes,
+    /// Bytes of a `wk_weather`, for structs with a field `weather`.
+    pub weather: Option<StructBytes>,
+}
+
 /// A context with one view on a device, behind the handles of the C interface.
 pub struct NamedCalls {
     device: *mut wk_device,
@@ -247,6 +257,41 @@ impl NamedCalls {
                 "wk_view_set_snow" => snow::wk_view_set_snow(view, p.cast()),
                 "wk_view_set_windscreen" => windscreen::wk_view_set_windscreen(view, p.cast()),
                 _ => plan::wk_view_set_budget(view, p.cast()),
+            }
+        })
+    }
+
+    /// Makes the call that takes a list of structs, by the call's name.
+    ///
+    /// # Errors
+    /// The errors of the call; an unknown call.
+    pub fn set_list(&self, call: &str, items: &[NamedItem]) -> Result<(), Refusal> {
+        let unknown = || Refusal { message: format!("there is no call {call} for a list"), field: String::new() };
+        let list = LISTS.iter().find(|list| list.call == call).ok_or_else(unknown)?;
+        let own = info(list.of).ok_or_else(unknown)?;
+        let weather_at = own.fields.iter().find(|field| field.name == "weather").map(|field| field.offset);
+        let (mut words, mut weathers) = (Vec::new(), Vec::new());
+        for item in items {
+            let mut bytes = sealed(list.of, &item.own)?;
+            if let (Some(offset), Some(weather)) = (weather_at, &item.weather) {
+                let weather = sealed("wk_weather", weather)?;
+                bytes[offset / size_of::<u64>()] = weather.as_ptr() as u64;
+                weathers.push(weather);
+            }
+            words.extend(bytes);
+        }
+        let p = if words.is_empty() { null() } else { words.as_ptr() };
+        let (context, count, stride) = (self.context, items.len() as u32, own.size as u32);
+        // SAFETY: `p` points to `count` structs, `stride` bytes apart, as `sealed` has checked. The weathers that they
+        // point to live until the call has returned.
+        done(unsafe {
+            match call {
+                "wk_context_set_rain_areas" => area::wk_context_set_rain_areas(context, p.cast(), count, stride),
+                "wk_context_set_weather_regions" => {
+                    region::wk_context_set_weather_regions(context, p.cast(), count, stride)
+                }
+                "wk_context_set_lights" => light::wk_context_set_lights(context, p.cast(), count, stride),
+                _ => sea::wk_context_set_sea_hulls(context, p.cast(), count, stride),
             }
         })
     }
@@ -337,6 +382,42 @@ pub const SETTERS: [(&str, &str); 14] = [
     ("wk_view_set_snow", "wk_snow"),
     ("wk_view_set_windscreen", "wk_windscreen"),
     ("wk_view_set_budget", "wk_budget"),
+];
+
+/// Call that takes a list of structs.
+#[derive(Clone, Copy, Debug)]
+pub struct NamedList {
+    /// Name of the call.
+    pub call: &'static str,
+    /// Name of the struct of an element.
+    pub of: &'static str,
+    /// Largest number of elements.
+    pub most: usize,
+    /// Whether each element points to a weather.
+    pub has_weather: bool,
+}
+
+/// Calls that take a list of structs.
+pub const LISTS: [NamedList; 4] = [
+    NamedList {
+        call: "wk_context_set_rain_areas",
+        of: "wk_rain_area",
+        most: crate::rain::MAX_AREAS,
+        has_weather: false,
+    },
+    NamedList {
+        call: "wk_context_set_weather_regions",
+        of: "wk_weather_region",
+        most: crate::regions::MAX_WEATHER_REGIONS,
+        has_weather: true,
+    },
+    NamedList { call: "wk_context_set_lights", of: "wk_light", most: crate::scene::MAX_LIGHTS, has_weather: false },
+    NamedList {
+        call: "wk_context_set_sea_hulls",
+        of: "wk_sea_hull",
+        most: crate::sea::MAX_SEA_HULLS,
+        has_weather: false,
+    },
 ];
 
 /// Calls that fill one struct of answers, each with the name of the struct.

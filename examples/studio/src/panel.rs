@@ -135,13 +135,10 @@ fn section(ui: &mut Ui, app: &App, settings: &mut Settings, part: Part, wanted: 
     ui.add_space(6.0);
     let mut is_there = settings.bytes(part).is_some();
     ui.horizontal(|ui| {
-        if matches!(part, Part::World | Part::Weather) {
+        if part.is_fixed() {
             ui.label(RichText::new(title(part)).strong());
         } else if ui.checkbox(&mut is_there, RichText::new(title(part)).strong()).changed() {
-            match part {
-                Part::Layer(i) if !is_there => settings.remove_layer(i),
-                _ => settings.switch(part, is_there),
-            }
+            if is_there { settings.switch(part, true) } else { settings.remove(part) }
         }
     });
     if let Some(message) = app.refusal_of_all(part) {

@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use welkin::capi::by_name::{NamedCalls, NamedWeather, Refusal, SETTERS, StructBytes, default_of};
+use welkin::capi::by_name::{
+    LISTS, NamedCalls, NamedItem, NamedList, NamedWeather, Refusal, SETTERS, StructBytes, default_of,
+};
 
 use crate::{
     bytes,
@@ -23,6 +25,10 @@ pub enum Part {
     Layer(usize),
     /// Struct of a call, by the call's name.
     Call(&'static str),
+    /// Element of the list with this index in [`LISTS`], from 0.
+    Item(usize, usize),
+    /// Weather of an element of a list.
+    ItemWeather(usize, usize),
 }
 
 pub use welkin::weather::MAX_CLOUD_LAYERS as LAYERS;
@@ -36,10 +42,13 @@ impl Part {
             Self::Overrides => "wk_weather_overrides",
             Self::Layer(_) => "wk_cloud_layer",
             Self::Call(call) => SETTERS.iter().find(|s| s.0 == call).map_or("", |s| s.1),
+            Self::Item(list, _) => LISTS.get(list).map_or("", |list| list.of),
+            Self::ItemWeather(..) => "wk_weather",
         }
     }
 
-    /// Short name for files and scripts: `weather`, `layer1`, `sea`.
+    /// Short name for files and scripts: `weather`, `layer1`, `sea`, `light1`, `weather_region1`,
+    /// `weather_of_region1`.
     pub fn key(self) -> String {
         match self {
             Self::World => "world".into(),
@@ -47,23 +56,59 @@ impl Part {
             Self::Overrides => "overrides".into(),
             Self::Layer(i) => format!("layer{}", i + 1),
             Self::Call(call) => call.rsplit_once("_set_").map_or(call, |split| split.1).into(),
+            Self::Item(_, i) => format!("{}{}", self.structure().trim_start_matches("wk_"), i + 1),
+            Self::ItemWeather(list, i) => format!("weather_of_{}", Self::Item(list, i).key().replace("weather_", "")),
         }
     }
 
-    /// All parts, with `layers` cloud layers.
-    pub fn all(layers: usize) -> Vec<Self> {
+    /// All parts, with `layers` cloud layers and, for each of [`LISTS`], as many elements as `items` says.
+    fn all(layers: usize, items: impl Fn(usize) -> usize) -> Vec<Self> {
         let weather = [Self::World, Self::Weather, Self::Overrides].into_iter();
-        weather.chain((0..layers).map(Self::Layer)).chain(SETTERS.iter().map(|s| Self::Call(s.0))).collect()
+        let item = |list: usize, i: usize| {
+            let weather = LISTS[list].has_weather.then_some(Self::ItemWeather(list, i));
+            [Self::Item(list, i)].into_iter().chain(weather)
+        };
+        let items = (0..LISTS.len()).flat_map(|list| (0..items(list)).flat_map(move |i| item(list, i)));
+        let calls = SETTERS.iter().map(|s| Self::Call(s.0));
+        weather.chain((0..layers).map(Self::Layer)).chain(calls).chain(items).collect()
     }
 
-    /// Part of a short name; layers beyond the last have names too.
+    /// One part of each kind.
+    pub fn kinds() -> Vec<Self> {
+        Self::all(1, |_| 1)
+    }
+
+    /// Part of a short name; elements of lists beyond the last have names too.
     pub fn of_key(key: &str) -> Result<Self, String> {
-        let all = Self::all(LAYERS);
+        let all = Self::all(LAYERS, |list| LISTS[list].most);
         let known = |part: &&Self| part.key() == key;
         all.iter().find(known).copied().ok_or_else(|| {
-            let keys: Vec<String> = Self::all(1).into_iter().map(Self::key).collect();
-            format!("`{key}` is not one of {} (layers up to layer{LAYERS})", keys.join(", "))
+            let keys: Vec<String> = Self::kinds().into_iter().map(Self::key).collect();
+            let most = LISTS.iter().map(|list| list.most).fold(LAYERS, usize::max);
+            format!("`{key}` is not one of {} (lists have up to {LAYERS} or {most} elements)", keys.join(", "))
         })
+    }
+
+    /// Whether the part is there as long as the part that it belongs to.
+    pub fn is_fixed(self) -> bool {
+        matches!(self, Self::World | Self::Weather | Self::ItemWeather(..))
+    }
+}
+
+/// Returns a new element of a list. Elements with a number of their own get the next one.
+fn new_item(list: &NamedList, index: usize) -> NamedItem {
+    let mut own = default_of(list.of).unwrap_or_default();
+    if let Some(row) = table::rows(list.of).iter().find(|row| row.field.name == "id") {
+        bytes::set_integer(&mut own, &row.field, 0, index as u64 + 1);
+    }
+    NamedItem { own, weather: if list.has_weather { default_of("wk_weather") } else { None } }
+}
+
+/// Returns the bytes of a part that is new.
+fn new_bytes(part: Part) -> StructBytes {
+    match part {
+        Part::Item(list, i) => new_item(&LISTS[list], i).own,
+        other => default_of(other.structure()).unwrap_or_default(),
     }
 }
 
@@ -73,6 +118,8 @@ pub struct Settings {
     world: StructBytes,
     weather: NamedWeather,
     calls: BTreeMap<&'static str, Option<StructBytes>>,
+    /// Elements of each of [`LISTS`].
+    lists: [Vec<NamedItem>; LISTS.len()],
 }
 
 impl Default for Settings {
@@ -82,7 +129,7 @@ impl Default for Settings {
         // The studio's world has terrain, which would not be seen otherwise.
         let is_on = |call: &str| call == "wk_context_set_terrain_drawing";
         let calls = SETTERS.iter().map(|s| (s.0, is_on(s.0).then(|| bytes(s.1)))).collect();
-        Self { world: bytes("wk_context_desc"), weather, calls }
+        Self { world: bytes("wk_context_desc"), weather, calls, lists: Default::default() }
     }
 }
 
@@ -97,6 +144,16 @@ impl Settings {
         self.weather.layers.len()
     }
 
+    /// Number of elements of the list with an index in [`LISTS`].
+    pub fn items(&self, list: usize) -> usize {
+        self.lists[list].len()
+    }
+
+    /// Parts that there may be now.
+    pub fn parts(&self) -> Vec<Part> {
+        Part::all(self.layers(), |list| self.items(list))
+    }
+
     /// Bytes of a part; `None` where the library's own choice holds.
     pub fn bytes(&self, part: Part) -> Option<&StructBytes> {
         match part {
@@ -105,6 +162,8 @@ impl Settings {
             Part::Overrides => self.weather.overrides.as_ref(),
             Part::Layer(i) => self.weather.layers.get(i),
             Part::Call(call) => self.calls.get(call)?.as_ref(),
+            Part::Item(list, i) => self.lists[list].get(i).map(|item| &item.own),
+            Part::ItemWeather(list, i) => self.lists[list].get(i)?.weather.as_ref(),
         }
     }
 
@@ -116,13 +175,15 @@ impl Settings {
             Part::Overrides => self.weather.overrides.as_mut(),
             Part::Layer(i) => self.weather.layers.get_mut(i),
             Part::Call(call) => self.calls.get_mut(call)?.as_mut(),
+            Part::Item(list, i) => self.lists[list].get_mut(i).map(|item| &mut item.own),
+            Part::ItemWeather(list, i) => self.lists[list].get_mut(i)?.weather.as_mut(),
         }
     }
 
-    /// Gives a part its defaults, or leaves it to the library. The layers below one that is added are added too; a
-    /// layer that is taken away takes those above along.
+    /// Gives a part its defaults, or leaves it to the library. The elements of a list before one that is added are
+    /// added too; one that is taken away takes those after it along.
     pub fn switch(&mut self, part: Part, on: bool) {
-        let bytes = default_of(part.structure()).unwrap_or_default();
+        let bytes = new_bytes(part);
         match part {
             Part::World | Part::Weather => {}
             Part::Overrides => self.weather.overrides = on.then_some(bytes),
@@ -131,13 +192,22 @@ impl Settings {
             Part::Call(call) => {
                 self.calls.insert(call, on.then_some(bytes));
             }
+            Part::Item(list, i) if on => {
+                let items = &mut self.lists[list];
+                (items.len()..=i).for_each(|new| items.push(new_item(&LISTS[list], new)));
+            }
+            Part::Item(list, i) => self.lists[list].truncate(i),
+            Part::ItemWeather(list, i) if on => self.switch(Part::Item(list, i), true),
+            Part::ItemWeather(..) => {}
         }
     }
 
-    /// Takes one cloud layer away.
-    pub fn remove_layer(&mut self, layer: usize) {
-        if layer < self.layers() {
-            self.weather.layers.remove(layer);
+    /// Takes one cloud layer or one element of a list away.
+    pub fn remove(&mut self, part: Part) {
+        match part {
+            Part::Layer(i) if i < self.layers() => drop(self.weather.layers.remove(i)),
+            Part::Item(list, i) if i < self.items(list) => drop(self.lists[list].remove(i)),
+            other => self.switch(other, false),
         }
     }
 
@@ -169,7 +239,23 @@ impl Settings {
                 refused.push((Part::Call(call), refusal));
             }
         }
+        for (list, items) in self.lists.iter().enumerate() {
+            if before.map_or(items.is_empty(), |before| before.lists[list] == *items) {
+                continue;
+            }
+            if let Err(refusal) = calls.set_list(LISTS[list].call, items) {
+                refused.push((self.item_of(list, &refusal), refusal));
+            }
+        }
         refused
+    }
+
+    /// Part of a list that a refusal is about.
+    fn item_of(&self, list: usize, refusal: &Refusal) -> Part {
+        let index = refusal.field.split_once('[').and_then(|(_, rest)| rest.split(']').next()?.parse().ok());
+        let index = index.unwrap_or(0).min(self.items(list).saturating_sub(1));
+        let is_of_weather = LISTS[list].has_weather && refusal.field.contains(".weather");
+        if is_of_weather { Part::ItemWeather(list, index) } else { Part::Item(list, index) }
     }
 
     /// Part of the weather that a refusal is about.
@@ -273,14 +359,14 @@ impl Settings {
     /// Everything that differs from the defaults, as a settings file.
     pub fn to_toml(&self) -> String {
         let mut file = toml::Table::new();
-        for part in Part::all(self.layers()) {
+        for part in self.parts() {
             let Some(bytes) = self.bytes(part) else {
                 if Self::default().bytes(part).is_some() {
                     file.insert(part.key(), false.into());
                 }
                 continue;
             };
-            let default = default_of(part.structure()).unwrap_or_default();
+            let default = new_bytes(part);
             let mut own = toml::Table::new();
             for row in table::rows(part.structure()) {
                 let is_set = row.is_optional() && table::is_on(bytes, row);
@@ -288,7 +374,7 @@ impl Settings {
                     own.insert(row.field.name.into(), value(bytes, row));
                 }
             }
-            let stays = matches!(part, Part::World | Part::Weather) && own.is_empty();
+            let stays = part.is_fixed() && own.is_empty();
             if !stays {
                 file.insert(part.key(), own.into());
             }

@@ -58,10 +58,12 @@ pub struct Row {
 
 impl Row {
     /// Whether a panel can show the field: no pointer, no struct, no size of a list, nothing reserved.
-    fn can_be_set(field: &NamedField, switched: &[&str]) -> bool {
+    fn can_be_set(field: &NamedField, all: &[NamedField], switched: &[&str]) -> bool {
         let name = field.name;
-        let of_list = name.ends_with("_count") || name.ends_with("_stride");
-        !of_list
+        let list = name.strip_suffix("_count").or(name.strip_suffix("_stride"));
+        let is_list =
+            |f: &NamedField| matches!(f.kind, NamedKind::Pointer) && list.is_some_and(|l| f.name.starts_with(l));
+        !all.iter().any(is_list)
             && !name.starts_with("reserved")
             && !switched.contains(&name)
             && !matches!(field.kind, NamedKind::Pointer | NamedKind::Struct(_))
@@ -255,7 +257,7 @@ fn made(structure: &'static str) -> Vec<Row> {
             switched.push(union.name);
         }
     }
-    let own = all.iter().filter(|field| Row::can_be_set(field, &switched));
+    let own = all.iter().filter(|field| Row::can_be_set(field, &all, &switched));
     own.map(|field| {
         let (label, unit) = worded(field.name);
         let choices = if let NamedKind::Choice { values, .. } = field.kind { choices(values) } else { Vec::new() };

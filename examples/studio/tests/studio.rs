@@ -4,7 +4,10 @@
 use std::{collections::BTreeSet, fs, path::PathBuf, sync::Arc};
 
 use welkin::{
-    capi::{abi::HEADER, by_name::SETTERS},
+    capi::{
+        abi::HEADER,
+        by_name::{LISTS, SETTERS},
+    },
     gpu::{Device, DeviceOptions},
 };
 use welkin_studio::{
@@ -18,19 +21,15 @@ use welkin_studio::{
 };
 
 /// Structs that a host sets and the studio does not, and why.
-const NOT_SET: [(&str, &str); 14] = [
+const NOT_SET: [(&str, &str); 10] = [
     ("wk_cloud_map", "a picture in memory"),
     ("wk_ground_grid", "heights in memory"),
-    ("wk_light", "a list"),
     ("wk_occluder_map", "a picture in memory"),
-    ("wk_rain_area", "a list"),
-    ("wk_sea_hull", "a list"),
-    ("wk_sea_region", "a list"),
-    ("wk_shelter", "a list"),
+    ("wk_sea_region", "its corners are a list of their own"),
+    ("wk_shelter", "those of the studio's machine and hall"),
     ("wk_soil", "lists of kinds and horizons"),
     ("wk_terrain", "the studio's world has one"),
     ("wk_terrain_cells", "heights in memory"),
-    ("wk_weather_region", "a list"),
     ("wk_wind_grid", "velocities in memory"),
     ("wk_weather", "set with its layers and overrides"),
 ];
@@ -52,7 +51,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn all_rows() -> Vec<(Part, Row)> {
-    Part::all(1)
+    Part::kinds()
         .into_iter()
         .flat_map(|part| table::rows(part.structure()).iter().map(move |row| (part, row.clone())))
         .collect()
@@ -70,12 +69,14 @@ fn each_struct_that_a_call_sets_is_in_the_table_or_named() {
     }
     assert!(taken.len() > 20, "{taken:?}");
     for name in taken.iter().map(|name| format!("wk_{name}")) {
-        let is_set = SETTERS.iter().any(|s| s.1 == name);
+        let is_set = SETTERS.iter().any(|s| s.1 == name) || LISTS.iter().any(|list| list.of == name);
         let is_named = NOT_SET.iter().any(|n| n.0 == name);
         assert!(is_set != is_named, "{name}: set {is_set}, named as not set {is_named}");
     }
-    for part in Part::all(1) {
-        let stands = PAGES.iter().filter(|page| page.parts(&Settings::default()).contains(&part)).count();
+    for part in Part::kinds() {
+        let mut settings = Settings::default();
+        settings.switch(part, true);
+        let stands = PAGES.iter().filter(|page| page.parts(&settings).contains(&part)).count();
         assert_eq!(stands, 1, "{part:?} stands on one page");
     }
 }
@@ -155,7 +156,7 @@ fn a_settings_file_brings_back_what_was_set() {
         let text = settings.to_toml();
         let back = Settings::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
         // Values of fields that are off are not kept.
-        for part in Part::all(settings.layers()) {
+        for part in settings.parts() {
             let (a, b) = (settings.bytes(part), back.bytes(part));
             assert_eq!(a.is_some(), b.is_some(), "{part:?} in\n{text}");
             let (Some(a), Some(b)) = (a, b) else { continue };
@@ -223,6 +224,42 @@ fn commands_name_what_they_accept_and_change_nothing_if_wrong() {
     assert!(studio.app.refusal(Part::Weather, "visibility_m").is_some_and(|m| m.contains("[1, 1000000]")));
     script::run_all(&mut studio, "undo\n").expect("the last weather is accepted");
     assert!(studio.app.refused.is_empty(), "{:?}", studio.app.refused);
+}
+
+#[test]
+fn elements_of_lists_are_set_refused_and_taken_away_one_by_one() {
+    let mut studio = studio();
+    let text = "
+        set light2.position_m [3.0, 4.0, 6.0]
+        set light2.inner_deg 20
+        set rain_area1.rate_mm_h 12
+        on sea_hull3
+        set weather_of_region1.visibility_m 300
+        set weather_of_region1.fog_kind fog
+        set weather_region1.has fog
+        pass 0.1";
+    script::run_all(&mut studio, text).expect("all of it is accepted");
+    let counts = |studio: &Headless| [0, 1, 2, 3].map(|list| studio.app.settings.items(list));
+    assert_eq!(counts(&studio), [1, 1, 2, 3], "lights and hulls before the named one are there too");
+    let regions = studio.app.world().calls().with(|_, context| context.weather_region_count());
+    assert_eq!(regions, Some(1));
+    // Hulls have numbers of their own, or the library would refuse them.
+    assert!(studio.app.refused.is_empty(), "{:?}", studio.app.refused);
+    let back = Settings::from_toml(&studio.app.settings.to_toml()).expect("its own file");
+    assert_eq!(back.to_toml(), studio.app.settings.to_toml());
+    for (line, part, field) in [
+        ("set weather_of_region1.visibility_m -3", Part::ItemWeather(1, 0), "visibility_m"),
+        ("set light2.outer_deg 300", Part::Item(2, 1), "outer_deg"),
+    ] {
+        let said = script::run_all(&mut studio, line).expect_err(line);
+        assert!(said.contains(&part.key()), "{said}");
+        assert!(studio.app.refusal(part, field).is_some(), "{line}: {:?}", studio.app.refused);
+        script::run_all(&mut studio, "undo").expect("the last settings are accepted");
+    }
+    let second = studio.app.settings.bytes(Part::Item(2, 1)).cloned();
+    studio.app.change(|settings| settings.remove(Part::Item(2, 0)));
+    assert_eq!(studio.app.settings.bytes(Part::Item(2, 0)).cloned(), second);
+    assert!(script::run(&mut studio, "on light65").unwrap_err().contains("light1"));
 }
 
 #[test]
@@ -296,7 +333,7 @@ fn no_hand_on_the_panel_brings_a_refusal_that_is_not_shown() {
     let (mut dice, mut refusals, mut pages) = (Dice(11), 0, BTreeSet::new());
     for action in 0..1000 {
         if action % 25 == 0 {
-            studio.app.open(PAGES[dice.below(PAGES.len())].title).unwrap();
+            studio.app.open(PAGES[action / 25 % PAGES.len()].title).unwrap();
         }
         pages.insert(studio.app.page);
         studio.frame_with(0.02, hand(&mut dice)).unwrap_or_else(|e| panic!("action {action}: {e}"));
