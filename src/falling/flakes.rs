@@ -13,10 +13,11 @@
 //! At their fall speeds the flakes must also give the rate, and c is solved from that
 //! ([`FlakeSizes::density_mm_g_cm3`]). It stays near Holroyd's value unless a reported visibility sets the extinction.
 //!
-//! *Speeds*. The terminal speed is a D^b m/s, D in mm: unrimed aggregates 0.8 D^0.16, rimed 0.69 D^0.41, densely rimed
-//! 0.79 D^0.27, graupel 1.3 D^0.66 (Locatelli and Hobbs 1974, table 1). Plane crystals of any size fall at 0.31 m/s
-//! (Nakaya and Terada 1935). Aggregates are densely rimed at 0 C and above, rimed at -5 C, and unrimed at -12 C and
-//! below; between these temperatures the speed is interpolated.
+//! *Speeds*. The terminal speed is a D^b m/s, D in mm: aggregates of dendrites 0.8 D^0.16, the same densely rimed
+//! 0.79 D^0.27, aggregates of plates, side planes, bullets and columns 0.69 D^0.41, graupel 1.3 D^0.66 (Locatelli and
+//! Hobbs 1974, table 1). Plane crystals of any size fall at 0.31 m/s (Nakaya and Terada 1935). Aggregates are densely
+//! rimed at 0 C and above, of plates and columns at -5 C, where columns grow, and of dendrites at -12 C and below.
+//! Between these temperatures the speed is interpolated.
 //!
 //! *Swirl*. Above a Reynolds number Re of 116.5 the wake of a disc loses its axial symmetry (Natarajan and Acrivos
 //! 1993). The flake then glides sideways and turns, so it falls on a helix. The helix replaces the lift force by which
@@ -61,8 +62,8 @@ const LEAST_MM_H: f64 = 0.02;
 pub enum FlakeKind {
     /// Aggregates of dendrites without rime: dry snow.
     Unrimed,
-    /// Rimed aggregates.
-    Rimed,
+    /// Aggregates of plates, side planes, bullets and columns without rime.
+    Columns,
     /// Densely rimed aggregates, which fall near the melting point.
     DenselyRimed,
     /// Graupel (snow pellets) of 0.1 to 0.2 g/cm^3. Snow grains fall as small graupel.
@@ -75,7 +76,7 @@ impl FlakeKind {
     /// All kinds with the names that programs use for them.
     pub const NAMES: [(&'static str, Self); 5] = [
         ("unrimed", Self::Unrimed),
-        ("rimed", Self::Rimed),
+        ("columns", Self::Columns),
         ("densely_rimed", Self::DenselyRimed),
         ("graupel", Self::Graupel),
         ("crystal", Self::Crystal),
@@ -91,7 +92,7 @@ impl FlakeKind {
     const fn law(self) -> (f64, f64) {
         match self {
             Self::Unrimed => (0.8, 0.16),
-            Self::Rimed => (0.69, 0.41),
+            Self::Columns => (0.69, 0.41),
             Self::DenselyRimed => (0.79, 0.27),
             Self::Graupel => (1.3, 0.66),
             Self::Crystal => (0.31, 0.0),
@@ -105,16 +106,16 @@ impl FlakeKind {
     }
 }
 
-/// Returns the terminal speed of aggregates in air of a temperature, m/s: interpolated between the laws of unrimed,
-/// rimed and densely rimed aggregates.
+/// Returns the terminal speed of aggregates in air of a temperature, m/s: interpolated between the laws of
+/// dendrites, of columns and of densely rimed dendrites.
 pub fn aggregate_speed_m_s(diameter_mm: f64, temperature_c: f64) -> f64 {
     let between = |cold: FlakeKind, warm: FlakeKind, share: f64| {
         cold.speed_m_s(diameter_mm) * (1.0 - share) + warm.speed_m_s(diameter_mm) * share
     };
     if temperature_c < -5.0 {
-        between(FlakeKind::Unrimed, FlakeKind::Rimed, ((temperature_c + 12.0) / 7.0).max(0.0))
+        between(FlakeKind::Unrimed, FlakeKind::Columns, ((temperature_c + 12.0) / 7.0).max(0.0))
     } else {
-        between(FlakeKind::Rimed, FlakeKind::DenselyRimed, ((temperature_c + 5.0) / 5.0).min(1.0))
+        between(FlakeKind::Columns, FlakeKind::DenselyRimed, ((temperature_c + 5.0) / 5.0).min(1.0))
     }
 }
 
@@ -346,7 +347,7 @@ mod tests {
     fn the_cold_and_the_warm_end_of_aggregates_are_the_published_laws() {
         for d in [0.5, 2.0, 8.0] {
             assert_eq!(aggregate_speed_m_s(d, -30.0), FlakeKind::Unrimed.speed_m_s(d));
-            assert!((aggregate_speed_m_s(d, -5.0) - FlakeKind::Rimed.speed_m_s(d)).abs() < 1e-12);
+            assert!((aggregate_speed_m_s(d, -5.0) - FlakeKind::Columns.speed_m_s(d)).abs() < 1e-12);
             assert_eq!(aggregate_speed_m_s(d, 1.0), FlakeKind::DenselyRimed.speed_m_s(d));
         }
         assert_eq!(FlakeKind::from_name("densely-rimed"), Some(FlakeKind::DenselyRimed));

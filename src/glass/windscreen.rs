@@ -129,6 +129,21 @@ impl Windscreen {
         check_range("windscreen.heat_w_m2", self.heat_w_m2, 0.0, 3000.0, "W/m^2")?;
         // Names are built only for an error, because a host that drives sets its windscreen before every frame.
         let named = |i: usize| move |e: Error| e.within(&format!("windscreen.arms[{i}]"));
-        self.arms.iter().flatten().enumerate().try_for_each(|(i, a)| a.validate().map_err(named(i)))
+        let mut arms = self.arms.iter().enumerate().filter_map(|(i, arm)| Some((i, arm.as_ref()?)));
+        arms.try_for_each(|(i, arm)| arm.validate().map_err(named(i)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_names_the_arm_that_is_wrong() {
+        let bad = WiperArm { length_m: -1.0, ..WiperArm::default() };
+        for arms in [[None, Some(bad)], [Some(WiperArm::default()), Some(bad)]] {
+            let error = Windscreen { arms, ..Windscreen::default() }.validate().unwrap_err().to_string();
+            assert!(error.contains("windscreen.arms[1].length_m"), "{error}");
+        }
     }
 }

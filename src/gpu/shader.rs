@@ -37,7 +37,7 @@ const VARIANTS: [(&str, &str); 7] = [
     ("lamps", "clouds/glow_view.wgsl"),
 ];
 
-/// Returns the names of shader `name` and of its variants with one word of [`VARIANTS`]. For the composition, also
+/// Returns the names of shader `name` and of its variants with one word of `VARIANTS`. For the composition, also
 /// returns some of its other variants, as examples of the rest.
 ///
 /// # Errors

@@ -63,6 +63,6 @@ impl StandIn {
         let mut encoder = device.device.create_command_encoder(&Default::default());
         let view = image.create_view(&Default::default());
         pass::draw(&mut encoder, "window", &self.pipeline, &[&self.group], &view);
-        device.queue.submit([encoder.finish()]);
+        device.submit(encoder);
     }
 }

@@ -188,6 +188,9 @@ impl Column {
         let mut gone = MassExchange::default();
         let ice = if open == 1.0 { f.ice } else { (f.ice as f64 * open) as i64 };
         if self.ice == 0 && ice == 0 {
+            // The wind may have taken all ice of wet snow and left its water.
+            gone.ran_off = self.water;
+            *self = Self::default();
             return gone;
         }
         let rain = if open == 1.0 { f.rain } else { (f.rain as f64 * open) as i64 };

@@ -129,6 +129,18 @@ fn lead_amid(
 }
 
 #[test]
+fn water_runs_off_once_the_wind_has_taken_all_ice() {
+    let mut column = Column { water: 400, ..Column::of(0.1, 200.0) };
+    let mass = column.mass();
+    let taken = column.erode(mass);
+    assert_eq!((column.ice, column.water), (0, 400));
+    let Acts(even, settling) = acts(&weather(-8.0, 30.0, 1.0), &Falling::NONE, 0.0);
+    let gone = column.step(&even, &settling, 1.0);
+    assert_eq!(taken + gone.ran_off, mass, "nothing is lost");
+    assert_eq!(column, Column::default());
+}
+
+#[test]
 fn snowfall_lies_on_the_ground_to_the_last_bit() {
     let land = flat([4, 3], 2.0);
     let mut field = land.field(Column::default());

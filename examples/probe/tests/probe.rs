@@ -133,7 +133,7 @@ fn flakes_fall_by_size_and_kind() {
         ("", "line 1, column 1: a header with diameter_mm,kind is missing"),
         ("diameter_mm\n1\n", "line 1, column 1: no column kind"),
         ("kind,diameter_mm\nrimed,-1\n", "line 2, column 7: diameter_mm must be a number in [0, 100] mm"),
-        ("diameter_mm,kind\n2,slush\n", "line 2, column 3: kind must be one of unrimed, rimed"),
+        ("diameter_mm,kind\n2,slush\n", "line 2, column 3: kind must be one of unrimed, columns"),
         ("diameter_mm,kind\n2\n", "line 2, column 2: 1 fields, the header has 2"),
     ] {
         let e = snow::speeds(text).unwrap_err();

@@ -114,9 +114,9 @@ impl CloudLayers {
     /// Adds a layer that has cloud only in the cells over rain areas. Returns its index; `None` if the areas need no
     /// cells or the list of layers is full.
     ///
-    /// In a deep cell the heads grow by the factor k = thickness / (`HEADS` x distance from cloud to cloud), at least
-    /// 1. The side of the cube in which the solid noise repeats grows by k, and the noise's amplitude by k^2 up to
-    /// `MOST_ROUGH`.
+    /// In a deep cell the heads grow by the factor k = thickness / (`HEADS` x distance from cloud to cloud), which is
+    /// at least 1. The side of the cube in which the solid noise repeats grows by k, and the noise's amplitude by k^2
+    /// up to `MOST_ROUGH`.
     fn bring(&mut self, scene: &Scene, clouds: &AreaClouds) -> Option<usize> {
         let others = self.all().iter().zip(&self.maps).map(|(layer, map)| (&layer.slab, map.is_some()));
         let slab = clouds.slab(others)?;

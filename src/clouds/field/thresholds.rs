@@ -30,14 +30,14 @@ pub fn typical(kind: CloudKind, cover: f64) -> Result<CloudSlab> {
     Ok(*conditions.cloud_slabs().next().unwrap_or(&CloudSlab::NONE))
 }
 
-/// Returns the threshold of one kind at this cover: interpolated in its row of the table from 1 to 6 oktas, and
+/// Returns the threshold of one kind at this cover: interpolated in its row of the table from 1 to 7 oktas, and
 /// extrapolated beyond.
 fn of_kind(row: &[f64; OKTAS], cover: f64) -> f64 {
     // Thresholds are nearly linear in the normal quantile of the cover.
     let quantile = |cover: f64| normal_quantile(cover.clamp(1e-9, 1.0 - 1e-9));
     let node = |i: usize| quantile((i as f64 + 1.0) / 8.0);
     let q = quantile(cover);
-    let i = (0..OKTAS - 2).rev().find(|i| node(*i) <= q).unwrap_or(0);
+    let i = (0..OKTAS - 1).rev().find(|i| node(*i) <= q).unwrap_or(0);
     let t = (q - node(i)) / (node(i + 1) - node(i));
     row[i] + (row[i + 1] - row[i]) * t
 }
@@ -75,6 +75,16 @@ fn traits() -> &'static [[f64; 4]; 11] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_kind_has_the_number_of_its_table_at_each_okta() {
+        for (kind, row) in &THRESHOLDS {
+            for (i, number) in row.iter().enumerate() {
+                let found = of_kind(row, (i as f64 + 1.0) / 8.0);
+                assert!((found - number).abs() < 1e-9, "{kind:?} at {} oktas: {found}, {number}", i + 1);
+            }
+        }
+    }
 
     #[test]
     fn thresholds_fall_as_cover_grows_and_blend_between_kinds() {
