@@ -1,8 +1,8 @@
 /*
  * Welkin: weather for simulators, drawn into the host's own picture.
  *
- * This header is the whole C API, in reading order; CONTENTS below names its sections. It is C99 and C++11 and later;
- * welkin.hpp wraps it for C++.
+ * This header is the whole C API, in reading order; CONTENTS below names its sections. It compiles as C99 or C++11,
+ * and as later versions of both. welkin.hpp wraps it for C++.
  *
  * IN SHORT
  *
@@ -41,10 +41,11 @@
  * bulk, such as wk_flash. They have no such head: the call takes their sizeof. Start from WK_X_INIT (or wk_x_init,
  * which writes the same bytes) and change fields. Later versions append fields for which zero means "as before". A
  * library therefore accepts structs of older headers, whose missing fields get their defaults, and structs of newer
- * headers if the fields that it does not know are zero. `next` points to extension structs where a call names them; an
- * unknown one is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm), never "default". An
- * optional field has a bit in `has`. Lists are (pointer, count, stride): stride is the size of an element in your
- * header. Reals are doubles and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
+ * headers if the fields that it does not know are zero. `next` points to extension structs, of the types that a call
+ * names; an extension of another type is refused. Reserved fields must be 0. Zero is a value (0 degrees, north, calm),
+ * never "default". An optional field has a bit in `has`, which you set together with the field. Lists are (pointer,
+ * count, stride): stride is the size of an element in your header. Reals are doubles, or floats in some fields and
+ * lists, and must be finite. Texts are NUL-terminated UTF-8. Sizes are in bytes.
  *
  * THREADS
  *
@@ -233,7 +234,7 @@ typedef int32_t wk_status;
 /** Severity of a message. */
 typedef uint32_t wk_log_level;
 
-/** Something failed; the call's status says so too. */
+/** Something failed. The call in progress, or a later call on the device, returns the failure as its status too. */
 #define WK_LOG_LEVEL_ERROR 1
 /** Something works less well than it could: a fallback, a slow path. */
 #define WK_LOG_LEVEL_WARNING 2
@@ -248,7 +249,10 @@ typedef uint32_t wk_log_level;
  */
 typedef void (*wk_log_fn)(void *user, wk_log_level level, const char *message);
 
-/** Type of a tagged struct, in its second field. WK_X_INIT sets it. */
+/**
+ * Type of a struct that begins with struct_size, struct_type and next: the value of its struct_type, which WK_X_INIT
+ * sets.
+ */
 typedef uint32_t wk_struct_type;
 
 /** wk_device_desc */
@@ -432,7 +436,7 @@ const char *wk_last_error_message(void);
  * Returns the parameter or field that the calling thread's last failed call was about, as a path of names in this
  * header that begins at the function's parameter or at a struct's name: `frame.projection`, `shelters[2].half_size_m`,
  * `wk_sky_settings.suns`, `time_s`. A host's editor can use it to mark a control. A failure with
- * WK_ERROR_INVALID_ARGUMENT always has one. Empty where a failure is about no field, and before the first failure.
+ * WK_ERROR_INVALID_ARGUMENT always has a field. Empty where a failure is about no field, and before the first failure.
  * Never NULL; valid until the next failing call of this thread.
  * Thread: any; each thread has its own field.
  */
@@ -441,10 +445,14 @@ const char *wk_last_error_field(void);
 
 /**
  * Gets the library's version. WK_VERSION_MAJOR, _MINOR and _PATCH are the header's. A library fits a header if the
- * major versions are equal and its minor version is at least the header's. Each of the three pointers may be NULL.
+ * major versions are equal and the library's minor version is at least the header's. Each of the three pointers may be
+ * NULL.
  * Thread: any.
  */
-WK_API wk_status wk_version(uint32_t *major, uint32_t *minor, uint32_t *patch);
+WK_API
+wk_status wk_version(uint32_t *major,
+                     uint32_t *minor,
+                     uint32_t *patch);
 
 /**
  * Sends Welkin's messages, and its graphics layer's warnings and errors, to `callback` from now on; NULL stops them.
@@ -462,13 +470,15 @@ WK_API wk_status wk_set_log_callback(wk_log_fn callback, void *user, wk_log_leve
  *
  * A wk_device is one native queue or OpenGL context, with everything that the wk_contexts on it share: pipelines,
  * tables, caches. Create one here (an own device, which Welkin makes itself), from the host's OpenGL context, from the
- * host's Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for all four.
+ * host's Vulkan device, or, in Rust, from the host's wgpu device. All later calls are the same for these four kinds of
+ * device.
  *
- * Create one device per native queue or OpenGL context: a second one answers WK_ERROR_ALREADY_WRAPPED. When the GPU is
- * lost (driver reset, unplugged), every call that needs it answers WK_ERROR_DEVICE_LOST: calls that create, build or
- * draw, calls that read or write GPU resources, and wk_context_get_ambient. A wk_context's weather, time, settings,
- * state and other queries need no GPU and go on working. To recover, save the state with wk_context_save, destroy the
- * views, the contexts and the device, create them again, and load the state.
+ * Create one device per native queue or OpenGL context: a call that would create a second one returns
+ * WK_ERROR_ALREADY_WRAPPED. When the GPU is lost (driver reset, unplugged), every call that needs the GPU returns
+ * WK_ERROR_DEVICE_LOST: calls that create, build or draw, calls that read or write GPU resources, and
+ * wk_context_get_ambient. A wk_context's weather, time, settings, state and other queries need no GPU and go on
+ * working. To recover, save the state with wk_context_save, destroy the views, the contexts and the device, create
+ * them again, and load the state.
  * ====================================================================================================
  */
 
@@ -533,8 +543,8 @@ typedef struct wk_caps {
     /** Native interface that the device uses. */
     wk_backend_flags backend;
     /**
-     * Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0
-     * features that need tier 1 answer WK_ERROR_UNSUPPORTED, with a message that names the feature.
+     * Tier of features: 0 without compute shaders (OpenGL 3.3 to 4.2, OpenGL on macOS), 1 with them. On tier 0 a call
+     * for a feature that needs tier 1 returns WK_ERROR_UNSUPPORTED, with a message that names the feature.
      */
     uint32_t tier;
     /** 1 for a software driver, which draws on the CPU, else 0. */
@@ -568,7 +578,7 @@ typedef struct wk_caps {
 
 /**
  * Creates an own device, without a window. `desc` NULL means WK_DEVICE_DESC_INIT. On success `*out_device` is a new
- * handle, which you destroy with `wk_device_destroy`; else it stays untouched.
+ * handle, which you destroy with `wk_device_destroy`; on failure `*out_device` stays untouched.
  * Thread: any.
  * Errors: WK_ERROR_NO_ADAPTER if no driver fits the request, or if an OpenGL driver draws a few known test texels
  * wrong or does not finish them within 6 s; WK_ERROR_INVALID_ARGUMENT naming the field.
@@ -580,7 +590,8 @@ WK_API wk_status wk_device_create(const wk_device_desc *desc, wk_device **out_de
  * Thread: any, except for a device on an OpenGL context. Destroy such a device on a thread where the context is (or
  * can be made) current. Elsewhere, or when the OpenGL context is already gone, Welkin abandons the device's GPU
  * objects.
- * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures.
+ * Errors: WK_ERROR_IN_USE while it has contexts, surfaces or textures; WK_ERROR_DEVICE_LOST if a host's Vulkan device
+ * is lost: the wk_device is then destroyed all the same.
  */
 WK_API wk_status wk_device_destroy(wk_device *device);
 
@@ -675,7 +686,7 @@ typedef struct wk_texture_desc {
  * Creates a texture, filled with zeros. On success `*out_texture` is a new handle for `wk_texture_destroy`.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the device cannot make the
- * format; WK_ERROR_OUT_OF_MEMORY.
+ * format, or cannot draw into a format of colour; WK_ERROR_OUT_OF_MEMORY.
  */
 WK_API
 wk_status wk_texture_create(wk_device *device,
@@ -689,8 +700,9 @@ wk_status wk_texture_create(wk_device *device,
 WK_API wk_status wk_texture_destroy(wk_texture *texture);
 
 /**
- * Fills a texture from memory: `height` rows of `bytes_per_row` bytes, the first row the picture's top. `data_size` is
- * the number of bytes at `data`: at least `bytes_per_row` times the height. Copied during the call.
+ * Fills a texture from memory: all rows of the texture, `bytes_per_row` bytes each, from the top of the picture down.
+ * `data_size` is the number of bytes at `data`: at least `bytes_per_row` times the texture's height. Copied during the
+ * call.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
  */
@@ -701,9 +713,9 @@ wk_status wk_texture_write(wk_texture *texture,
                            uint32_t bytes_per_row);
 
 /**
- * Waits for the GPU and copies a texture to memory: `height` rows of `bytes_per_row` bytes, the first row the
- * picture's top. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the height.
- * Slow: do not call it in every frame.
+ * Waits for the GPU and copies a texture to memory: all rows of the texture, `bytes_per_row` bytes each, from the top
+ * of the picture down. `data_size` is the number of bytes available at `data`: at least `bytes_per_row` times the
+ * texture's height. Slow: do not call it in every frame.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a `bytes_per_row` or a `data_size` that is too small; WK_ERROR_DEVICE_LOST.
  */
@@ -798,7 +810,7 @@ typedef uint32_t wk_surface_encoding;
 /** Time at which images reach the screen. */
 typedef uint32_t wk_pacing;
 
-/** With the screen's refresh; acquire waits for it. */
+/** With the screen's refresh; wk_surface_acquire waits for the refresh. */
 #define WK_PACING_REFRESH 0
 /** As soon as possible; may tear. */
 #define WK_PACING_IMMEDIATE 1
@@ -842,7 +854,8 @@ typedef struct wk_surface_config {
  * Creates an own device that can present to `window` and to other windows of the same connection. `desc` NULL means
  * WK_DEVICE_DESC_INIT. On success `*out_device` is a new handle for `wk_device_destroy`.
  * Thread: any; on macOS the main one. With X11, call XInitThreads first if you use Xlib from several threads.
- * Errors: WK_ERROR_NO_ADAPTER if no driver can present to the window, or as wk_device_create.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming a missing handle; WK_ERROR_SURFACE_OUTDATED if the window does not exist;
+ * WK_ERROR_NO_ADAPTER or WK_ERROR_UNSUPPORTED if no driver can present to the window; else as wk_device_create.
  */
 WK_API
 wk_status wk_device_create_for_window(const wk_device_desc *desc,
@@ -853,7 +866,8 @@ wk_status wk_device_create_for_window(const wk_device_desc *desc,
  * Creates a surface on a window. Configure it before use. On success `*out_surface` is a new handle for
  * `wk_surface_destroy`.
  * Thread: exclusive on the device; on macOS the main one.
- * Errors: WK_ERROR_UNSUPPORTED if the device cannot present to this window.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming a missing handle; WK_ERROR_SURFACE_OUTDATED if the window does not exist;
+ * WK_ERROR_UNSUPPORTED if the device cannot present to this window.
  */
 WK_API
 wk_status wk_surface_create(wk_device *device,
@@ -868,15 +882,13 @@ WK_API wk_status wk_surface_destroy(wk_surface *surface);
 
 /**
  * Configures a surface, the first time or after its window changed. An image that was acquired and not yet presented
- * is discarded. With a width or height of 0 the call succeeds, and acquire returns WK_ERROR_SURFACE_OUTDATED until the
- * surface is configured with an area.
+ * is discarded. With a width or height of 0 the call succeeds, and wk_surface_acquire returns
+ * WK_ERROR_SURFACE_OUTDATED until the surface is configured with an area.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range; WK_ERROR_UNSUPPORTED if the window has no format
- * for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone.
+ * for the encoding; WK_ERROR_SURFACE_OUTDATED if the window is gone or refuses the configuration.
  */
-WK_API
-wk_status wk_surface_configure(wk_surface *surface,
-                               const wk_surface_config *config);
+WK_API wk_status wk_surface_configure(wk_surface *surface, const wk_surface_config *config);
 
 /**
  * Acquires the next image to draw into. Called again before `wk_surface_present`, it returns the same image.
@@ -1062,8 +1074,9 @@ typedef struct wk_opengl_target {
     wk_opengl_image color;
     /**
      * The host's depth; none (the default) shows the sky in every pixel. If `color` is a framebuffer, use the same
-     * one, else another image. It has as many samples as `color`. If `color` has one sample (a resolved picture),
-     * depth may have more, except on OpenGL ES; one sample of each pixel is then used.
+     * one, else another image. The depth has as many samples as `color`, with one exception: where `color` has one
+     * sample (a resolved picture), the depth may have more, except on OpenGL ES. One sample of each pixel is then
+     * used.
      */
     wk_opengl_image depth;
     /**
@@ -1123,13 +1136,15 @@ typedef uint32_t wk_opengl_context;
 
 /**
  * Wraps the host's OpenGL context, which must be current on this thread. On success `*out_device` is a new handle for
- * `wk_device_destroy`; call that while the contexts live. Welkin never deletes the host's objects.
+ * `wk_device_destroy`; call that function while the contexts live. Welkin never deletes the host's objects.
  * Thread: the one on which the host's context is current.
  * Errors: WK_ERROR_INVALID_ARGUMENT for callbacks that are missing or return NULL; WK_ERROR_WRONG_ORDER if no context
- * or the wrong one is current, or, in WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples
- * or primitives is active; WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if it
- * has a wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if its driver draws a few known texels wrong or does
- * not finish them within 6 s.
+ * or the wrong one is current, if make_current fails, if the context cannot draw now (a display list is being
+ * compiled, the render mode is not GL_RENDER, or the current program is marked for deletion), or, in
+ * WK_OPENGL_HOST_CONTEXT, if conditional rendering or a query that counts samples or primitives is active;
+ * WK_ERROR_UNSUPPORTED if the context's version is too old; WK_ERROR_ALREADY_WRAPPED if the context already has a
+ * wk_device; WK_ERROR_NO_ADAPTER, with the driver's name, if the context's driver draws a few known texels wrong or
+ * does not finish them within 6 s.
  */
 WK_API wk_status wk_device_create_opengl(const wk_opengl_host_desc *desc, wk_device **out_device);
 
@@ -1155,8 +1170,8 @@ wk_status wk_opengl_target_init(wk_opengl_target *out,
  *
  * Welkin draws on the host's VkDevice and VkQueue, into the host's VkImages, and submits its own work: when
  * wk_view_record returns, the work is on the queue. Only one thread at a time may use a VkQueue. Either keep other
- * threads away from the queue during Welkin's calls on this device, or pass lock_queue and unlock_queue, which Welkin
- * calls around every submission. Call no Welkin function inside these two.
+ * threads away from the queue during calls on its wk_device, or pass lock_queue and unlock_queue, which Welkin calls
+ * around every submission. Call no Welkin function inside these two.
  *
  * Welkin takes an image in the layout in which the host left it and returns it in the layout that the host asks for.
  * On one queue no semaphores are needed: Welkin's work waits for what the host submitted before, and what the host
@@ -1188,7 +1203,7 @@ typedef void *(*wk_vulkan_get_proc_fn)(void *instance, const char *name);
 /** Takes or releases the host's lock on its queue. */
 typedef void (*wk_vulkan_queue_fn)(void *user);
 
-/** The host's Vulkan device. All handles stay the host's and outlive the wk_device. */
+/** The host's Vulkan device. All handles stay the host's and must outlive the wk_device. */
 typedef struct wk_vulkan_host_desc {
     /** sizeof(wk_vulkan_host_desc) of your header. */
     uint32_t struct_size;
@@ -1294,8 +1309,8 @@ typedef struct wk_vulkan_image {
      */
     uint32_t layer;
     /**
-     * VkImageLayout in which the host left that layer. Default 0 (UNDEFINED: its content may be discarded; colour
-     * only).
+     * VkImageLayout in which the host left the image's handed-over layer. Default 0 (UNDEFINED: its content may be
+     * discarded; colour only).
      */
     uint32_t layout;
     /**
@@ -1379,8 +1394,8 @@ typedef struct wk_vulkan_target {
      */
     const wk_vulkan_image *depth;
     /**
-     * A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. As large as `color`, one
-     * sample, another image. Default NULL.
+     * A mask: where it is 1, the host's pixel stays; where it is 0, Welkin draws weather. It is another image, as
+     * large as `color`, with one sample. Default NULL.
      */
     const wk_vulkan_image *mask;
     /**
@@ -1438,15 +1453,16 @@ typedef struct wk_vulkan_target {
  * you destroy your device. Welkin never destroys the host's objects.
  * Thread: any that may use the queue.
  * Errors: WK_ERROR_INVALID_ARGUMENT names a NULL or foreign handle, or all missing extensions, features and fields;
- * WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device.
+ * WK_ERROR_UNSUPPORTED names what the driver cannot do; WK_ERROR_ALREADY_WRAPPED if the queue has a wk_device;
+ * WK_ERROR_NO_ADAPTER if the instance cannot list its physical devices.
  */
 WK_API wk_status wk_device_create_vulkan(const wk_vulkan_host_desc *desc, wk_device **out_device);
 
 /**
- * Waits until the GPU no longer uses a VkImage, and forgets it. Call it for each image that you handed over, before or
- * after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a new one: Vulkan
- * may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy an image only
- * when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
+ * Waits until the GPU no longer uses a VkImage, and forgets it. Call this function for each image that you handed
+ * over, before or after you destroy it (an engine may rebuild its swapchain inside a call), but before you hand over a
+ * new one: Vulkan may give the new image the old handle, and Welkin would draw into the dead image. As always, destroy
+ * an image only when the GPU has finished with it: after the semaphores that its last wk_view_record signals, or after
  * vkDeviceWaitIdle. An unknown image is no error. Slow: do not call it in every frame.
  * Thread: exclusive on the device.
  * Errors: WK_ERROR_UNSUPPORTED on a device that is not on a Vulkan host.
@@ -1523,7 +1539,9 @@ typedef uint32_t wk_aerosol_kind;
 typedef uint32_t wk_fog_kind;
 
 /**
- * No fog: the reported visibility requires more extinction than clean air has, and all of the difference is aerosol.
+ * No fog is reported. The extinction that visibility_m requires beyond that of clean air and precipitation is aerosol.
+ * Haze, dust, sand, smoke and ash may take all of it. Other aerosols take at most that of a visibility of 5 km
+ * (wk_weather_overrides.visibility_above_fog_m), and the rest is mist or fog all the same.
  */
 #define WK_FOG_NONE 0
 /** Mist (METAR BR): droplets, visibility 1 to 5 km. */
@@ -1568,9 +1586,9 @@ typedef uint32_t wk_cloud_kind;
 #define WK_CLOUD_CIRROCUMULUS 11
 
 /**
- * Kind of precipitation. For the types of rain choose: frontal (stratiform) rain: RAIN, usually 1 to 10 mm/h;
- * convective rain: RAIN with WK_PRECIPITATION_SHOWERS, 10 to 100 mm/h; relief (orographic) rain, with many small
- * drops: DRIZZLE, 0.5 to 3 mm/h; drizzle: DRIZZLE, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each.
+ * Kind of precipitation. Choose RAIN for frontal (stratiform) rain, usually 1 to 10 mm/h, and RAIN with
+ * WK_PRECIPITATION_SHOWERS for convective rain, 10 to 100 mm/h. Choose DRIZZLE for relief (orographic) rain, which has
+ * many small drops, 0.5 to 3 mm/h, and for drizzle, 0.1 to 1 mm/h. docs/rain.md has the drop sizes of each type.
  */
 typedef uint32_t wk_precipitation_kind;
 
@@ -1640,9 +1658,9 @@ typedef uint32_t wk_surface_state;
  * [weather] Weather
  *
  * A wk_weather describes the weather: plain data in SI units, which every call copies. Start from WK_WEATHER_INIT (a
- * clear standard day), a METAR report or a preset, and change the fields that you know better. Zero is a value
- * everywhere (0 degrees, north, calm, 0 %). A field that may be unknown has a bit in `has`: where the bit is clear,
- * Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
+ * clear standard day), a METAR report or a preset, and change the fields that you know better. In a wk_weather zero is
+ * a value (0 degrees, north, calm, 0 %) and never means unknown. A field that may be unknown has a bit in `has`: where
+ * the bit is clear, Welkin ignores the field and derives the value by a named physical law. All reals are doubles.
  * ====================================================================================================
  */
 
@@ -1682,12 +1700,13 @@ typedef struct wk_cloud_layer {
     double droplet_radius_um;
     /**
      * Optional: speed of the wind that carries the layer, m/s. Range [0, 150]; else that of the weather's wind at the
-     * middle of the layer, which grows and veers with height (docs/clouds.md). Changing it does not displace any
-     * cloud.
+     * middle of the layer, which grows and veers with height (docs/clouds.md). Changing this speed does not displace
+     * any cloud.
      */
     double wind_m_s;
     /**
-     * Optional, with wind_m_s: direction that this wind comes from, degrees clockwise from true north. Range [0, 360].
+     * Optional, with wind_m_s: direction that the wind of wind_m_s comes from, degrees clockwise from true north.
+     * Range [0, 360].
      */
     double wind_from_deg;
     /** Typical distance between clouds, m. Range [50, 200000]; 0, the default, lets kind and thickness decide. */
@@ -1774,7 +1793,7 @@ typedef struct wk_weather {
     uint32_t struct_size;
     /** WK_STRUCT_TYPE_WEATHER. */
     wk_struct_type struct_type;
-    /** No extensions in this version: NULL. */
+    /** NULL (the default), or a wk_weather_overrides. */
     const void *next;
     /** Flags of the optional fields that are set. Default 0. */
     wk_weather_has_flags has;
@@ -1812,8 +1831,8 @@ typedef struct wk_weather {
     double aerosol_asymmetry;
     /**
      * Optional: scale height of the particles, over which their density falls to 1/e, m. Range [10, 20000]; else by
-     * kind. The value used is at least the station's altitude over 4.6 (435 m at 2000 m), because the sky is computed
-     * from the density at sea level, which is limited to 100 times that at the station.
+     * kind. The value used is at least the station's altitude divided by 4.6 (435 m for a station at 2000 m), because
+     * the sky is computed from the density at sea level, which is limited to 100 times that at the station.
      */
     double aerosol_scale_height_m;
     /** Optional: top of the fog, m. Range [0.1, 2000]; else by kind or vertical visibility. */
@@ -1821,8 +1840,9 @@ typedef struct wk_weather {
     /** Optional: fraction of the ground under fog. Range [0, 1]; else by kind. */
     double fog_coverage;
     /**
-     * Optional: visibility inside the fog, m. Range [1, 10000]; else visibility_m, or 200 m in shallow or patchy fog,
-     * where the observer reports the visibility over or past the fog.
+     * Optional: visibility inside the fog, m. Range [1, 10000]; else 200 m in shallow fog, and in patches of fog and
+     * partial fog if visibility_m is 1000 or more, because an observer reports the visibility over or past such fog;
+     * 500 m in drifting snow or dust without fog. Other layers ignore the field: visibility_m holds inside them.
      */
     double fog_visibility_inside_m;
     /** Kind of precipitation. Default WK_PRECIPITATION_NONE. */
@@ -1840,8 +1860,8 @@ typedef struct wk_weather {
     /** Optional: highest 3-second gust, m/s. Range [wind_speed_m_s, 150]; else from the turbulence. */
     double wind_gust_m_s;
     /**
-     * Optional, together with the next field: start of the range within which the direction varies, degrees; the range
-     * runs clockwise. Range [0, 360].
+     * Optional, together with wind_variable_to_deg: start of the range within which the direction varies, degrees; the
+     * range runs clockwise. Range [0, 360].
      */
     double wind_variable_from_deg;
     /**
@@ -1850,15 +1870,17 @@ typedef struct wk_weather {
      */
     double wind_variable_to_deg;
     /**
-     * Optional: turbulence intensity, the standard deviation of speed over its mean. Range [0, 1]; else from the
-     * roughness.
+     * Optional: turbulence intensity, the ratio of the speed's standard deviation to its mean. Range [0, 1]; else from
+     * the roughness.
      */
     double wind_turbulence_intensity;
     /** Optional: significant height of the wind sea, m. Range [0, 30]; else from sea_state or the wind. */
     double sea_significant_wave_height_m;
     /** Optional: water temperature, degrees Celsius. Range [-3, 45]; else the air's, not below -1.8. */
     double sea_temperature_c;
-    /** Optional, together with the next two fields: significant height of the swell, m. Range [0, 20]. */
+    /**
+     * Optional, together with swell_period_s and swell_from_deg: significant height of the swell, m. Range [0, 20].
+     */
     double swell_height_m;
     /** Peak period of the swell, s. Range [1, 30] if the swell is set. */
     double swell_period_s;
@@ -1953,7 +1975,10 @@ typedef uint32_t wk_override_flags;
 #define WK_OVERRIDE_RAYLEIGH_DENSITY 32
 /** rayleigh_scale_height_m */
 #define WK_OVERRIDE_RAYLEIGH_SCALE_HEIGHT 64
-/** No field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls from. */
+/**
+ * A flag without a field: rain adds no cloud to a weather without clouds, and no water to the clouds that it falls
+ * from.
+ */
 #define WK_OVERRIDE_RAIN_WITHOUT_CLOUD 128
 /** cloud_direct and cloud_diffuse */
 #define WK_OVERRIDE_CLOUD_LIGHT 256
@@ -1978,16 +2003,16 @@ typedef struct wk_weather_overrides {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Aerosol extinction at 550 nm and station height, 1/m, in place of that which follows from the visibility. Range
-     * [0, 10].
+     * Aerosol extinction at 550 nm and station height, 1/m, in place of the value that follows from the visibility.
+     * Range [0, 10].
      */
     double aerosol_extinction_per_m;
     /**
-     * Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of that which follows
+     * Extinction inside the layer of fog, mist or lifted matter at the ground, 1/m, in place of the value that follows
      * from the visibility. Range [0, 10].
      */
     double fog_extinction_per_m;
-    /** Extinction of precipitation, 1/m, in place of that of the spectra of drops and flakes. Range [0, 10]. */
+    /** Extinction of precipitation, 1/m, in place of that from the spectra of drops and flakes. Range [0, 10]. */
     double precipitation_extinction_per_m;
     /** Visibility in the air above a mist or fog, m. Range [100, 1e6]; law: 5 km over mist, 10 km over fog. */
     double visibility_above_fog_m;
@@ -1996,13 +2021,13 @@ typedef struct wk_weather_overrides {
      * (1976); 1 switches growth off.
      */
     double humidity_growth;
-    /** Ratio of the air density at sea level to the standard's. Range [0, 10]. */
+    /** Ratio of the air density at sea level to that of the standard atmosphere. Range [0, 10]. */
     double rayleigh_density_ratio;
     /** Scale height of the air, m. Range [100, 50000]. */
     double rayleigh_scale_height_m;
     /** Fraction of the sun's direct beam that passes the clouds. Range [0, 1]. */
     double cloud_direct;
-    /** Diffuse light below the clouds as a fraction of the light above. Range [0, 1]. */
+    /** Diffuse light below the clouds as a fraction of the light above them. Range [0, 1]. */
     double cloud_diffuse;
     /** Significant wave height, m, in place of that from the wind or the sea state. Range [0, 30]. */
     double wave_height_m;
@@ -2067,7 +2092,7 @@ wk_status wk_weather_overrides_init(wk_weather_overrides *out,
  * ====================================================================================================
  */
 
-/** Flags of a report. */
+/** Properties of a report. */
 typedef uint32_t wk_metar_flags;
 
 /** A special report (SPECI). */
@@ -2076,7 +2101,7 @@ typedef uint32_t wk_metar_flags;
 #define WK_METAR_AUTOMATIC 2
 /** A correction (COR). */
 #define WK_METAR_CORRECTED 4
-/** The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM). */
+/** The report gives only a lower limit of the visibility (CAVOK, 9999, 10SM), or no visibility. */
 #define WK_METAR_VISIBILITY_IS_MINIMUM 8
 
 /** Fields that a report leaves out or marks as missing. */
@@ -2086,28 +2111,36 @@ typedef uint32_t wk_metar_assumed_flags;
 #define WK_METAR_ASSUMED_WIND 1
 /** wind_from_deg: 0 is assumed. */
 #define WK_METAR_ASSUMED_WIND_DIRECTION 2
-/** visibility_m: as humidity and precipitation allow, at most 1 km in fog and 5 km in mist or haze. */
+/**
+ * visibility_m: the visibility that humidity and precipitation allow is assumed. It is at most 1 km in fog, dust
+ * storms and sandstorms, and at most 5 km in mist, haze, smoke, volcanic ash, dust and sand.
+ */
 #define WK_METAR_ASSUMED_VISIBILITY 4
-/** Present weather (`//`): neither precipitation nor fog nor haze is assumed. */
+/** Present weather (`//`, or PWINO in the remarks): neither precipitation nor fog nor haze is assumed. */
 #define WK_METAR_ASSUMED_PRECIPITATION 8
 /** Clouds (`//////`, or no group at all): none are assumed besides those that are reported. */
 #define WK_METAR_ASSUMED_CLOUDS 16
 /** base_m of a layer (`BKN///`): 600 m is assumed. */
 #define WK_METAR_ASSUMED_CLOUD_BASE 32
-/** cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed. */
+/**
+ * cover of a layer (`///015`, `//////CB`): 3.5 eighths are assumed. With WK_CLOUD_AMOUNT_SUMS the group takes the
+ * largest class of the groups below it instead (FEW if there are none), except above an overcast layer.
+ */
 #define WK_METAR_ASSUMED_CLOUD_COVER 64
 /** vertical_visibility_m (`VV///`): 60 m is assumed. */
 #define WK_METAR_ASSUMED_VERTICAL_VISIBILITY 128
 /**
- * temperature_c: 15; at most -1 in snow or freezing precipitation; at most 1 where rain and snow fall together or the
- * precipitation is unknown. If only the dew point is reported, the temperature for 70 % relative humidity.
+ * temperature_c: 15 is assumed, or, if the dew point is reported, the temperature for a relative humidity of 0.7. The
+ * assumed temperature is at most -1 in snow, ice pellets, snow grains, ice crystals and freezing precipitation or fog,
+ * and at most 1 where rain and snow fall together or the precipitation is unknown. It is never below the reported dew
+ * point.
  */
 #define WK_METAR_ASSUMED_TEMPERATURE 256
-/** relative_humidity: 0.7, or what a dew point gives at the assumed temperature. */
+/** relative_humidity: 0.7 is assumed, or the humidity that a reported dew point gives at the assumed temperature. */
 #define WK_METAR_ASSUMED_HUMIDITY 512
 /** pressure_hpa: 1013.25 is assumed. */
 #define WK_METAR_ASSUMED_PRESSURE 1024
-/** wk_metar.day, hour and minute: 0. */
+/** wk_metar.day, hour and minute: 0 is assumed. */
 #define WK_METAR_ASSUMED_TIME 2048
 
 /** Meaning of the amounts in cloud groups. Nations differ, and a report does not say which practice it follows. */
@@ -2148,7 +2181,7 @@ typedef struct wk_metar {
     uint32_t hour;
     /** Minute, UTC. */
     uint32_t minute;
-    /** Flags of a report. */
+    /** Properties of the report: a union of WK_METAR_SPECIAL and the flags that follow it. */
     wk_metar_flags flags;
     /** Fields that the report leaves out or marks as missing. */
     wk_metar_assumed_flags assumed;
@@ -2231,14 +2264,14 @@ typedef struct wk_metar_options {
 
 /**
  * Reads a METAR or SPECI report (NUL-terminated text of at most 4096 bytes) into `*out_weather`, with cloud amounts by
- * the station's rule. Its cloud layers are written to `layers`, which has room for `layer_capacity` elements of
- * `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds points
- * there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0: set it
- * from a list of airports.
+ * the station's rule. The weather's cloud layers are written to `layers`, which has room for `layer_capacity` elements
+ * of `layer_size` bytes (sizeof(wk_cloud_layer) of your header; 16 elements always suffice). out_weather->clouds
+ * points there: keep `layers` as long as the weather. `out_metar` may be NULL. out_weather->station_altitude_m is 0:
+ * set it from a list of airports.
  * Thread: any.
  * Errors: WK_ERROR_PARSE for a text without a station, without an observation (NIL) or without any group of the
- * weather, with line and column, what was expected there and what was found; WK_ERROR_INVALID_ARGUMENT if the layers
- * do not fit.
+ * weather: the message has line and column, what was expected there and what was found. WK_ERROR_PARSE for a text that
+ * is too long; WK_ERROR_INVALID_ARGUMENT if the layers do not fit.
  */
 WK_API
 wk_status wk_weather_from_metar(const char *report,
@@ -2263,8 +2296,8 @@ wk_status wk_weather_from_metar_with(const char *report,
                                      wk_metar *out_metar);
 
 /**
- * Writes the weather of a named preset to `*out_weather`; layers as in wk_weather_from_metar. wk_get_preset gives the
- * names.
+ * Writes the weather of a named preset to `*out_weather`, and its cloud layers as wk_weather_from_metar does.
+ * wk_get_preset gives the names.
  * Thread: any.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown name; the message lists the known ones.
  */
@@ -2301,8 +2334,9 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  * ====================================================================================================
  * [context] Contexts
  *
- * A wk_context has the weather, the time and the place that all views of a simulator share. It is a function of its
- * description, its timeline and its time: two contexts with the same input give the same answers on every machine.
+ * A wk_context has the weather, the time and the place that all views of a simulator share. Its answers depend only on
+ * its description (wk_context_desc), its changes of weather (the timeline), its other settings and its time. Two
+ * contexts with the same input therefore give the same answers on every machine.
  *
  * There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
  * east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
@@ -2358,9 +2392,11 @@ typedef uint32_t wk_tone_curve;
 
 /** Identity, clamped to the display's range. */
 #define WK_TONE_LINEAR 0
-/** 1 - exp(-x) in each channel: bright skies never clip to white. */
+/** 1 - exp(-x) in each channel, with the exposed luminance x: bright skies never clip to white. */
 #define WK_TONE_EXPONENTIAL 1
-/** Hable's filmic curve, white at 11.2. */
+/**
+ * Hable's filmic curve with his exposure bias of 2 and white at 11.2: an exposed luminance of 5.6 is shown as white.
+ */
 #define WK_TONE_FILMIC 2
 
 /** Settings for a new context. */
@@ -2411,17 +2447,18 @@ typedef struct wk_context_desc {
     double utc_at_zero_s;
     /**
      * Path of a directory, UTF-8, for finished sky tables; Welkin creates it if needed. A later start with the same
-     * planet, sky settings and weather reads the tables instead of building them. Welkin keeps the tables of the first
-     * drawn weather and those of wk_context_build_sky, 2 MB each. The newest 32 stay in the directory, whichever
-     * program wrote them. If a file is damaged or cannot be written, Welkin logs that and builds the tables. Read
-     * during the call. Default NULL: no files.
+     * planet, sky settings and weather reads the tables instead of building them. Welkin writes a file of 2 MB for the
+     * tables of the first drawn weather, and one for each weather that wk_context_build_sky built. The newest 32 files
+     * stay in the directory, whichever program wrote them. If a file is damaged or cannot be written, Welkin logs that
+     * and builds the tables. Read during the call. Default NULL: no files.
      */
     const char *cache_dir;
     /**
      * Height of mean sea level above the WGS 84 ellipsoid where the simulation takes place (the geoid's undulation),
-     * m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature it varies by some
-     * metres over 100 km. Only WK_WORLD_ECEF uses it, because its coordinates refer to the ellipsoid, while altitudes,
-     * tops of fog and bases of clouds count from mean sea level. Range [-120, 120], default 0.
+     * m: 47.8 at Frankfurt, -30 at New York. One number holds for the whole context; in nature the height varies by
+     * some metres over 100 km. Only WK_WORLD_ECEF uses the number: the coordinates of that world refer to the
+     * ellipsoid, but altitudes refer to mean sea level. Heights of fog and clouds are above the station, whose
+     * altitude refers to mean sea level too. Range [-120, 120], default 0.
      */
     double geoid_height_m;
 } wk_context_desc;
@@ -2471,24 +2508,26 @@ wk_status wk_context_create(wk_device *device,
  * as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
  * top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
  * Thread: exclusive.
- * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. The planet
- * stays as it was.
+ * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. After an
+ * error the planet stays as it was.
  */
 WK_API wk_status wk_context_set_planet(wk_context *context, const char *planet_toml);
 
 /**
  * Sets the curve from luminance to display values for the next frames, in place of tone_curve of wk_context_desc.
  * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown curve.
  */
 WK_API wk_status wk_context_set_tone_curve(wk_context *context, wk_tone_curve curve);
 
 /**
  * Builds the sky's tables completely for the context's planet and present weather, so that no frame has to build them.
- * Call it at load time, behind a progress bar. It reuses tables that another context of the device already shows or
- * that lie in the context's cache_dir, and writes new ones there. Without this call the first frame shows a draft of
- * the sky, within 3 of 255 of the finished one, and 120 frames refine it without a visible step. WK_FRAME_NO_HISTORY
- * in a frame builds everything in that frame (docs/first-frames.md). `progress` may be NULL; else it is called about
- * sixteen times, the last time with 1. An aborted build leaves the context as it was and writes no file.
+ * Call this function at load time, behind a progress bar. The call reuses tables that another context of the device
+ * already shows or that lie in the context's cache_dir, and writes new tables to cache_dir. Without this call the
+ * first frame shows a draft of the sky, which differs from the finished sky by at most 3 of 255 display steps, and 120
+ * frames refine it without a visible step; a frame with WK_FRAME_NO_HISTORY then builds all tables itself
+ * (docs/first-frames.md). `progress` may be NULL; else it is called about sixteen times, the last time with 1. An
+ * aborted build leaves the context as it was and writes no file.
  * Thread: exclusive on the context; with an OpenGL host, the thread where its OpenGL context is (or can be made)
  * current. While `progress` runs, the host may use that OpenGL context.
  * Errors: WK_ERROR_ABORTED; WK_ERROR_DEVICE_LOST.
@@ -2518,9 +2557,10 @@ wk_status wk_context_desc_init(wk_context_desc *out,
  * ====================================================================================================
  * [sky] How the sky is drawn
  *
- * Four models use the same look-ups. Use the default: 95 % of its pixels are within 2.4 % of converged multiple
- * scattering in clear air and haze. The others are for comparison and for slow machines. Put a wk_sky_settings into
- * wk_context_desc.next, or pass it to wk_context_set_sky_settings later.
+ * There are four models of the sky. They share the functions by which a pixel looks up the tables, and differ in the
+ * tables. Use the default model: 95 % of its pixels are within 2.4 % of converged multiple scattering in clear air and
+ * haze. The other models are for comparison and for slow machines. Put a wk_sky_settings into wk_context_desc.next, or
+ * pass it to wk_context_set_sky_settings later.
  * ====================================================================================================
  */
 
@@ -2572,14 +2612,18 @@ typedef struct wk_sky_settings {
     uint32_t sky_below;
     /** Number of distances in the table of the air in front of objects. Range [4, 64], default 16. */
     uint32_t air_slices;
-    /** Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE). Range [1, 4096], default 64. */
+    /**
+     * Steps of the ray march in each pixel (WK_SKY_BRUTE_FORCE), rounded up to a multiple of 4. Range [1, 4096],
+     * default 64.
+     */
     uint32_t march_cells;
     /**
      * Number of wavelengths that the sky is computed for, a multiple of 3. Range [3, 15]; 3 (the default) and 0 mean
-     * the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel over
-     * the luminance is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result with 40. The
-     * time to build tables grows in proportion, both for a change of air and for a moving sun: with 15 wavelengths it
-     * is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and WK_SKY_ISOTROPIC only.
+     * the planet's own three. More wavelengths give truer colours at a low sun: the error of the worst channel,
+     * relative to the luminance, is 6 % with 3 wavelengths and 2.4 % with 9; with 15 it is within 1 % of the result
+     * with 40. The time to build tables grows in proportion, both for a change of air and for a moving sun: with 15
+     * wavelengths it is five times as long. The cost of a pixel stays the same. WK_SKY_DIRECTIONAL and
+     * WK_SKY_ISOTROPIC only.
      */
     uint32_t wavelengths;
 } wk_sky_settings;
@@ -2602,10 +2646,10 @@ typedef struct wk_sky_settings {
 }
 
 /**
- * Changes how the sky is drawn, as wk_sky_settings in wk_context_desc.next did. `settings` NULL means
- * WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky, as a
- * first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of another
- * model are compiled in that frame. Setting the same values again changes nothing.
+ * Changes how the sky is drawn, as a wk_sky_settings in wk_context_desc.next does for a new context. `settings` NULL
+ * means WK_SKY_SETTINGS_INIT. Views use the new tables from their next frame on. That frame shows a draft of the sky,
+ * as a first frame does, unless wk_context_build_sky has prepared the final picture after this call. Pipelines of
+ * another model are compiled in that frame. Setting the same values again changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_DEVICE_LOST. After an error the settings stay as they
  * were.
@@ -2662,7 +2706,7 @@ typedef struct wk_given_direction {
  * changes at once). `weather` may have a wk_weather_overrides in its chain. Copied during the call.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER if the change begins before the last update
- * or before a change that was given earlier. After an error the weather stays as it was.
+ * or before the start of a change that was given earlier. After an error the weather stays as it was.
  */
 WK_API
 wk_status wk_context_set_weather(wk_context *context,
@@ -2678,8 +2722,8 @@ wk_status wk_context_set_weather(wk_context *context,
  * leap of hours, the call returns WK_PENDING: call it again with the same time, in a loop or once a frame, until it
  * returns WK_OK. Until then, simulated states are drawn and queried as of wk_context_get_state_time, and settings and
  * later times take effect only after the remaining steps. The state therefore does not depend on the number of calls.
- * After a leap of more than a day, only the last day of the water is simulated. The ground starts that day as wet as
- * the weather of that time reports.
+ * After a leap of more than a day, the water is simulated for the last day only. The ground starts that day as wet as
+ * the weather of that time reports. Snow then takes steps of ten minutes, for the last 30 days at most.
  * Thread: exclusive.
  * Returns WK_PENDING, which is no error, while steps remain.
  * Errors: WK_ERROR_INVALID_ARGUMENT for a time out of range; WK_ERROR_WRONG_ORDER if `time_s` is before the present.
@@ -2688,13 +2732,11 @@ WK_API wk_status wk_context_update(wk_context *context, double time_s);
 
 /**
  * Gets the simulation time of the state, s: the time of the last wk_context_update, or an earlier one while
- * wk_context_update returns WK_PENDING. The difference between the two is the lag of the state. The state's time never
- * decreases, except by wk_context_load.
+ * wk_context_update returns WK_PENDING. The difference from the time of the last wk_context_update is the lag of the
+ * state. The state's time never decreases, except by wk_context_load.
  * Thread: concurrent.
  */
-WK_API
-wk_status wk_context_get_state_time(const wk_context *context,
-                                    double *out_state_time_s);
+WK_API wk_status wk_context_get_state_time(const wk_context *context, double *out_state_time_s);
 
 /**
  * Ties universal time to simulation time: universal time is `utc_s` (Unix time, seconds without leap seconds) at
@@ -2705,9 +2747,9 @@ wk_status wk_context_get_state_time(const wk_context *context,
 WK_API wk_status wk_context_set_clock(wk_context *context, double utc_s, double time_s);
 
 /**
- * Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` in [-2000, 6000];
- * `second` in [0, 60), in the last minute of a day in [0, 61): the leap second 23:59:60 is the first second of the
- * next day, as in Unix time.
+ * Gets the Unix time of a calendar date (proleptic Gregorian) and a time of day in UTC. `year` lies in [-2000, 6000].
+ * `second` lies in [0, 60), or in [0, 61) in the last minute of a day: the leap second 23:59:60 is the first second of
+ * the next day, as in Unix time.
  * Thread: any.
  */
 WK_API
@@ -2748,7 +2790,7 @@ WK_API wk_status wk_context_set_exposure(wk_context *context, wk_exposure_mode m
  * water, snow and soil, not the host's heights. Not included: how the state is drawn (sky settings, views, plans,
  * wk_terrain_drawing), the host's own list of stars, and the images of wk_context_set_occluder_maps, because each
  * channel may have its own.
- * `*out_size` gets the bytes needed in any case. If `capacity` is too small, nothing else is written and the call
+ * `*out_size` always gets the number of bytes needed. If `capacity` is too small, nothing else is written and the call
  * fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: concurrent.
  * Errors: WK_ERROR_WRONG_ORDER while wk_context_update returns WK_PENDING.
@@ -2763,8 +2805,9 @@ wk_status wk_context_save(const wk_context *context,
  * Loads a state that wk_context_save wrote and replaces the context's own. The context must have been created with the
  * same world_kind, latitude_deg, longitude_deg, altitude_m, axes and grid_bearing_deg (for WK_WORLD_ECEF
  * geoid_height_m in place of the last two), seed, ground_model and lying_snow_model. If a state of an earlier version
- * lacks the planet and the tone curve, these must be equal too. Occluder maps stay as they are. Tiles of a wk_terrain
- * stay too: before the call, set them as they were when the state was saved.
+ * lacks the planet and the tone curve, the context must also have the planet and the tone curve with which that state
+ * was saved. Occluder maps stay as they are. Tiles of a wk_terrain stay too: before the call, set them as they were
+ * when the state was saved.
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for bytes that are no saved state, for a truncated or changed state, and for a state of
  * another format, which the message names (this version reads format 2; save states of format 1 again, because they
@@ -2823,7 +2866,7 @@ typedef uint32_t wk_fog_distance;
 
 /** Distance from the camera's centre: turning the camera changes nothing. */
 #define WK_FOG_DISTANCE_RANGE 0
-/** Distance from the camera's plane, as in the oldest systems. */
+/** Distance from the plane through the camera at right angles to its viewing direction, as in the oldest systems. */
 #define WK_FOG_DISTANCE_PLANE 1
 
 /** Flags that name the optional fields of a wk_fog_law that the host has set. */
@@ -2885,6 +2928,7 @@ typedef struct wk_fog_law {
 /**
  * Draws a fog law in place of the weather's fog; NULL returns to the weather's fog.
  * Thread: exclusive.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *fog_law);
 
@@ -2893,6 +2937,7 @@ WK_API wk_status wk_context_set_fog_law(wk_context *context, const wk_fog_law *f
  * farther away. The distance is measured as the law says (wk_fog_distance). It is infinite if the law always leaves
  * more.
  * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
 WK_API
 wk_status wk_fog_law_cull_distance(const wk_fog_law *fog_law,
@@ -2902,6 +2947,7 @@ wk_status wk_fog_law_cull_distance(const wk_fog_law *fog_law,
  * Gets the distance beyond which air of a given visibility leaves less than 1/255 of an object's contrast, m: about
  * 1.85 times the visibility. visibility_m is the meteorological optical range, m, [1, 1e6].
  * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter and its range.
  */
 WK_API wk_status wk_visibility_cull_distance(double visibility_m, double *out_distance_m);
 
@@ -2915,9 +2961,10 @@ WK_API wk_status wk_fog_law_init(wk_fog_law *out, uint32_t struct_size);
  * ====================================================================================================
  * [conditions] Queries: conditions
  *
- * The weather as physical quantities, at any place and any past or future time that the timeline still knows. The
- * answers are in closed form and need no device. Heights are above the station unless stated otherwise. Every number
- * is continuous in time while the weather changes, even the heights of a layer that appears or dissolves.
+ * The weather as physical quantities, at any place, at any future time, and at any past time whose weather the
+ * timeline (see Weather over time) still knows. The answers are in closed form and need no device. Heights are above
+ * the station unless stated otherwise. Every number is continuous in time while the weather changes, even the heights
+ * of a layer that appears or dissolves.
  *
  * Here and in every other function a position must lie within 1e12 m of the world's origin and at an altitude in
  * [-1e4, 1e9] m above mean sea level (in WK_WORLD_ECEF: above the ellipsoid, less geoid_height_m of wk_context_desc).
@@ -2935,6 +2982,7 @@ typedef struct wk_conditions {
     const void *next;
     /**
      * Total extinction at 550 nm, 1/m: air, particles and fog at station height, and precipitation at the position.
+     * Shallow or patchy fog, which a reported visibility leaves out, is not included.
      */
     double extinction_per_m;
     /** Meteorological optical range for extinction_per_m, m; at most 1e9, the value without any air. */
@@ -2951,7 +2999,7 @@ typedef struct wk_conditions {
     double station_altitude_m;
     /** Air density at sea level, divided by that at 15 C and 1013.25 hPa. */
     double rayleigh_density_ratio;
-    /** Scale height of the air, m: over it the density falls to 1/e. */
+    /** Scale height of the air, m: the rise in height over which the air's density falls to 1/e. */
     double rayleigh_scale_height_m;
     /** Extinction by air, at 550 nm and station height, 1/m. */
     double rayleigh_extinction_per_m;
@@ -2963,7 +3011,7 @@ typedef struct wk_conditions {
     double aerosol_single_scattering_albedo;
     /** Mean cosine of the particles' phase function. */
     double aerosol_asymmetry;
-    /** Scale height of the particles, m: over it the density falls to 1/e. */
+    /** Scale height of the particles, m: the rise in height over which their density falls to 1/e. */
     double aerosol_scale_height_m;
     /** Extinction inside the layer at the ground (fog, mist, lifted matter), at 550 nm, 1/m; 0 if there is none. */
     double fog_extinction_per_m;
@@ -3128,8 +3176,8 @@ typedef struct wk_cloud_slab {
  * visibility_m include that precipitation. All other fields are for the station's height unless their descriptions say
  * otherwise.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten: one
- * before the end of the latest change of weather that had ended by the last update.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position, and for a time that the timeline has forgotten. The last
+ * wk_context_update forgot all times before the end of the latest change of weather that was over by then.
  */
 WK_API
 wk_status wk_context_get_conditions(const wk_context *context,
@@ -3139,8 +3187,8 @@ wk_status wk_context_get_conditions(const wk_context *context,
 
 /**
  * Gets the cloud layers at a position and time, low ones first; position and time are as in wk_context_get_conditions.
- * The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets their number, at most 16. With
- * capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
+ * The map of wk_context_set_cloud_map has no effect on the answer. `*out_count` gets the number of layers, at most 16.
+ * With capacity 0 nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the
  * number and fails. `slab_size` is sizeof(wk_cloud_slab) of your header.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT for a capacity other than 0 that is too small.
@@ -3188,9 +3236,11 @@ typedef struct wk_celestial {
     double direction[3];
     /** Direction to the body as it appears, lifted by refraction. */
     double apparent[3];
-    /** Direction in the plane of the disc towards the middle of the lit limb; for the moon. */
+    /**
+     * For the moon: direction in the plane of the disc towards the middle of the lit limb. For the sun: (0, 0, 1).
+     */
     double bright_limb[3];
-    /** Illuminance above the air on a surface facing the body, lux per channel. */
+    /** Illuminance that a surface facing the body would receive above the air, lux per channel. */
     double illuminance_lux[3];
     /** Azimuth, degrees clockwise from true north, [0, 360). */
     double azimuth_deg;
@@ -3333,9 +3383,9 @@ wk_status wk_context_get_moon_at(const wk_context *context,
 
 /**
  * Gets the light that arrives at places of the host's world now, at most wk_caps.max_batch of them. Only clouds above
- * a place dim its light, by their mean over all places at the same height. `position_size` and `light_size` are the
- * distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_ground_light) of your header for
- * lights.
+ * the height of a place dim its light, by their mean effect on all places at that height. `position_size` and
+ * `light_size` are the distances from one element to the next, bytes: 24 or more for positions,
+ * sizeof(wk_ground_light) of your header for lights.
  * Thread: concurrent.
  */
 WK_API
@@ -3361,9 +3411,9 @@ wk_status wk_context_get_light_at(const wk_context *context,
                                   uint32_t light_size);
 
 /**
- * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. They include air,
- * haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the host's objects.
- * `segment_size` and `between_size` are the sizes of an element in your header.
+ * Gets transmittance and visibility between pairs of points now, at most wk_caps.max_batch of them. The answers
+ * include air, haze, fog, precipitation and clouds drawn as a volume. They exclude clouds drawn as a deck and the
+ * host's objects. `segment_size` and `between_size` are sizeof(wk_segment) and sizeof(wk_between) of your header.
  * Thread: concurrent.
  */
 WK_API
@@ -3405,7 +3455,7 @@ wk_status wk_context_get_visibility_at(const wk_context *context,
 
 /**
  * Gets the sky's light on surfaces of any orientation at a place. The call reads the sky's tables. It builds them if
- * no frame has done so yet, and waits for the GPU once after every change of the air.
+ * no frame has done so yet. The first call after each change of the tables waits for the GPU.
  * Thread: exclusive; with an OpenGL host, the thread where its context is (or can be made) current.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the position; WK_ERROR_DEVICE_LOST.
  */
@@ -3444,15 +3494,15 @@ WK_API wk_status wk_ambient_init(wk_ambient *out, uint32_t struct_size);
  *
  * These functions serve sensors, reflections and lighting that the host computes itself. They give the radiance of the
  * sky in a direction, as a picture shows it in pixels that the host did not draw. The radiance includes the clear air,
- * clouds as the model draws them, fog with precipitation, the glow of the night sky, and below the horizon the
- * planet's own ground. It excludes the discs of sun and moon (wk_context_get_light has their light), stars and
- * planets, rain areas, and everything that the host drew.
+ * clouds as the context's cloud model draws them (wk_context_set_cloud_model), fog with precipitation, the glow of the
+ * night sky, and below the horizon the planet's own ground. It excludes the discs of sun and moon
+ * (wk_context_get_light has their light), stars and planets, rain areas, and everything that the host drew.
  *
  * The double-precision reference of the sky computes the answers on the calling thread, without work of the GPU. The
- * first query in a new state of the air solves the reference, which takes a second or two; other threads that query
- * meanwhile wait. While the weather changes, the air has a new state at every time. The solutions of the last four
- * states are kept for all contexts of a device. docs/reflections.md has the cost of a direction and the difference
- * from pictures.
+ * first query in a new state of the air solves the reference, which takes a second or two. Other threads that ask for
+ * radiances wait meanwhile. While the weather changes, the air has a new state at every time. The solutions of the
+ * last four states are kept for all contexts of a device. docs/reflections.md has the cost for each direction and the
+ * difference from pictures.
  * ====================================================================================================
  */
 
@@ -3570,7 +3620,7 @@ typedef struct wk_rainfall {
      * Velocity of the median drop of the falling water, m/s: half of the water falls more steeply, the other half
      * less. Render occluder maps along this velocity. The drop falls at the speed of Gunn and Kinzer (1949). It moves
      * with the wind at 10 m, gusts included, or with the wind grid or wind field there (wk_context_set_wind_grid,
-     * wk_context_set_wind_field).
+     * wk_context_set_wind_field). 0 if neither rain nor drizzle falls.
      */
     double fall_velocity_m_s[3];
     /** Hail, small hail and ice pellets on level ground, mm/h of melted water. */
@@ -3625,7 +3675,7 @@ typedef struct wk_rain_surface {
 
 /** Rain on a surface. Element of an array, without struct_size; calls take its sizeof instead. */
 typedef struct wk_rain_on {
-    /** Rate of water, mm/h: litres per square metre and hour. */
+    /** Rate of rain and drizzle, mm/h: litres per square metre and hour. */
     double rate_mm_h;
     /** Number of drops of 0.1 to 6 mm that land on the whole surface, 1/s. */
     double drops_per_s;
@@ -3666,8 +3716,9 @@ wk_status wk_context_get_rainfall_at(const wk_context *context,
  * Gets the rain on at most wk_caps.max_batch surfaces at a simulation time. Drops of each size arrive in their own
  * direction: it follows from their fall speed, the wind with its gusts, and the velocity of the surface. A windscreen
  * at 25 m/s meets far more drops than the ground does. Boxes (wk_context_set_shelters) keep rain off where they
- * shelter a point 5 cm in front of the surface; occluder maps have no effect here. `surface_size` and `on_size` are
- * sizeof(wk_rain_surface) and sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
+ * shelter a point 5 cm in front of the surface, each box at the place to which its velocity has carried it by that
+ * time. Occluder maps have no effect here. `surface_size` and `on_size` are sizeof(wk_rain_surface) and
+ * sizeof(wk_rain_on) of your header. If one surface is wrong, nothing is written.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions; WK_ERROR_INVALID_ARGUMENT naming the wrong field of a surface and its range.
  */
@@ -3702,8 +3753,9 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
  * position_m gives the camera's position in double precision; Welkin ignores the translation of `view`. Any projection
  * works: perspective, off-axis, one eye of a stereo pair, orthographic, infinite far plane, reversed depth.
  *
- * Welkin reads depth as the projection gives it, z / w mapped to the depth buffer's 0 to 1. With WK_DEPTH_LOGARITHMIC
- * the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead. Pixels at the far depth show the sky.
+ * Welkin reads depth as the projection gives it: z / w, mapped to the depth buffer's range of 0 to 1. With
+ * WK_DEPTH_LOGARITHMIC the host's shaders must have written ln(C w + 1) / ln(C far + 1) instead, with w of clip space,
+ * C = logarithmic_c and far = logarithmic_far_m. Pixels at the far depth show the sky.
  *
  * `target` points to the images, in the struct for the kind of device: wk_own_target, wk_opengl_target or
  * wk_vulkan_target.
@@ -3713,9 +3765,12 @@ WK_API wk_status wk_rainfall_init(wk_rainfall *out, uint32_t struct_size);
 /** Relation of depth to distance. */
 typedef uint32_t wk_depth_kind;
 
-/** Depth of the projection matrix: perspective (with a finite or infinite far plane) or orthographic. */
+/** Depth as the projection matrix gives it: perspective (with a finite or infinite far plane) or orthographic. */
 #define WK_DEPTH_PROJECTION 0
-/** ln(C w + 1) / ln(C far + 1) with w = clip w, written by the host's shaders. */
+/**
+ * ln(C w + 1) / ln(C far + 1), written by the host's shaders, with w of clip space, C = logarithmic_c and far =
+ * logarithmic_far_m.
+ */
 #define WK_DEPTH_LOGARITHMIC 1
 
 /** Range of clip-space z. */
@@ -3736,21 +3791,23 @@ typedef uint32_t wk_frame_flags;
 #define WK_FRAME_CUT 1
 /**
  * Draw a picture that depends on seed, time and view alone, without any history. If the sky's tables are not complete
- * yet, this frame builds them, which takes as long as many frames. Use it for stills and comparisons, not for every
- * frame of a changing weather.
+ * yet, this frame builds them, and takes as long as many ordinary frames. Use it for stills and comparisons, not for
+ * every frame of a changing weather.
  */
 #define WK_FRAME_NO_HISTORY 2
 /** Depth is reversed: 1 is near, 0 is far. */
 #define WK_FRAME_DEPTH_REVERSED 4
 /**
- * The first row of the images lies at clip y = -1. This is always so in OpenGL (there the flag need not be set), and
- * in Vulkan with a viewport of positive height. Without the flag the first row lies at clip y = +1.
+ * The first row of the images lies at clip y = -1. This is always so in OpenGL, where the flag need not be set. In
+ * Vulkan it is so with a viewport of positive height, where the flag must be set. Without the flag the first row lies
+ * at clip y = +1.
  */
 #define WK_FRAME_FIRST_ROW_AT_MINUS_Y 8
 /**
- * Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for each,
- * so the frame is slower and its picture may differ by rounding. Use it now and then, not in every frame.
- * WK_ERROR_UNSUPPORTED on a Vulkan host, whose images are lent for one submission.
+ * Measure the cost of each effect: wk_report.ms, wk_view_get_costs. Welkin draws stages one by one and waits for the
+ * GPU after each, so the frame is slower and its picture may differ by rounding. Use the flag now and then, not in
+ * every frame. On a Vulkan host the call returns WK_ERROR_UNSUPPORTED, because the host lends its images for one
+ * submission only.
  */
 #define WK_FRAME_MEASURE 16
 /**
@@ -3766,11 +3823,11 @@ typedef uint32_t wk_color_space;
 #define WK_COLOR_SCENE_LINEAR 0
 /** Already tone-mapped, linear Rec. 709 in [0, 1]. Welkin tone-maps its own light and composites linearly. */
 #define WK_COLOR_DISPLAY_LINEAR 1
-/** Already tone-mapped and encoded by the sRGB curve, or in an sRGB format in which the hardware encodes. */
+/** Already tone-mapped, and encoded by the sRGB curve: by the host, or by the hardware in an sRGB format. */
 #define WK_COLOR_DISPLAY_SRGB 2
 
 /**
- * Access of Welkin to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
+ * Welkin's access to the target's depth. The sea and the terrain (wk_context_set_terrain_drawing) are drawn only into
  * depth that may be written. Without sea and terrain, both values give the same picture.
  */
 typedef uint32_t wk_depth_access;
@@ -3788,9 +3845,10 @@ typedef uint32_t wk_depth_access;
 /**
  * A false-colour picture that replaces a frame's picture, for developers. It shows one quantity per pixel on a scale
  * from black over blue, green, yellow and red to white. In the descriptions of the quantities, "a step" leads from one
- * of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture, and
- * other calls of the frame draw nothing. Masked pixels stay the host's. If the frame contains nothing of the quantity,
- * all is black.
+ * of these colours to the next. Each quantity names a stage: the wk_view_record with this stage draws the picture.
+ * Other calls of the frame draw nothing, except that a call with the stage SURFACE still draws the sea and the terrain
+ * if the depth may be written (wk_depth_access). Masked pixels stay the host's. If the frame contains nothing of the
+ * quantity, all is black.
  */
 typedef uint32_t wk_diagnostic;
 
@@ -3802,26 +3860,26 @@ typedef uint32_t wk_diagnostic;
  */
 #define WK_DIAGNOSTIC_DISTANCE 1
 /**
- * Optical depth of air, fog and precipitation between the eye and the visible surface: black 0, 1 a step, white 5 or
- * more. The columns of rain areas are left out. Stage MEDIUM.
+ * Optical depth of air, fog, precipitation and clouds between the eye and the visible surface, in the sky without the
+ * clouds: black 0, 1 a step, white 5 or more. The columns of rain areas are left out. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_OPTICAL_DEPTH 2
 /** Share of a surface under a film, standing water or clear ice: black 0, 0.2 a step, white 1. Stage SURFACE. */
 #define WK_DIAGNOSTIC_WETNESS 3
 /**
- * Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see wk_budget), on a
- * logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage MEDIUM.
+ * Error due to the air, fog and clear sky that the plan leaves out, |Y' - Y| / (Y + 0.01 white) (see Plan and budget
+ * of a view), on a logarithmic scale: black 1e-4 or less, white 10 or more. Drops and stars are not counted. Stage
+ * MEDIUM.
  */
 #define WK_DIAGNOSTIC_PLAN_ERROR 4
 /**
- * Number of times that drops, flakes or stones were drawn over a pixel: black 0, 4 a step, white 20 or more. Stage
- * PARTICLES.
+ * Number of times that precipitation was drawn over a pixel: black 0, 4 a step, white 20 or more. Stage PARTICLES.
  */
 #define WK_DIAGNOSTIC_OVERDRAW 5
 /**
  * Speed of the wind that carries the precipitation, 2 m above the host's surfaces: black a calm, 4 m/s a step, white
- * 20 m/s or more. Each square of the ground has an arrow along the wind, or a dot where it is slower than 0.3 m/s. The
- * sky is black. Stage MEDIUM.
+ * 20 m/s or more. The ground is divided into squares. Each square has an arrow along the wind, or a dot where the wind
+ * is slower than 0.3 m/s. The sky is black. Stage MEDIUM.
  */
 #define WK_DIAGNOSTIC_WIND 6
 
@@ -3845,10 +3903,13 @@ typedef struct wk_frame {
     wk_depth_kind depth_kind;
     /** Range of clip-space z. Default WK_CLIP_ZERO_TO_ONE. */
     wk_clip_space clip_space;
-    /** Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is LOGARITHMIC. Default 1. */
+    /**
+     * Constant C of logarithmic depth, 1/m. Range [1e-9, 1e6] where depth_kind is WK_DEPTH_LOGARITHMIC. Default 1.
+     */
     double logarithmic_c;
     /**
-     * Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is LOGARITHMIC. Default 1e7.
+     * Distance at depth 1 of logarithmic depth, m. Range [1e-3, 1e12] where depth_kind is WK_DEPTH_LOGARITHMIC.
+     * Default 1e7.
      */
     double logarithmic_far_m;
     /** Flags of the frame. Default 0. */
@@ -3864,16 +3925,16 @@ typedef struct wk_frame {
     /** Value of the exposure, as wk_exposure_mode says. Default 0. */
     double exposure_value;
     /**
-     * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL for
-     * PREPARE alone.
+     * The images: a wk_own_target, wk_opengl_target or wk_vulkan_target, by the kind of device. May be NULL if the
+     * call's only stage is WK_STAGE_PREPARE.
      */
     const void *target;
     /**
-     * Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lean against it.
-     * Default 0, 0, 0.
+     * Velocity of the camera in the host's world, m/s; its length is at most 2000. Rain streaks lie along the drops'
+     * velocity relative to the camera. Default 0, 0, 0.
      */
     double velocity_m_s[3];
-    /** Access of Welkin to the target's depth. Default WK_DEPTH_ACCESS_READ. */
+    /** Welkin's access to the target's depth. Default WK_DEPTH_ACCESS_READ. */
     wk_depth_access depth_access;
     /** False-colour picture to draw in place of the frame's. Default WK_DIAGNOSTIC_NONE. */
     wk_diagnostic diagnostic;
@@ -3905,12 +3966,12 @@ typedef struct wk_frame {
 }
 
 /**
- * Light for the host's own shading of a frame, in the units of the frame's color_space. A surface of colour c with
- * normal n shows c * (ambient + direct * max(dot(n, direction), 0)).
+ * Light for the host's own shading of a frame, in the units of the frame's color_space. The host shows a surface of
+ * colour c with normal n as c * (ambient + direct * max(dot(n, direction), 0)).
  *
  * In scene-linear space this is exact for matt surfaces. In display spaces the light includes the tone curve at the
- * frame's exposure, so one pair of lights cannot be right for every surface. It is right for a grey card of 18 %, both
- * in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
+ * frame's exposure, so `ambient` and `direct` cannot be right for every surface. They are right for an 18 % grey card,
+ * both in shade and facing the sun. With WK_COLOR_DISPLAY_LINEAR c is linear, and the host (or its sRGB framebuffer)
  * encodes the result. With WK_COLOR_DISPLAY_SRGB c and the light are both encoded numbers, as fixed-function OpenGL
  * multiplies them.
  */
@@ -3921,11 +3982,14 @@ typedef struct wk_frame_light {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Unit vector in the host's world towards the sun, or towards the moon where that is brighter. */
+    /** Unit vector in the host's world towards the sun, or towards the moon when the moon is brighter. */
     double direction[3];
-    /** Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 below the horizon. */
+    /**
+     * Direct light from `direction` on a surface that faces it, after air, clouds and fog; 0 when that light is below
+     * the horizon.
+     */
     double direct[3];
-    /** Light from sky, clouds and fog on level ground. */
+    /** Light from sky, clouds and fog on level ground, and direct light from the fainter of sun and moon. */
     double ambient[3];
     /** Light from the ground on a surface that faces down, for hosts with one ambient light above and one below. */
     double ambient_below[3];
@@ -3953,15 +4017,19 @@ typedef struct wk_own_target {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** The image to draw into. Default NULL. */
+    /** The image to draw into, of any wk_format with four channels. Default NULL. */
     const wk_texture *color;
     /** Surface to draw into if `color` is NULL: Welkin draws into its acquired image. Default NULL. */
     const wk_surface *surface;
-    /** Depth of the host's picture, as large as `color`; with NULL (the default) every pixel shows the sky. */
+    /**
+     * Depth of the host's picture, WK_FORMAT_R32_FLOAT, as large as `color`. With NULL (the default) every pixel shows
+     * the sky.
+     */
     const wk_texture *depth;
     /**
-     * Mask: where it is 1, the host's pixel stays (cab, HUD); where it is 0, Welkin draws weather. As large as
-     * `color`. Default NULL.
+     * Mask: where its red is 1, the host's pixel stays (cab, HUD); where its red is 0, Welkin draws weather.
+     * WK_FORMAT_R8_UNORM, WK_FORMAT_RGBA8_UNORM, WK_FORMAT_RGBA8_SRGB or WK_FORMAT_BGRA8_UNORM, as large as `color`.
+     * Default NULL.
      */
     const wk_texture *mask;
     /**
@@ -3993,8 +4061,8 @@ typedef struct wk_own_target {
 
 /**
  * Gets the light with which the host should light its own objects in a frame. Call this function before you draw the
- * objects. It reads the camera's position, color_space, cd_m2_per_unit and the exposure of `frame`, and ignores the
- * target.
+ * objects. Of `frame`, the call uses the camera's position, color_space, cd_m2_per_unit and the exposure, and ignores
+ * the target.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field.
  */
@@ -4069,7 +4137,7 @@ typedef uint32_t wk_stage_flags;
 
 /** Tables and simulation textures; needs no target. */
 #define WK_STAGE_PREPARE 1
-/** Sky behind everything: pixels at the far depth, or all pixels without depth. */
+/** Sky behind everything: on the pixels at the far depth, or on all pixels if the target has no depth. */
 #define WK_STAGE_BACKGROUND 2
 /**
  * Water and snow on surfaces, shadows of clouds, and the sea and terrain that Welkin draws; after the host's opaque
@@ -4115,14 +4183,14 @@ typedef struct wk_report {
     const void *next;
     /** The host's frame number; UINT64_MAX before the first frame. */
     uint64_t frame_id;
-    /** Number of full-screen draws recorded for this frame so far. */
+    /** Number of render passes recorded for this frame so far, without those that build tables. */
     uint32_t passes;
     /**
      * Number of tables built, refined or blended for this frame so far; 0 when only the camera turned and the sky has
      * its final quality.
      */
     uint32_t tables_rebuilt;
-    /** Display units per cd/m^2 that were applied; 0 if nothing was drawn. */
+    /** Exposure that was applied, display units per cd/m^2; 0 if nothing was drawn. */
     double exposure;
     /** GPU memory that the view uses for itself, bytes. */
     uint64_t bytes;
@@ -4135,40 +4203,42 @@ typedef struct wk_report {
      * (WK_FRAME_MEASURE).
      */
     double ms;
-    /** Predicted time of the weather in this frame, ms, from the times reported before this frame. */
+    /**
+     * Time that the weather in this frame was predicted to take, ms, from the times that the host had reported before.
+     */
     double predicted_ms;
     /** Time that the host reported for this frame, ms. */
     double reported_ms;
     /**
-     * Estimated error of what this frame left out, without parts that still fade: 95th percentile over the gauged
-     * pixels.
+     * Estimated error due to the parts that this frame left out, except those that were still fading: 95th percentile
+     * over the gauged pixels. All errors of this struct are in the measure of wk_budget.tolerance.
      */
     double predicted_error;
-    /** Upper end of the 95 % confidence interval of the percentile in predicted_error over all pixels. */
+    /** Upper bound, with 95 % confidence, of the error's 95th percentile over all pixels. */
     double predicted_error_bound;
     /** Error bound that was predicted for the last gauged picture. */
     double checked_error_bound;
-    /** Error that the gauge measured in the picture of checked_error_bound. */
+    /** Error that the gauge measured in the picture for which checked_error_bound was predicted. */
     double checked_error;
     /** Number of drops and hailstones around the camera; those inside the picture were drawn. */
     uint32_t drops;
-    /** Number of flakes around the camera; those inside the picture were drawn. 0 if none were. */
+    /** Number of flakes around the camera; those inside the picture were drawn. 0 if no flakes were drawn. */
     uint32_t flakes;
     /**
      * Number of drops that each drawn drop represented: 1 unless more fell than wk_rain.most_drops; 0 without drops.
      */
     double drop_weight;
     /**
-     * Rate of splashes, 1/(m^2 s) on level ground, that were left out because the largest number of splashes was
-     * reached. They are those of the smallest drops.
+     * Rate of the splashes left out on level ground because the largest number of splashes was reached, 1/(m^2 s). The
+     * splashes of the smallest drops are left out first.
      */
     double splashes_left_out_per_m2_s;
     /**
-     * Rate of stones, 1/(m^2 s) on level ground, that did not bounce because the largest number of bouncing stones was
-     * reached. They are the smallest ones.
+     * Rate of the stones that did not bounce on level ground because the largest number of bouncing stones was
+     * reached, 1/(m^2 s). The smallest stones are left out first.
      */
     double stones_left_out_per_m2_s;
-    /** Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if none was drawn. */
+    /** Contrast gain that rain was drawn with (wk_rain.contrast_gain): 1 is as in nature; 0 if no rain was drawn. */
     double contrast_gain;
     /**
      * Distance up to which flakes were drawn, m; farther away snow is extinction alone. 0 if no flakes were drawn.
@@ -4207,9 +4277,9 @@ typedef struct wk_report {
 /** Effect whose cost is measured. */
 typedef uint32_t wk_effect;
 
-/** Tables over the planet: built when the air changes. */
+/** Tables of the sky for the whole planet: built when the air changes. */
 #define WK_EFFECT_SKY_TABLES 0
-/** The sky and the air as seen from the camera's height: built when height, sun or air change. */
+/** Tables of the sky and the air as seen from the camera's height: built when height, sun or air change. */
 #define WK_EFFECT_SKY_VIEW 1
 /** Sky behind everything. */
 #define WK_EFFECT_BACKGROUND 2
@@ -4227,7 +4297,7 @@ typedef uint32_t wk_effect;
 #define WK_EFFECT_PARTICLES 8
 /** Water and snow on surfaces, and the sea and terrain that Welkin draws. */
 #define WK_EFFECT_SURFACE 9
-/** Water on the windscreen: its simulation steps, which run after the sky's tables, and the stage LENS. */
+/** Water on the windscreen: its simulation steps, which run after the sky's tables are built, and the stage LENS. */
 #define WK_EFFECT_WINDSCREEN 10
 
 /** Cost of one effect in a frame. Element of an array, without struct_size; calls take its sizeof instead. */
@@ -4253,7 +4323,8 @@ WK_API wk_status wk_view_create(wk_context *context, const wk_view_desc *desc, w
 
 /**
  * Destroys a view. NULL does nothing.
- * Thread: any. GPU objects that need the host's OpenGL context are released at the device's next call.
+ * Thread: any. GPU objects that need the host's OpenGL context are released at once if that context can be made
+ * current on this thread, else at the next call that uses the GPU of this device.
  */
 WK_API wk_status wk_view_destroy(wk_view *view);
 
@@ -4273,7 +4344,8 @@ wk_status wk_view_record(wk_view *view,
 /**
  * Draws weathers that the host may set later, into small images of Welkin's own. Shaders are then compiled in advance,
  * and hardly any later frame waits for one. Each weather is drawn during the change from the previous weather of the
- * list (for the first, from the context's own), after the change, and with the sun at several heights. Call this
+ * list (for the first, from the context's own), after the change, and with the sun at several heights. Where the
+ * context has weather regions, each weather is also drawn with them around the camera: set them before. Call this
  * function behind a loading screen, before the view's first frame: the next frame begins as a view's first one does.
  * Afterwards the context is as before.
  *
@@ -4306,8 +4378,8 @@ wk_status wk_view_prepare(wk_view *view,
 WK_API wk_status wk_view_get_report(wk_view *view, wk_report *out_report);
 
 /**
- * Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` gets
- * their number in any case; it is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
+ * Gets the cost of each effect of the view's last frame, in the order of the WK_EFFECT_ constants. `*out_count` always
+ * gets the number of effects, which is 0 if the frame was not measured (WK_FRAME_MEASURE). If `capacity` is too small,
  * nothing else is written and the call fails; with capacity 0 it succeeds. `cost_size` is sizeof(wk_effect_cost) of
  * your header. Later versions may have more effects.
  * Thread: exclusive on the view.
@@ -4335,9 +4407,10 @@ WK_API wk_status wk_report_init(wk_report *out, uint32_t struct_size);
  * ====================================================================================================
  * [veil] Textures for the host's transparent things
  *
- * Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them. Their shaders
- * sample the frame's veil: the light that air, fog and rain add on the way to a point, and the transmittance up to it.
- * The published sampling functions, GLSL and WGSL, map clip coordinates and distance to texels.
+ * Glass, lamps and smoke that the host draws after the stage MEDIUM need the same air in front of them as the objects
+ * that the stage has covered. Their shaders sample the frame's veil: the light that air, fog and rain add on the way
+ * to a point, and the transmittance up to it. The published sampling functions, GLSL and WGSL, map clip coordinates
+ * and distance to texels.
  * ====================================================================================================
  */
 
@@ -4398,6 +4471,7 @@ WK_API wk_status wk_view_get_frame_textures(wk_view *view, wk_frame_textures *ou
 /**
  * Gets the text of the sampling functions: NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
  */
 WK_API wk_status wk_get_veil_snippet(wk_shading_language language, const char **out_text);
 
@@ -4415,14 +4489,14 @@ wk_status wk_frame_textures_init(wk_frame_textures *out,
  *
  * For reflections in the host's own objects: paint, water, windows. Six faces of 64 x 64 texels show the sky with its
  * clouds, fog and rain as far as the horizon, and the planet's ground below. They leave out the discs of the sun and
- * the moon (the host lights its objects by those itself), the stars and the host's objects; the night's glow is
- * uniform. The axes are those of the host's world: a shader samples with the reflected direction as it is. Level m of
- * the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and Reitz, alpha =
- * roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 * roughness) is the
- * specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS and set their
- * filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first frame, in frames
- * with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and where light or weather jump. A view draws the cube map only if its
- * host has asked for it.
+ * the moon (the host itself lights its objects by the sun and the moon), the stars and the host's objects. The glow of
+ * the night sky is uniform. The axes are those of the host's world: a shader samples with the reflected direction as
+ * it is. Level m of the 7 levels is prefiltered for a mirror of roughness m/6 (the distribution of Trowbridge and
+ * Reitz, alpha = roughness^2; Karis 2013, Real Shading in Unreal Engine 4), so textureLod(cube, reflected, 6 *
+ * roughness) is the specular light before the surface's reflectance. OpenGL hosts enable GL_TEXTURE_CUBE_MAP_SEAMLESS
+ * and set their filters by a sampler object. Welkin draws one face a frame, in turn. It draws all six in the first
+ * frame, in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, and when light, weather or place jump. A view draws the
+ * cube map only after the first wk_view_get_environment.
  * ====================================================================================================
  */
 
@@ -4447,7 +4521,8 @@ typedef struct wk_environment {
     double cd_m2_per_unit;
     /**
      * Factor from texels to the values of the last frame's colour. With WK_COLOR_SCENE_LINEAR these values are in the
-     * host's units. In the display spaces they are display values before the tone curve.
+     * host's units. In the display spaces they are exposed luminances, to which the tone curve still has to be
+     * applied.
      */
     double light_scale;
 } wk_environment;
@@ -4465,10 +4540,10 @@ typedef struct wk_environment {
 }
 
 /**
- * Gets the native texture of the cube map. Once you have called this function, the first wk_view_record of each frame
- * with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM draws the faces that are due. The texture belongs to the view and stays
- * the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after each such
- * wk_view_record. Call this function after each frame to get the frame's scales.
+ * Gets the native texture of the cube map. Once you have called this function, the faces that are due are drawn in
+ * each frame by its first wk_view_record with WK_STAGE_BACKGROUND or WK_STAGE_MEDIUM. The texture belongs to the view
+ * and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL after
+ * each such wk_view_record. Call this function after each frame to get the frame's scales.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
  */
@@ -4489,9 +4564,9 @@ wk_status wk_environment_init(wk_environment *out,
  * With a tolerance, a view gauges its own pictures. In every eighth frame it draws a grid of 64 x 36 of its pixels
  * with everything, and again without each part of the weather. It reads the differences back some frames later,
  * without waiting for the GPU. Parts that change the picture by less than the tolerance fade out, and fade in again
- * when they matter. Under a budget of time, further parts fade out until the reported times fit, starting with the
- * parts that save the most time for the least visible loss. They come back when there is time again. After a jump of
- * camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
+ * when they matter. Under a budget of time, further parts fade out until the reported times fit the budget, starting
+ * with the parts that save the most time for the least visible loss. These parts come back when there is time again.
+ * After a jump of camera, sun or weather, and in frames with WK_FRAME_CUT or WK_FRAME_NO_HISTORY, everything is drawn.
  *
  * A part has a number (WK_PART_), a name and rungs, which are its levels of detail. Rung 0 draws all of it; the last
  * rung draws nothing, or the cheapest substitute. Later versions append parts: wk_plan.part_count has their number,
@@ -4629,21 +4704,22 @@ typedef struct wk_budget {
     /* milliseconds */ 0.0 \
 }
 
-/** Limit of a budget that the picture exceeds, according to the estimates. */
+/** A budget's limit that the picture exceeds, according to the estimates. */
 typedef uint32_t wk_gave_way;
 
 /** Nothing had to give way. */
 #define WK_GAVE_WAY_NOTHING 0
-/** The tolerance: a better picture would take longer than the budget. */
+/** The tolerance: a better picture would take longer than the budget allows. */
 #define WK_GAVE_WAY_TOLERANCE 1
 /**
- * Time and the tolerance: the picture takes longer than the budget even with all parts left out that are not pinned.
+ * Time and the tolerance: the picture takes longer than the budget allows, even if all parts that are not pinned are
+ * left out.
  */
 #define WK_GAVE_WAY_TIME 2
 
 /**
- * Plan of a view's last frame: the errors due to the parts that it left out, and its cost. Errors are estimates from
- * the gauged pixels.
+ * Plan of a view's last frame: the errors due to the parts that the frame left out, and the frame's cost. Errors are
+ * estimates from the gauged pixels.
  */
 typedef struct wk_plan {
     /** sizeof(wk_plan) of your header. */
@@ -4654,11 +4730,11 @@ typedef struct wk_plan {
     const void *next;
     /** Number of parts. Parts are numbered from 0. */
     uint32_t part_count;
-    /** Limit of the budget that could not be kept. */
+    /** The budget's limit that could not be kept. */
     wk_gave_way gave_way;
     /** Error of everything left out together: 95th percentile over the gauged pixels. */
     double error;
-    /** Upper end of the 95 % confidence interval of the percentile in `error` over all pixels. */
+    /** Upper bound, with 95 % confidence, of the 95th percentile over all pixels. */
     double error_bound;
     /** Error of the worst gauged pixel. */
     double worst;
@@ -4730,16 +4806,19 @@ typedef struct wk_part_plan {
     const char *rung_name;
     /** Reason in a few words of English. */
     const char *reason_text;
-    /** Importance of the part where a budget does not set it. */
+    /** Importance that the part has unless a budget sets another. */
     double importance;
     /**
-     * Share of the part that is drawn: 1 all of it, 0 its last rung; between these while the part fades, or on a rung
-     * in between.
+     * Share of the part that is drawn: 1 all of it, 0 its last rung; between 0 and 1 while the part fades, or on a
+     * rung between the first and the last.
      */
     double share;
-    /** Error of the picture with this part alone at its last rung, as of the last gauge. */
+    /** Error that the picture would have if this part alone were drawn at its last rung, as of the last gauge. */
     double error;
-    /** Error of the worst gauged pixel with this part alone at its last rung, as of the last gauge. */
+    /**
+     * Error that the worst gauged pixel would have if this part alone were drawn at its last rung, as of the last
+     * gauge.
+     */
     double worst;
     /**
      * Work that the whole part adds, or would add, to this picture with everything, in the units of wk_plan.work.
@@ -4767,11 +4846,14 @@ typedef struct wk_part_plan {
 }
 
 /**
- * Sets the limits for the view's pictures: tolerance and time. NULL draws everything again. Unchanged after an error.
+ * Sets the limits for the view's pictures: tolerance and time. NULL removes them, and everything is drawn again. After
+ * an error the previous limits stay.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API wk_status wk_view_set_budget(wk_view *view, const wk_budget *budget);
+WK_API
+wk_status wk_view_set_budget(wk_view *view,
+                             const wk_budget *budget);
 
 /**
  * Reports the time that the weather took in the last frame, ms, in (0, 1e5]. Measure the time in the same way as you
@@ -4797,8 +4879,8 @@ WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan
 
 /**
  * Writes the view's plan as UTF-8 text: the rung of each part, and the settings of the sky. wk_view_load_plan reads
- * the text, on other channels or on another day. `*out_size` gets the bytes needed in any case. If `capacity` is too
- * small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
+ * the text, also in other views or on another day. `*out_size` always gets the number of bytes needed. If `capacity`
+ * is too small, nothing else is written and the call fails; with `buffer` NULL and `capacity` 0 it succeeds.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_WRONG_ORDER while the view has a budget but has not gauged its picture yet: for some frames after
  * each jump of camera, sun or weather.
@@ -4806,12 +4888,12 @@ WK_API wk_status wk_view_get_part_plan(wk_view *view, wk_part part, wk_part_plan
 WK_API wk_status wk_view_save_plan(wk_view *view, void *buffer, size_t capacity, size_t *out_size);
 
 /**
- * Pins a plan that wk_view_save_plan wrote, as WK_PART_WISH_HAS_RUNG does for every part. The rest of the view's
- * budget stays; wk_view_set_budget removes the pins.
+ * Pins every part at its rung in a plan that wk_view_save_plan wrote, as wishes with WK_PART_WISH_HAS_RUNG do. The
+ * rest of the view's budget stays; wk_view_set_budget removes the pins.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_PARSE for bytes that are no saved plan, or that are a plan of another version, naming line and
- * column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky in which the view's context differs.
- * After an error the view's plan stays as it was.
+ * column or the field; WK_ERROR_INVALID_ARGUMENT naming the setting of the sky that differs between the plan and the
+ * view's context. After an error the view's plan stays as it was.
  */
 WK_API wk_status wk_view_load_plan(wk_view *view, const void *plan, size_t size);
 
@@ -4845,9 +4927,10 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
  *
  * WK_STAGE_PARTICLES draws rain wherever the weather has it. The rate decides how many drops fall and how fast. Near
  * drops are drawn one by one, farther ones as streaks on cones around the camera. Both depend only on seed and time,
- * so all channels of a simulator draw the same rain and any time can be shown again. The wind carries the drops; the
- * host's depth hides them; sky, ground, sun and lamps light them. Drops splash on the surfaces that the picture shows
- * within ten metres of the camera.
+ * so all channels of a simulator draw the same rain and any time can be shown again. Only drops that follow a wind
+ * varying in space depend on the frames drawn before. The wind carries the drops; the host's depth hides them; sky,
+ * ground, sun and lamps light them. Drops splash on the surfaces that the picture shows within ten metres of the
+ * camera.
  *
  * Give boxes that keep rain off: a roof, a bridge deck, a cab, a truck. A drop whose own path crossed a box is not
  * drawn, whatever the wind. The windward side of a box is therefore wet; its lee side and its inside are dry. Planes
@@ -4877,19 +4960,21 @@ WK_API wk_status wk_part_plan_init(wk_part_plan *out, uint32_t struct_size);
 typedef uint32_t wk_rain_model;
 
 /**
- * Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget it draws less where the picture does not
- * need it or the time does not allow it (WK_PART_RAIN). Near a wind that varies in space (wk_context_set_wind_grid,
- * wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
+ * Welkin chooses: single drops to 1.9 m and cones to 14.8 m. With a wk_budget, Welkin draws less rain where the
+ * picture does not need more or the time does not allow more (WK_PART_RAIN). Near a wind that varies in space
+ * (wk_context_set_wind_grid, wk_context_set_wind_field) the drops follow that wind, on devices with compute shaders.
  */
 #define WK_RAIN_MODEL_AUTOMATIC 0
 /** No drops: all rain is extinction in the air. */
 #define WK_RAIN_MODEL_VEIL 1
 /**
- * Streaks on three nested cones around the camera. The cost depends only on the picture's size: the cheapest moving
- * rain without compute shaders (wk_caps.tier 0). No splashes.
+ * Streaks on three nested cones around the camera, without splashes. This is the cheapest moving rain without compute
+ * shaders (wk_caps.tier 0). Its cost depends only on the picture's size.
  */
 #define WK_RAIN_MODEL_CONES 2
-/** Single drops to 4 m, each at a place that seed and time give; cones beyond only where lamps light the rain. */
+/**
+ * Single drops to 4 m, each at a place that seed and time give; cones beyond 4 m only where lamps light the rain.
+ */
 #define WK_RAIN_MODEL_DROPS 3
 /** Drops to 4 m that follow a wind varying in space, step by step. Needs compute shaders (wk_caps.tier 1). */
 #define WK_RAIN_MODEL_INTEGRATED 4
@@ -4918,7 +5003,7 @@ typedef struct wk_rain {
      * Contrast of rain relative to nature. Range [1, 16], or 0, the default: 1, as in nature. With a gain of g, one
      * streak, stone or splash hides as much of the background as g of them one behind another would. This departs from
      * physics, for displays on which rain by day cannot be seen otherwise (WK_RAIN_GAIN_TRAINER). Light, visibility,
-     * water and queries do not depend on it. Set the same value on all channels of a simulator.
+     * water and queries do not depend on the gain. Set the same value on all channels of a simulator.
      */
     double contrast_gain;
 } wk_rain;
@@ -4948,7 +5033,10 @@ typedef struct wk_shelter {
     double axes[9];
     /** Half the size along each axis, m. Range [1e-3, 1e5], default 1, 1, 1. */
     double half_size_m[3];
-    /** Velocity, m/s; its length is at most 2000. Default 0, 0, 0. */
+    /**
+     * Velocity, m/s; its length is at most 2000. Default 0, 0, 0. A box faster than 0.1 m/s keeps neither rain nor
+     * snow off the ground below it.
+     */
     double velocity_m_s[3];
 } wk_shelter;
 
@@ -4980,7 +5068,8 @@ typedef struct wk_shelter_shape {
     uint32_t reserved0;
     /**
      * Four numbers for each plane: a unit normal in the box's axes that points out of the shape, and the plane's
-     * distance along it from the box's centre, m, within 1e6. The planes must leave some of the box. Default 0.
+     * distance from the box's centre along this normal, m, within 1e6. The planes must leave some of the box. Default
+     * 0.
      */
     double planes[64];
 } wk_shelter_shape;
@@ -5041,8 +5130,9 @@ wk_status wk_shelter_shape_init(wk_shelter_shape *out,
  *
  * WK_STAGE_PARTICLES draws falling snow wherever the weather has it. Rate, kind and temperature give the sizes and
  * speeds of the flakes; seed and time alone give their places, so all channels of a simulator draw the same flakes.
- * The wind carries them; the host's depth hides them; shelters and occluder maps keep them off; sky, ground, sun and
- * lamps light them. Farther away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
+ * Only flakes near a wind that varies in space depend on the frames drawn before. The wind carries the flakes; the
+ * host's depth hides them; none fall under shelters and occluder maps; sky, ground, sun and lamps light them. Farther
+ * away than flakes reach (wk_snow.most_flakes), snow is extinction in the air.
  * ====================================================================================================
  */
 
@@ -5112,11 +5202,11 @@ WK_API wk_status wk_snow_init(wk_snow *out, uint32_t struct_size);
  * Rain areas have rain of their own: a passing shower, a squall line, a dry hole in steady rain. Inside an area its
  * rain replaces the weather's rain and drizzle. The change is smooth over the rim, a band inside the area's border.
  * Where areas overlap, a later one in the list covers the earlier ones. Around a camera in or near a rim, the number
- * of drops varies from place to place with the rain rate. From outside, an area is a shaft with falling curtains; it
- * leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas, and so
- * does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME), an area
- * with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save keeps the
- * areas.
+ * of drops varies from place to place with the rain rate. Seen from outside, an area is a shaft with falling curtains.
+ * The shaft leans because the drops lag behind the moving cloud. All queries of rain and visibility include the areas,
+ * and so does the ground's wetness (with WK_GROUND_REPORTED too). Where clouds are a volume (WK_CLOUD_MODEL_VOLUME),
+ * an area with at least 0.05 mm/h of rain has cloud above it, unless a closed layer hides the sky. wk_context_save
+ * keeps the areas.
  * ====================================================================================================
  */
 
@@ -5192,7 +5282,10 @@ typedef struct wk_rain_area {
      * area: neither the area's nor, except in the rim, the weather's. Range [-1000, 20 000], default 1500.
      */
     double top_m;
-    /** Velocity to the east and north with WK_AREA_MOTION_OWN, m/s, each within [-200, 200]. Default 0, 0. */
+    /**
+     * Velocity of the area towards the east and towards the north, m/s, each within [-200, 200]. It is used with
+     * WK_AREA_MOTION_OWN. Default 0, 0.
+     */
     double velocity_m_s[2];
     /**
      * Simulation time at which the centre is at center_m, s. Range [-1e10, 1e10], default 0. With
@@ -5227,7 +5320,7 @@ typedef struct wk_rain_area {
 
 /**
  * Replaces the list of rain areas, at most 16; count 0 removes all. Areas move by themselves: set them again only to
- * change them. Unchanged after an error.
+ * change them. A failed call changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range; WK_ERROR_UNSUPPORTED for snow.
  */
@@ -5248,16 +5341,18 @@ WK_API wk_status wk_rain_area_init(wk_rain_area *out, uint32_t struct_size);
  * [region] Weather regions
  *
  * Weather regions have a weather of their own: a fog bank, a shower of snow, a sandstorm, a front. A region has a
- * shape on the ground plan, a perimeter outside it over which its weather fades into the weather around, and a
- * wk_weather. The region's field `has` lists the parts of that weather that hold in the region. At each place, every
- * query and the picture of a camera there see the merged weather. Queries between two points integrate the extinction
- * of all regions on the way. Regions move at their own velocity, never with the wind; a host may also set them again
- * in every frame. wk_context_save keeps them, and they are the same on all channels of a simulator.
+ * shape on the ground plan, a wk_weather, and a perimeter outside the shape, over which the region's weather fades
+ * into the weather around it. The region's field `has` lists the parts of that weather that hold in the region. At
+ * each place, queries and the picture of a camera there use the weather that all regions there give together. Queries
+ * between two points integrate the extinction of all regions on the way. Regions move at their own velocity, never
+ * with the wind; a host may also set them again in every frame. wk_context_save keeps them. Channels of a simulator
+ * that set the same regions have the same weather.
  *
- * Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that both
- * regions merge are averaged by the regions' weights. The averages are those of extinction (not visibility), rates,
- * temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its weather is that at
- * the camera. docs/regions.md has the rules, and a table of what differs by place and what does not yet.
+ * Where regions overlap, a later one in the list replaces the earlier ones in the parts that it has. Parts that
+ * several regions list in `merges` are averaged by these regions' weights. The averages are those of extinction (not
+ * visibility), rates, temperatures and wind vectors. A camera's picture shows the fog of all regions; the rest of its
+ * weather is that at the camera. docs/regions.md has the rules, a table of what differs by place, and the quantities
+ * that do not differ yet.
  * ====================================================================================================
  */
 
@@ -5267,8 +5362,8 @@ typedef uint32_t wk_weather_part_flags;
 /** Haze: visibility_m without fog and precipitation, and the aerosol fields. */
 #define WK_WEATHER_PART_HAZE 1
 /**
- * Low layer: fog or mist with its top, or matter that the wind lifts. Without WK_WEATHER_PART_HAZE it lies in the haze
- * of the weather around the region.
+ * Low layer: fog or mist with its top, or matter that the wind lifts. In a region without WK_WEATHER_PART_HAZE, this
+ * layer lies in the haze of the weather around the region.
  */
 #define WK_WEATHER_PART_FOG 2
 /** Precipitation of all kinds. */
@@ -5311,14 +5406,14 @@ typedef struct wk_weather_region {
     /** Parts of `weather` that the region has. Default 0. */
     wk_weather_part_flags has;
     /**
-     * Parts that are averaged with those of earlier regions that merge them too. In all other parts the region
-     * replaces the earlier regions of the list. Default 0.
+     * Parts that are averaged with those of earlier regions that merge them too. In all other parts that it has, the
+     * region replaces the earlier regions of the list. Default 0.
      */
     wk_weather_part_flags merges;
     /**
-     * Weather inside, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its heights are
-     * above the station of the weather outside; station_altitude_m, the runway visual range and the ozone column have
-     * no effect. Read during the call only.
+     * Weather inside the region, with its overrides in its chain; NULL, the default, is that of WK_WEATHER_INIT. Its
+     * heights are above the station of the weather outside; station_altitude_m, the runway visual range and the ozone
+     * column have no effect. Read during the call only.
      */
     const wk_weather *weather;
     /**
@@ -5335,8 +5430,9 @@ typedef struct wk_weather_region {
     double corner_radius_m;
     /**
      * Corners of a polygon, in clockwise or counter-clockwise order, convex or not. Each corner is two numbers: its
-     * distances from the centre to the right of the heading and along the heading, m, within 1e6. The sides must not
-     * cross or touch others, and the polygon must be larger than 1 m^2. Default 0.
+     * distances from the centre to the right of the heading and along the heading, m, within 1e6. A side must not
+     * cross or touch any other, except its neighbours at their common corners. The area must be larger than 1 m^2.
+     * Default 0.
      */
     double corners_m[32];
     /** Number of corners of a polygon, [3, 16]; ignored for other shapes. Default 0. */
@@ -5357,8 +5453,8 @@ typedef struct wk_weather_region {
     /** Share by which the region acts, to fade it in and out. Range [0, 1], default 1. */
     double strength;
     /**
-     * Upward velocity of the wind above 100 m, m/s; it decreases linearly to 0 at the station's height. Needs
-     * WK_WEATHER_PART_WIND in `has`. Range [-50, 50], default 0.
+     * Upward velocity of the wind 100 m or more above the station, m/s. Lower down it decreases linearly to 0 at the
+     * station's height. Without WK_WEATHER_PART_WIND in `has` it has no effect. Range [-50, 50], default 0.
      */
     double vertical_wind_m_s;
 } wk_weather_region;
@@ -5390,8 +5486,8 @@ typedef struct wk_weather_region {
  * Set them again to change them; you may also do so in every frame, at their new places. Unchanged after an error.
  * Copied during the call.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, such as a polygon whose sides cross or a
- * corner radius beyond the smaller half extent.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range, also for a polygon whose sides cross or a
+ * corner radius larger than the smaller half extent.
  */
 WK_API
 wk_status wk_context_set_weather_regions(wk_context *context,
@@ -5425,8 +5521,8 @@ typedef struct wk_air {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Temperature, degrees Celsius. From that of the station it falls by 6.5 K/km up to 11 km above sea level, and is
-     * constant above.
+     * Temperature, degrees Celsius. It equals the station's temperature at the station's altitude, falls by 6.5 K/km
+     * from there up to 11 km above sea level, and is constant above 11 km.
      */
     double temperature_c;
     /**
@@ -5452,8 +5548,8 @@ typedef struct wk_air {
 
 /**
  * Gets temperature, humidity and pressure at a position and a past or future simulation time, with the weather regions
- * there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; positions below
- * that have the air of 1 km below the station.
+ * there. The answer is for the altitude of the position. The laws hold down to 1 km below the station; lower positions
+ * have the air at 1 km below the station.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -5474,9 +5570,9 @@ WK_API wk_status wk_air_init(wk_air *out, uint32_t struct_size);
  * [wind_grid] Wind that varies in space
  *
  * If you know how air flows around your buildings, over your deck or under your rotor, give the velocities on a grid.
- * They act in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and on
- * drops and flakes near a camera. They replace the velocities of a wind field (wk_context_set_wind_field). Everything
- * else follows the weather's wind.
+ * The grid acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on drifting snow, on patches of
+ * fog and dust, and on drops and flakes near a camera. It takes the place of a wind field (wk_context_set_wind_field).
+ * Everything else follows the weather's wind.
  * ====================================================================================================
  */
 
@@ -5557,8 +5653,8 @@ WK_API wk_status wk_wind_grid_init(wk_wind_grid *out, uint32_t struct_size);
  * A context can solve for the wind in a box of air about a place. The weather's wind enters the box, flows round the
  * terrain of wk_context_set_ground_grid or wk_context_set_terrain and round the boxes of wk_context_set_shelters,
  * including moving ones, and leaves on the downwind side. As a wind grid of your own does (wk_context_set_wind_grid),
- * the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on patches of fog and dust, and
- * on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
+ * the field acts in wk_context_get_wind_at, in the rain on surfaces and windscreens, on drifting snow, on patches of
+ * fog and dust, and on drops and flakes near a camera. Without wk_context_set_wind_field nothing is solved.
  * ====================================================================================================
  */
 
@@ -5624,7 +5720,8 @@ typedef struct wk_wind_field {
     const void *next;
     /**
      * Middle of the field's floor, in the host's world, m, within 1e12 m of the origin; no higher than the lowest
-     * ground that matters. When this point moves, the field follows by whole cells. Default 0, 0, 0.
+     * ground that matters. If you set the field again with another point, the field moves by whole cells. Default 0,
+     * 0, 0.
      */
     double floor_center_m[3];
     /**
@@ -5778,8 +5875,8 @@ wk_status wk_wind_field_report_init(wk_wind_field_report *out,
  * Where objects stand below others (a pier below a deck), add maps along the paths of slower drops, with the same wind
  * and fall speeds of 3.4 and 2.1 m/s. The edges of mapped surfaces are exact to two texels.
  *
- * Welkin copies a map during the call. The copy includes work that you submitted to the queue (or, with OpenGL,
- * issued) before the call. Afterwards the image is yours again.
+ * Welkin copies a map during the call. The copy includes the results of work that you submitted to the queue (or, with
+ * OpenGL, issued) before the call. Afterwards the image is yours again.
  * ====================================================================================================
  */
 
@@ -5851,7 +5948,7 @@ typedef struct wk_occluder_map {
 
 /**
  * Sets the maps of objects that keep rain off, at most 4, and replaces those set before; count 0 removes all. After an
- * error the previous maps stay. They are not part of a saved state, because each channel may have its own.
+ * error the previous maps stay. No map is part of a saved state, because each channel may have maps of its own.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT and WK_ERROR_UNSUPPORTED naming the element, its field and what is accepted;
  * WK_ERROR_BAD_HANDLE; WK_ERROR_DEVICE_LOST.
@@ -5896,11 +5993,11 @@ typedef struct wk_light {
      * each. A low beam has about 10 000 cd, a work light 2000 to 5000 cd.
      */
     double intensity_cd[3];
-    /** Angle from the middle up to which the beam has full intensity, degrees. Range [0, 180], default 10. */
+    /** Angle from the middle of the beam up to which it has full intensity, degrees. Range [0, 180], default 10. */
     double inner_deg;
     /**
-     * Angle from the middle at which the beam ends, degrees. Range [inner_deg, 180], default 30. If both angles are
-     * 180, the lamp shines to all sides.
+     * Angle from the middle of the beam at which it ends, degrees. Range [inner_deg, 180], default 30. If both angles
+     * are 180, the lamp shines to all sides.
      */
     double outer_deg;
 } wk_light;
@@ -5918,8 +6015,8 @@ typedef struct wk_light {
 }
 
 /**
- * Sets the host's lamps, at most 64, and replaces those set before; count 0 removes all. Set moving lamps again in
- * every frame. Unchanged after an error.
+ * Sets the host's lamps, at most 64, and replaces all lamps set before; count 0 removes all. Set moving lamps again in
+ * every frame. A failed call changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the element, its field and range.
  */
@@ -5940,8 +6037,8 @@ WK_API wk_status wk_light_init(wk_light *out, uint32_t struct_size);
  * [stars] Stars
  *
  * At night every view draws the 9096 stars of the Yale Bright Star Catalogue, Mercury to Uranus, the airglow, the
- * zodiacal light and the Milky Way behind its sky, at their positions over the context's place and time. By day, in
- * fog and under closed clouds none of them is drawn. A budget may leave them out (WK_PART_STARS).
+ * zodiacal light and the Milky Way behind its sky, at their positions for the context's place and time. By day, in fog
+ * and under closed clouds none of them is drawn. A budget may leave all of these lights out (WK_PART_STARS).
  * ====================================================================================================
  */
 
@@ -6009,8 +6106,8 @@ WK_API wk_status wk_context_set_stars(wk_context *context, const wk_stars *stars
 
 /**
  * Gets the magnitude, as catalogues give it, of the faintest star that the naked eye sees straight up from a place at
- * a simulation time. It decreases with the brightness of the sky, and with the extinction of the star's light in air,
- * fog and clouds. Where no starlight gets through it is minus infinity.
+ * a simulation time. This magnitude decreases with the brightness of the sky, and with the extinction of the star's
+ * light in air, fog and clouds. It is minus infinity where no starlight gets through.
  * Thread: concurrent.
  * Errors: as wk_context_get_conditions.
  */
@@ -6039,8 +6136,8 @@ WK_API wk_status wk_stars_init(wk_stars *out, uint32_t struct_size);
 /**
  * Cover of cloud layers over each place of the ground, as a share of the cover that the weather gives the layers. For
  * a layer of cover 1 the map is the cover itself. The map is level, aligned to true north and fixed to the ground.
- * Clouds drift across the map with their wind, and grow and dissolve until the cover is that of the map. Values are
- * interpolated linearly between the centres of cells, and constant beyond the outermost centres.
+ * Clouds drift across the map with their wind, and grow and dissolve on the way so that the cover stays that of the
+ * map. Values are interpolated linearly between the centres of cells, and constant beyond the outermost centres.
  */
 typedef struct wk_cloud_map {
     /** sizeof(wk_cloud_map) of your header. */
@@ -6088,8 +6185,8 @@ typedef struct wk_cloud_map {
 }
 
 /**
- * Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. Part of the
- * saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. Unchanged after an error.
+ * Sets the map of cloud cover, in place of any earlier map; NULL removes the map. Clouds change at once. The map is
+ * part of the saved state. With WK_CLOUD_MODEL_DECK the map affects only the light. A failed call changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -6106,12 +6203,12 @@ WK_API wk_status wk_cloud_map_init(wk_cloud_map *out, uint32_t struct_size);
  * [clouds] Clouds
  *
  * Cloud layers come with the weather: from wk_cloud_layer, a report or a preset. wk_context_set_cloud_model sets how
- * views draw them. Conditions, precipitation and the mean light are the same for both models. docs/clouds.md has costs
- * and errors.
+ * views draw them. Conditions, precipitation and the mean light are the same for both models, deck and volume.
+ * docs/clouds.md has costs and errors.
  *
  * Clouds drawn as a volume cast shadows. The host lights its picture by the mean light (wk_context_get_light). The
  * stage SURFACE then finds the place of each pixel from the host's depth, and multiplies the pixel by the ratio of the
- * light there to the mean light. A host that lights an object separately, such as the view out of a cab, can query the
+ * light there to the mean light. A host that lights an object separately, such as a cab's interior, can query the
  * share at the object's place (wk_context_get_sun_share).
  * ====================================================================================================
  */
@@ -6126,8 +6223,8 @@ typedef uint32_t wk_cloud_model;
 #define WK_CLOUD_MODEL_DECK 0
 /**
  * Volumes that the camera can fly through, lit by the sun or moon, the sky and the ground. A closed layer seen from
- * below is drawn as a deck. Each frame computes one of every sixteen pixels; wk_frame.frame_id selects which, so
- * increase it by one in every frame.
+ * below is drawn as a deck. Each frame computes one of every sixteen pixels (by default: see wk_clouds.square_side);
+ * wk_frame.frame_id selects which, so increase it by one in every frame.
  */
 #define WK_CLOUD_MODEL_VOLUME 1
 
@@ -6137,8 +6234,8 @@ typedef uint32_t wk_clouds_flags;
 /**
  * Shafts of light: the air under broken clouds is brighter where the sun shines through and darker in the clouds'
  * shadows. Drawn with WK_STAGE_SURFACE, up to 10 km away, where the host gives depth and does not read the shadow map
- * itself (wk_view_get_cloud_shadows). It takes 24 look-ups a pixel. Without this flag the air has its mean brightness
- * everywhere.
+ * itself (wk_view_get_cloud_shadows). The flag costs 24 texture look-ups a pixel. Without this flag the air has its
+ * mean brightness everywhere.
  */
 #define WK_CLOUDS_SHAFTS 1
 
@@ -6150,7 +6247,10 @@ typedef struct wk_clouds {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Relative number of steps a ray takes: twice the value, twice as many steps. Range [0.125, 32], default 2. */
+    /**
+     * Relative number of steps along each ray: twice the value means twice as many steps. Range [0.125, 32], default
+     * 2.
+     */
     double fineness;
     /**
      * Side of a square block of pixels: each frame computes one pixel of a block and takes the others from earlier
@@ -6172,14 +6272,12 @@ typedef struct wk_clouds {
 }
 
 /**
- * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in its place (WK_PART_CLOUDS).
- * Part of the saved state.
+ * Sets how views draw clouds. Default WK_CLOUD_MODEL_VOLUME; a budget may draw the deck in place of the volume
+ * (WK_PART_CLOUDS). The model is part of the saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown model.
  */
-WK_API
-wk_status wk_context_set_cloud_model(wk_context *context,
-                                     wk_cloud_model cloud_model);
+WK_API wk_status wk_context_set_cloud_model(wk_context *context, wk_cloud_model cloud_model);
 
 /**
  * Gets the share of the direct light of the sun or the moon, whichever is brighter, that clouds let through to a
@@ -6197,8 +6295,8 @@ wk_status wk_context_get_sun_share(const wk_context *context,
                                    double *out_share);
 
 /**
- * Sets the quality of the clouds in a view; NULL returns to the default. Unchanged after an error. docs/lab/README.md
- * has the cost and error of some choices.
+ * Sets the quality of the clouds in a view; NULL returns to the default. A failed call changes nothing.
+ * docs/lab/README.md has the cost and error of some choices.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -6223,7 +6321,7 @@ WK_API wk_status wk_clouds_init(wk_clouds *out, uint32_t struct_size);
 /**
  * Map of the clouds' shadows, and its placement in the view's last frame. The map is a level plane at the altitude of
  * the weather's station (station_altitude_m of wk_weather). It moves with the air that carries the clouds, and repeats
- * every 20 km.
+ * every 20.48 km.
  */
 typedef struct wk_cloud_shadows {
     /** sizeof(wk_cloud_shadows) of your header. */
@@ -6288,18 +6386,21 @@ typedef struct wk_cloud_shadows {
 /**
  * Gets the native texture of the clouds' shadows. From the first call on, the first wk_view_record of each frame
  * updates it, and WK_STAGE_SURFACE no longer draws cloud shadows: your materials do. The texture belongs to the view
- * and stays the same until the view is destroyed. In Vulkan it is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between
- * calls. Call this after each frame for the placement of the map. If you draw before Welkin, use the placement of the
- * last frame, or record WK_STAGE_PREPARE first.
+ * and stays the same until the view is destroyed. In Vulkan the texture is in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+ * between calls. Call this function after each frame to get the placement of the map. If you draw before Welkin, use
+ * the placement of the last frame, or record WK_STAGE_PREPARE first.
  * Thread: exclusive on the view.
  * Errors: WK_ERROR_UNSUPPORTED on a device that Welkin made itself (wk_device_create), on which the host's shaders
  * cannot run.
  */
-WK_API wk_status wk_view_get_cloud_shadows(wk_view *view, wk_cloud_shadows *out_shadows);
+WK_API
+wk_status wk_view_get_cloud_shadows(wk_view *view,
+                                    wk_cloud_shadows *out_shadows);
 
 /**
  * Gets the text of the sampling function: NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
  */
 WK_API wk_status wk_get_cloud_shadow_snippet(wk_shading_language language, const char **out_text);
 
@@ -6385,7 +6486,7 @@ typedef struct wk_lightning {
     const double *cells;
     /**
      * Three numbers for each mast: its tip in the host's world, m. Masts and the tops of shelters
-     * (wk_context_set_shelters) attract ground flashes, except those that the host triggers. Copied by the call.
+     * (wk_context_set_shelters) attract ground flashes, except flashes that the host triggers. Copied by the call.
      * Default NULL.
      */
     const double *masts;
@@ -6510,16 +6611,18 @@ typedef struct wk_flash_light {
 }
 
 /**
- * Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. Part of the saved
- * state. Unchanged after an error.
+ * Sets the rate and the places of flashes, and how views draw them; NULL returns to the default. The settings are part
+ * of the saved state. A failed call changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
-WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightning *lightning);
+WK_API
+wk_status wk_context_set_lightning(wk_context *context,
+                                   const wk_lightning *lightning);
 
 /**
  * Triggers a flash, whatever the weather. The flash is part of the saved state until 120 s after its time_s. At most
- * 64 triggered flashes are kept at a time. Unchanged after an error.
+ * 64 triggered flashes are kept at a time. A failed call triggers nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or if there are too many flashes;
  * WK_ERROR_WRONG_ORDER for a time before the present.
@@ -6527,12 +6630,12 @@ WK_API wk_status wk_context_set_lightning(wk_context *context, const wk_lightnin
 WK_API wk_status wk_context_trigger_flash(wk_context *context, const wk_flash_trigger *flash);
 
 /**
- * Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. The two
- * times are at most 3600 s apart. Flashes that start farther from the position than `most_distance_m`, in [0, 50000]
- * m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0 nothing else
- * is written, and the call succeeds. If `capacity` is too small, the call writes only the number and fails.
- * `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the call
- * uses the earliest weather that the timeline knows.
+ * Gets the flashes that begin at or after `from_s` and before `until_s`, past or future, in order of time. `until_s`
+ * is from 0 to 3600 s later than `from_s`. Flashes that start farther from the position than `most_distance_m`, in [0,
+ * 50000] m, measured horizontally, are left out. `*out_count` gets the number of flashes found. With capacity 0
+ * nothing else is written, and the call succeeds. If `capacity` is too small, the call writes only the number and
+ * fails. `flash_size` is sizeof(wk_flash) of your header. If the timeline no longer knows the weather of a time, the
+ * call uses the earliest weather that the timeline knows.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
@@ -6635,8 +6738,8 @@ typedef struct wk_wiper_arm {
     /** Angle at the far end of the stroke, degrees, within 350 of parked_deg. Default 90. */
     double far_deg;
     /**
-     * Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. Between two frames the
-     * blade moves at constant speed.
+     * Position of the blade in this frame: 0 parked, 1 at the far end. Range [0, 1], default 0. The blade moves at
+     * constant speed from one frame to the next.
      */
     double position;
     /** Width of the rubber on the glass, m. Range [0, 0.1], default 0.006. */
@@ -6670,9 +6773,9 @@ typedef struct wk_windscreen {
     /** Number of wipers in `arms`, at most 2. Default 0. */
     uint32_t arm_count;
     /**
-     * Corners of a QUAD in the camera's axes (x right, y up, z backwards), m from the camera, x, y, z each: lower
-     * left, lower right, upper right, upper left as seen from the camera. The window is flat within 2 % of its
-     * diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
+     * Corners of a QUAD: lower left, lower right, upper right and upper left as seen from the camera. Each is three
+     * numbers in the camera's axes (x right, y up, z backwards), m from the camera. The window is flat within 2 % of
+     * its diagonal, and convex. Its edges are 0.05 to 8 m long, and no coordinate of a corner exceeds 20 m. Its slope
      * relative to gravity follows from the frame's view matrix. Default 1 m x 0.6 m across the view, 0.7 m away.
      */
     double corners_m[12];
@@ -6690,8 +6793,9 @@ typedef struct wk_windscreen {
     double airflow_m_s;
     /**
      * Share of the weather's rain that reaches the glass, such as 0 in a tunnel that you have not described as a
-     * shelter. Shelters and occluder maps keep rain off each part of the pane separately. The vehicle's own box does
-     * not count: a box that holds the camera and ends within 3 m in front of the glass. Range [0, 1], default 1.
+     * shelter. Shelters and occluder maps keep rain off each part of the pane separately. A box that contains the
+     * camera and ends within 3 m in front of the glass is the vehicle's own, and keeps no rain off. Range [0, 1],
+     * default 1.
      */
     double exposed;
     /** Amount of mist on the inside. Range [0, 1], default 0. */
@@ -6820,20 +6924,21 @@ wk_status wk_windscreen_report_init(wk_windscreen_report *out,
  * the host's objects, only shelters and occluder maps appear in it, as dark shapes.
  *
  * Wetness follows the present weather (wk_conditions.wetness, .puddles). With WK_GROUND_SIMULATED, set by a
- * wk_simulation_desc in wk_context_desc.next, it is instead a state that fills, drains and dries over time, and that
- * wk_context_save keeps.
+ * wk_simulation_desc in wk_context_desc.next, the water on the ground is instead a state that fills, drains and dries
+ * over time. wk_context_save keeps this state.
  * ====================================================================================================
  */
 
 /**
- * Material of the ground. The first source that names one decides: an image of the target (the byte of red), then the
- * wk_ground_grid or the tiles of the wk_terrain, then the context's default.
+ * Material of the ground; each value says how the material looks when it is wet. The first source that names a
+ * material decides: an image of the target (the byte of red), then the wk_ground_grid or the tiles of the wk_terrain,
+ * then the context's default.
  */
 typedef uint32_t wk_surface_class;
 
 /**
- * No material. In an image or a grid the next source then decides. As the context's default it means natural ground:
- * vegetation where the host's colour is green, soil elsewhere.
+ * No material. In an image, a grid or a tile this value leaves the decision to the next source. As the context's
+ * default it means natural ground: vegetation where the host's colour is green, soil elsewhere.
  */
 #define WK_SURFACE_CLASS_UNSPECIFIED 0
 /** Earth, sand, gravel: darkens and hardly mirrors. */
@@ -6860,14 +6965,17 @@ typedef struct wk_ground {
     /** Depth of the water on the ground, mm, as a tyre meets it: the film, plus standing water in a hollow. */
     double water_mm;
     /**
-     * Depth of the film on level ground outside hollows, mm; on the host's terrain, depth of the film at the place.
+     * Depth of the film, mm: at the place if it lies on the host's terrain, else on level ground outside hollows.
      */
     double film_mm;
     /**
-     * Wetness of level, open ground, or of the place on the host's terrain: 0 dry, 0.3 damp, 1 under a closed film.
+     * Wetness, of the place if it lies on the host's terrain, else of level, open ground: 0 dry, 0.3 damp, 1 under a
+     * closed film.
      */
     double wetness;
-    /** Share of all ground, or of the host's terrain, that is under standing water. */
+    /**
+     * Share of the host's terrain that is under standing water; for a place off the terrain, share of all ground.
+     */
     double puddles;
     /** 1 where standing water covers the place, else 0. Off the host's terrain only paved ground has puddles. */
     uint32_t in_puddle;
@@ -6898,15 +7006,15 @@ typedef struct wk_ground {
 typedef uint32_t wk_ground_model;
 
 /**
- * The present weather: the ground is as wet as reported, or as the present rain keeps it. It is dry as soon as the
- * rain ends.
+ * The present weather: the ground is as wet as the weather reports, or as the present rain keeps it. Ground that only
+ * the rain keeps wet is dry as soon as the rain ends.
  */
 #define WK_GROUND_REPORTED 0
 /**
- * A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills pores,
- * film and hollows; they drain and dry by wind, sun and humidity (Penman 1948) in steps of 10 s. After a leap of more
- * than a day only the last day is simulated, which starts with the wetness of the weather at that time. See
- * wk_context_update for leaps that take more than one call.
+ * A simulated state. At simulation time 0 it starts with the wetness of the weather at that time. Rain fills the
+ * ground's pores, the film on it and its hollows. The water drains and dries by wind, sun and humidity (Penman 1948)
+ * in steps of 10 s. After a leap of more than a day only the last day is simulated, from the wetness of the weather at
+ * the beginning of that day. See wk_context_update for leaps that take more than one call.
  */
 #define WK_GROUND_SIMULATED 1
 
@@ -6917,9 +7025,9 @@ typedef uint32_t wk_lying_snow_model;
 #define WK_LYING_SNOW_REPORTED 0
 /**
  * A simulated state that starts with the reported depth. Snowfall fills it; the snow settles, drifts, slides, melts
- * and refreezes in steps of 60 s. It is simulated on level, open ground and on each cell of the host's terrain
- * (wk_context_set_ground_grid). An update that moves time by more than a day runs as a fast-forward
- * (wk_context_accumulate); after one of more than 30 days only the last 30 are simulated.
+ * and refreezes in steps of 60 s. The state has the snow on level, open ground and on each cell of the host's terrain
+ * (wk_context_set_ground_grid, wk_context_set_terrain). An update that moves time by more than a day runs as a
+ * fast-forward (wk_context_accumulate). Of an update by more than 30 days only the last 30 days are simulated.
  */
 #define WK_LYING_SNOW_SIMULATED 1
 
@@ -6967,7 +7075,7 @@ wk_status wk_context_get_ground(const wk_context *context,
 
 /**
  * Sets the surface class of ground that has none from the target's image or the host's terrain. Default
- * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. Part of the saved state.
+ * WK_SURFACE_CLASS_UNSPECIFIED: natural ground. The class is part of the saved state.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown class.
  */
@@ -6995,8 +7103,8 @@ WK_API wk_status wk_ground_init(wk_ground *out, uint32_t struct_size);
  * boxes that stand still (wk_context_set_shelters), determine the rain that each cell receives. Water runs off and
  * fills the terrain's hollows until they spill. wk_context_get_ground answers by place, the stage SURFACE draws the
  * water, and wk_context_get_ground_cells returns it for your own materials. With WK_GROUND_SIMULATED the water is a
- * state, which wk_context_save keeps together with the heights. Otherwise it is the weather's wetness, spread over the
- * hollows.
+ * state, which wk_context_save keeps together with the heights. Otherwise the water follows from the weather's
+ * wetness, spread over the hollows.
  * ====================================================================================================
  */
 
@@ -7013,8 +7121,8 @@ typedef struct wk_ground_grid {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Position of the south-western node in the host's world, m, within 1e12 m of the origin. The values of heights_m
-     * are above its height. Default 0, 0, 0.
+     * Position of the south-western node in the host's world, m, within 1e12 m of the world's origin. heights_m are
+     * measured upwards from this position. Default 0, 0, 0.
      */
     double origin_m[3];
     /** Distance between nodes, m. Range [0.01, 10 000], default 1. A puddle must be several cells wide to appear. */
@@ -7022,8 +7130,8 @@ typedef struct wk_ground_grid {
     /** Number of nodes east and north. Range [2, 512] each, default 2, 2. */
     uint32_t nodes[2];
     /**
-     * Heights above the origin, m, within 1e5. Nodes run from west to east, rows from south to north. Copied by the
-     * call.
+     * Heights of the nodes above origin_m, m, within 1e5. Nodes run from west to east, rows from south to north.
+     * Copied by the call.
      */
     const float *heights_m;
     /** Number of values in heights_m: the product of `nodes`. */
@@ -7076,10 +7184,10 @@ typedef struct wk_ground_cell {
 } wk_ground_cell;
 
 /**
- * Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. With NULL
- * the ground is level everywhere. Setting the same grid again keeps its water, even with other classes; a different
- * grid starts as wet as level ground is. May take some tenths of a second for the largest grids. Unchanged after an
- * error.
+ * Sets the heights of the host's terrain, in place of a grid or tiles (wk_context_set_terrain) set before. NULL
+ * removes the grid, but not tiles; without either the ground is level everywhere. Setting the same grid again keeps
+ * its water, even with other classes; a different grid starts as wet as level ground is. For the largest grids the
+ * call may take some tenths of a second. A failed call changes nothing.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -7116,8 +7224,8 @@ wk_status wk_ground_grid_init(wk_ground_grid *out,
  * A native texture for the host's own materials, with the water of the terrain's cells. The cells of a grid
  * (wk_context_set_ground_grid) are uploaded once for both the host and the stage SURFACE. For tiles
  * (wk_context_set_terrain) the texture covers a window around a place. Each cell is one texel; the first one is the
- * south-western cell, and rows go north, in every graphics interface. Published functions, in GLSL and WGSL, compute
- * how the wet surface looks.
+ * south-western cell, and rows go north, in every graphics interface. The functions from wk_get_ground_snippet, in
+ * GLSL and WGSL, compute how the wet surface looks.
  * ====================================================================================================
  */
 
@@ -7139,10 +7247,13 @@ typedef struct wk_ground_texture {
     uint64_t texture;
     /**
      * Number that changes whenever `texture` becomes another object, even one of the same name: after another grid was
-     * set or loaded.
+     * set or loaded. For tiles it never changes.
      */
     uint64_t generation;
-    /** Revision of the texture's contents, as in wk_context_get_ground_cells. */
+    /**
+     * Revision of the texture's contents: for a grid, that of wk_context_get_ground_cells; for tiles, the number of
+     * writes to the texture so far.
+     */
     uint64_t revision;
     /** Width, texels: the number of nodes of a grid to the east, or 512 for tiles. */
     uint32_t width;
@@ -7156,8 +7267,8 @@ typedef struct wk_ground_texture {
     double uv_from_world[2][4];
     /**
      * Texture of the snow on the same grid, an object like `texture`; its channels are depth_m, density_kg_m3, wetness
-     * and albedo of wk_lying_snow. 0 without WK_LYING_SNOW_SIMULATED. It changes at most once every 60 s of simulation
-     * time.
+     * and albedo of wk_lying_snow. The field is 0 without WK_LYING_SNOW_SIMULATED. The snow in the texture changes at
+     * most once every 60 s of simulation time.
      */
     uint64_t snow_texture;
 } wk_ground_texture;
@@ -7178,27 +7289,25 @@ typedef struct wk_ground_texture {
 
 /**
  * Gets the native texture of the water on a wk_ground_grid, up to date. Call this function after each
- * wk_context_update; the call costs nothing if nothing has changed. Changes come at most once every 10 s of simulation
- * time. This call, or a wk_view_record with SURFACE, uploads them in order with the host's work on the device's queue
- * or context. The texture belongs to the context and stays the same until you set or load another grid, or none;
- * before you do so, wait for GPU work that samples the texture. In Vulkan it is in
+ * wk_context_update; the call costs nothing if nothing has changed. The water changes at most once every 10 s of
+ * simulation time. This call, or a wk_view_record with SURFACE, uploads the changes in order with the host's work on
+ * the device's queue or context. The texture belongs to the context and stays the same until you set or load another
+ * grid, or remove the grid. Before you do so, wait for GPU work that samples the texture. In Vulkan it is in
  * VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL between calls, and you may copy from it. It has no mipmaps; choose filter
  * and wrap yourself.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER without a wk_ground_grid; WK_ERROR_UNSUPPORTED on an own device, where the host has no
  * shaders.
  */
-WK_API
-wk_status wk_context_get_ground_texture(wk_context *context,
-                                        wk_ground_texture *out_texture);
+WK_API wk_status wk_context_get_ground_texture(wk_context *context, wk_ground_texture *out_texture);
 
 /**
  * Gets the native textures of the tiles around a place, up to date, as wk_context_get_ground_texture does for a grid.
- * The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays in its
- * middle quarter. `uv_from_world` is the present placement of the window. Where no tile has ground, the textures have
- * neither water nor snow. Call this function after each wk_context_update; with several cameras, call it before you
- * draw the picture of each one. The call costs nothing if nothing has changed; after a move it uploads the whole
- * window. Both textures stay the same as long as the context lives.
+ * The textures cover a window of 512 x 512 cells, which moves in steps of 64 cells so that `center_m` stays within the
+ * middle 64 x 64 cells of the window. `uv_from_world` is the present placement of the window. Where no tile has
+ * ground, the textures have neither water nor snow. Call this function after each wk_context_update; with several
+ * cameras, call it before you draw the picture of each one. The call costs nothing if nothing has changed; after a
+ * move it uploads the whole window. Both textures stay the same as long as the context lives.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT for an invalid position; WK_ERROR_WRONG_ORDER where no tile reaches into the
  * window; WK_ERROR_UNSUPPORTED on an own device, where the host has no shaders.
@@ -7212,6 +7321,7 @@ wk_status wk_context_get_terrain_texture(wk_context *context,
  * Gets the text of the functions that compute how a texel's surface looks: how dark it is, how much of it mirrors, and
  * how rough it is. NUL-terminated UTF-8 that lives as long as the process.
  * Thread: any.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for an unknown language.
  */
 WK_API
 wk_status wk_get_ground_snippet(wk_shading_language language,
@@ -7241,9 +7351,9 @@ wk_status wk_ground_texture_init(wk_ground_texture *out,
 /** Class of the grip that snow leaves to a wheel. */
 typedef uint32_t wk_snow_friction;
 
-/** No snow, or too little to matter. */
+/** No snow, or so little that it covers less than 30 % of the ground. */
 #define WK_SNOW_FRICTION_BARE 0
-/** Loose, dry snow. */
+/** Loose snow, dry or with at most half of the liquid water that it can hold. */
 #define WK_SNOW_FRICTION_LOOSE 1
 /** Snow above 350 kg/m^3: pressed, or packed by wind. */
 #define WK_SNOW_FRICTION_PACKED 2
@@ -7260,7 +7370,7 @@ typedef struct wk_lying_snow {
     double mass_kg_m2;
     /** Density, kg/m^3; 0 without snow. */
     double density_kg_m3;
-    /** Liquid water in the snow over the most that it can hold, 0 to 1. */
+    /** Ratio of the liquid water in the snow to the most that the snow can hold, 0 to 1. */
     double wetness;
     /** Albedo for visible light; 0 without snow. */
     double albedo;
@@ -7268,7 +7378,7 @@ typedef struct wk_lying_snow {
     double cover;
     /**
      * Point of the snow's surface above or below the queried position, in the host's world: at the terrain's height
-     * plus the snow's depth. Off the host's terrain, the queried position itself.
+     * plus the snow's depth. Off the host's terrain, or more than 3 m above it, the queried position itself.
      */
     double surface_m[3];
     /** Grip of a wheel. */
@@ -7326,8 +7436,8 @@ wk_status wk_context_get_lying_snow(const wk_context *context,
                                     uint32_t snow_size);
 
 /**
- * Removes the snow of a strip of the host's terrain except the lowest `left_m` (range [0, 100]), as a plough or a
- * shovel does. `out_mass_kg` gets the removed mass and may be NULL.
+ * Removes the snow of a strip of the host's terrain except the lowest `left_m` metres (range [0, 100]), as a plough or
+ * a shovel does. `out_mass_kg` gets the removed mass and may be NULL.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without a terrain or without
  * WK_LYING_SNOW_SIMULATED, and while steps of an update remain.
@@ -7372,11 +7482,11 @@ WK_API wk_status wk_snow_strip_init(wk_snow_strip *out, uint32_t struct_size);
  * WK_GROUND_SIMULATED each cell has its own water, and hollows join across the borders of tiles; with
  * WK_GROUND_REPORTED tiles are as wet as level ground. A context has either tiles or one wk_ground_grid.
  *
- * The host's heights are the undug ground. With wk_context_set_soil the library adds what its tools dig and heap, and
- * queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the host's
- * heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and the
- * functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a change
- * takes effect after the last of them.
+ * The host's heights are the undug ground. With wk_context_set_soil the library adds what the soil's tools dig and
+ * heap, and queries, water, snow and wind see the sum. wk_context_save saves the water and the change by soil, not the
+ * host's heights, and wk_context_load requires that the same tiles have been set before. wk_context_set_terrain and
+ * the functions of tiles may be called between updates at any time; while an update has steps left (WK_PENDING), a
+ * change takes effect after the last of them.
  * ====================================================================================================
  */
 
@@ -7500,15 +7610,15 @@ typedef struct wk_terrain_drawing {
     /** No extensions in this version: NULL. */
     const void *next;
     /**
-     * Vertical error of the drawn triangles that 99.7 % of the ground does not exceed, pixels. Range [0.25, 16],
-     * default 1. It sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the
-     * level's squares. Ground so rough that it would need a longer reach is drawn with a larger error.
+     * Largest vertical error of the drawn triangles on 99.7 % of the ground, pixels. Range [0.25, 16], default 1. It
+     * sets the distance up to which each level of detail is drawn: 40 to 160 times the side of the level's squares.
+     * Ground so rough that it would need a longer distance is drawn with a larger error.
      */
     double error_px;
     /**
      * Distance from the camera up to which the ground has shadows of the sun and the moon, m. 0 for none, or range
-     * [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to 34 MB
-     * more.
+     * [100, 1e5], default 1e4. A shorter distance makes near shadows sharper. A view with shadows holds up to about 36
+     * MB more: the shadow maps, and the heights of the ground that is drawn into them.
      */
     double shadows_to_m;
 } wk_terrain_drawing;
@@ -7529,7 +7639,7 @@ typedef struct wk_terrain_point {
      * four cells is split from its south-western to its north-eastern cell. 0 where there is no ground.
      */
     double height_m;
-    /** Unit normal of this triangle in the host's axes, upwards; 0, 0, 0 where there is no ground. */
+    /** Unit normal of the ground's triangle in the host's axes, upwards; 0, 0, 0 where there is no ground. */
     double normal[3];
     /** Revision of the terrain at the last change of the nearest cell's tile. 0 where there is no ground. */
     uint64_t revision;
@@ -7545,9 +7655,9 @@ typedef struct wk_terrain_point {
 } wk_terrain_point;
 
 /**
- * Sets the lattice of a terrain in tiles, at first without tiles. The lattice replaces all tiles or the wk_ground_grid
- * set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles. Unchanged
- * after an error.
+ * Sets the lattice of a terrain in tiles, which has no tiles at first. The lattice replaces all tiles or the
+ * wk_ground_grid set before; NULL removes a lattice with its tiles. Setting the present lattice again keeps its tiles.
+ * Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range.
  */
@@ -7594,7 +7704,7 @@ wk_status wk_context_set_terrain_drawing(wk_context *context,
                                          const wk_terrain_drawing *terrain_drawing);
 
 /**
- * Gets a number that grows whenever the tiles change; 0 without a terrain.
+ * Gets a number that grows whenever the host changes the tiles or soil changes their heights; 0 without a terrain.
  * Thread: concurrent.
  */
 WK_API wk_status wk_context_get_terrain_revision(const wk_context *context, uint64_t *out_revision);
@@ -7656,10 +7766,11 @@ wk_status wk_terrain_cells_init(wk_terrain_cells *out,
  * ====================================================================================================
  * [sea] The sea: settings and queries
  *
- * Describe your sea, and query for any time the height and slope of its surface and the motion of the water; a hull
- * can float by the answers. Without settings a context has no sea. A wave height or swell that you set here replaces
- * that of the weather (wk_weather.sea_significant_wave_height_m, swell_height_m). Everything else follows the weather:
- * its wind raises waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
+ * Describe your sea. Queries then give the height and slope of its surface and the motion of the water at any time, so
+ * that a hull can float by the answers. Without settings a context has no sea. A wave height, swell or water
+ * temperature that you set here replaces that of the weather (wk_weather.sea_significant_wave_height_m,
+ * swell_height_m, sea_temperature_c). If neither you nor the weather gives a wave height or a sea state, the weather's
+ * wind raises the waves by fetch and duration. The waves have the requested height within 1 %, their pattern does not
  * repeat, and the same time gives the same bits on every machine. Regions (wk_context_set_sea_regions) describe dry
  * places, sheltered harbours, and lakes with a level of their own. Hulls (wk_context_set_sea_hulls) raise wakes.
  *
@@ -7723,7 +7834,7 @@ typedef uint32_t wk_water_type;
 #define WK_WATER_TYPE_3C 5
 /** Coast 5C. */
 #define WK_WATER_TYPE_5C 6
-/** Coast 7C, the most turbid. */
+/** Coast 7C, the most turbid of these eight. */
 #define WK_WATER_TYPE_7C 7
 
 /** A swell: waves from far away. */
@@ -7740,7 +7851,7 @@ typedef struct wk_sea_swell {
     double period_s;
     /** Direction that the swell comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double from_deg;
-    /** Directional width, degrees. Range [1, 60]; 0, the default, means 15. */
+    /** Directional width, degrees. Range [1, 60]; 0, the default, means 15.07. */
     double spread_deg;
 } wk_sea_swell;
 
@@ -7776,8 +7887,8 @@ typedef struct wk_sea_wave {
     /** Direction that the wave comes from, degrees clockwise from true north. Range [0, 360], default 0. */
     double from_deg;
     /**
-     * Time after simulation time 0 at which a crest passes the world's origin, in degrees of the period (360 is one
-     * period). Range [-360, 360], default 0.
+     * Time from simulation time 0 until a crest passes the world's origin, in degrees: 360 is one period of the wave.
+     * Range [-360, 360], default 0.
      */
     double phase_deg;
 } wk_sea_wave;
@@ -7831,7 +7942,9 @@ typedef struct wk_sea {
      * Optional: peak period of the wind sea, s. Range [0.5, 30]; else that of a fully developed sea of this height.
      */
     double peak_period_s;
-    /** Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 with a peak period and 1 without. */
+    /**
+     * Optional: peak enhancement of JONSWAP. Range [1, 10]; else 3.3 if peak_period_s is set, and 1 if it is not.
+     */
     double peak_gamma;
     /**
      * Optional: Beaufort number B. Range [0, 12]. The sea is the one that a steady wind of 0.836 B^1.5 m/s sustains
@@ -7852,13 +7965,15 @@ typedef struct wk_sea {
      * type 7C to type I; else by water_type.
      */
     double clarity_percent;
-    /** Optional, with the next two fields: share of the surface under ice floes. Range [0, 1]; else no ice. */
+    /**
+     * Optional, with ice_floe_m and ice_width_m: share of the surface under ice floes. Range [0, 1]; else no ice.
+     */
     double ice_cover;
-    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than this do not lift them. */
+    /** Diameter of the floes, m. Range [0.1, 10000], default 20. Waves shorter than a floe do not lift it. */
     double ice_floe_m;
     /**
-     * Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. They decay along it
-     * (Meylan, Bennetts and Kohout 2014).
+     * Distance that the waves have travelled through the ice, m. Range [0, 1e7], default 1000. The waves decay along
+     * this distance (Meylan, Bennetts and Kohout 2014).
      */
     double ice_width_m;
     /**
@@ -7868,7 +7983,7 @@ typedef struct wk_sea {
     uint32_t sea_state;
     /** Optical type of the water. Default WK_WATER_TYPE_IB. */
     wk_water_type water_type;
-    /** Optional: the swells; may be NULL if there are none. Read during the call only. Else the weather's swell. */
+    /** Optional: the swells; else the weather's swell. May be NULL if there are none. Read during the call only. */
     const wk_sea_swell *swells;
     /** Number of swells, at most 4. Default 0. */
     uint32_t swell_count;
@@ -7995,8 +8110,8 @@ typedef struct wk_sea_region {
 
 /**
  * A hull that moves through the water and raises a wake. The waves of its bow and stern follow from its length, beam,
- * draught and speed (Michell 1898); the wake also has the foam of its wash. The hull goes on at its speed and rate of
- * turn until it is set anew.
+ * draught and speed (Michell 1898); the wake also contains the foam of the hull's wash. The hull goes on at its speed
+ * and rate of turn until it is set anew.
  */
 typedef struct wk_sea_hull {
     /** sizeof(wk_sea_hull) of your header. */
@@ -8071,8 +8186,8 @@ typedef struct wk_sea_point {
     /** Depth of the water under the surface, m. */
     double depth_m;
     /**
-     * Share of the place under foam, 0 to 1: foam of waves that break now, and what is left of the foam of the last
-     * 3.6 s.
+     * Share of the place under foam, 0 to 1: foam of waves that break now, what is left of the foam of the last 3.6 s,
+     * and the wash of hulls.
      */
     double foam;
     /** 1 where there is water, 0 where there is none or in a dry region. */
@@ -8089,7 +8204,7 @@ typedef struct wk_sea_state {
     wk_struct_type struct_type;
     /** No extensions in this version: NULL. */
     const void *next;
-    /** Level without waves, m above mean sea level: the mean level plus the tide. */
+    /** Level without waves, m above mean sea level: wk_sea.level_m plus the tide. */
     double level_m;
     /**
      * Significant height of all waves, m: four standard deviations of the surface's height, single waves included.
@@ -8103,12 +8218,12 @@ typedef struct wk_sea_state {
      */
     double mean_from_deg;
     /**
-     * Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if it is larger.
+     * Mean square slope of the surface: Cox and Munk's (1954) for the wind, or that of the waves if theirs is larger.
      */
     double mean_square_slope;
     /**
      * Part of mean_square_slope that belongs to the waves in the computed surface. The rest belongs to waves too short
-     * for it.
+     * for that surface.
      */
     double drawn_square_slope;
     /**
@@ -8145,14 +8260,13 @@ typedef struct wk_sea_state {
 }
 
 /**
- * Sets the sea; NULL removes it. Part of the saved state. Set it before the first update, because its fetch applies to
- * all past weather that the timeline still knows. Unchanged after an error.
+ * Sets the sea; NULL removes it. Part of the saved state. Set it before the first update: waves grow from the past
+ * weather that the timeline still knows, and updates forget past weather. A new fetch applies to all of this past.
+ * Unchanged after an error.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, or two sources of the wave height.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the field and its range, also for two sources of the wave height.
  */
-WK_API
-wk_status wk_context_set_sea(wk_context *context,
-                             const wk_sea *sea);
+WK_API wk_status wk_context_set_sea(wk_context *context, const wk_sea *sea);
 
 /**
  * Replaces the list of regions, at most 64; count 0 removes all. Regions move at their velocity and rate of turn by
@@ -8185,18 +8299,18 @@ wk_status wk_context_set_sea_hulls(wk_context *context,
                                    uint32_t stride);
 
 /**
- * Gets the sea at places of the host's world and at a simulation time, past or future, at most wk_caps.max_batch of
- * them. The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of
- * the sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those
- * of the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length
- * of the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
+ * Gets the sea at places of the host's world, at most wk_caps.max_batch of them, at a past or future simulation time.
+ * The height of a position has no effect. There is no water where the terrain's tiles lie above the surface of the
+ * sea, except in cells of WK_SURFACE_CLASS_WATER. In a dry region `has_water` is 0, and the other fields are those of
+ * the water around the region, so that a hull can float by them. `shortest_wave_m`, in [0, 10000] m, is the length of
+ * the shortest waves to include: leave out those too short to move your hull. 0 includes all. `position_size` and
  * `point_size` are the distances from one element to the next, bytes: 24 or more for positions, sizeof(wk_sea_point)
  * of your header for points. The first call for a time costs some milliseconds; the results for the last two times are
  * kept, and each place then costs some microseconds. No work of the GPU is needed, and nothing is allocated after the
  * first calls.
  * Thread: concurrent.
- * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position; for times as
- * wk_context_get_conditions.
+ * Errors: WK_ERROR_WRONG_ORDER without a sea; WK_ERROR_INVALID_ARGUMENT for an invalid position or a `shortest_wave_m`
+ * out of range; for times as wk_context_get_conditions.
  */
 WK_API
 wk_status wk_context_get_sea_at(const wk_context *context,
@@ -8305,7 +8419,7 @@ typedef struct wk_soil_kind {
     double sinkage_kc;
     /** Frictional modulus kphi, kN/m^(n + 2). Range [0.1, 1e8], default 1500. */
     double sinkage_kphi;
-    /** Exponent n. Range [0.1, 3], default 1. */
+    /** Exponent n of the sinkage in Bekker's law. Range [0.1, 3], default 1. */
     double sinkage_n;
     /** Mean colour of the drawn surface when moist, linear Rec. 709 albedo. Range [0, 1], default that of loam. */
     double albedo[3];
@@ -8372,7 +8486,7 @@ typedef struct wk_soil {
     /** Must be 0. */
     uint32_t reserved0;
     /**
-     * Depth of the upper side of each layer below the undug surface, m: 0 for the first layer, then increasing, up to
+     * Depth of each layer's upper side below the undug surface, m: 0 for the first layer, then increasing, up to
      * 1000. Copied by the call. Default NULL.
      */
     const double *horizon_tops_m;
@@ -8454,7 +8568,7 @@ typedef struct wk_soil_tool {
 
 /**
  * Pose of a tool at a time. Left and right are as seen by a viewer inside the tool who looks out of its opening. All
- * points lie within 1e7 m of the world's origin.
+ * points lie within 1e7 m of wk_terrain.origin_m.
  */
 typedef struct wk_soil_pose {
     /** sizeof(wk_soil_pose) of your header. */
@@ -8470,14 +8584,14 @@ typedef struct wk_soil_pose {
      * 0, 0.
      */
     double edge_left_m[3];
-    /** Right end of this edge or line, 0.05 to 20 m from the left end. Default 0, 0, 0. */
+    /** Right end of the cutting edge or line of contact, 0.05 to 20 m from its left end. Default 0, 0, 0. */
     double edge_right_m[3];
     /**
      * Left end of the upper edge of the opening, opposite to the cutting edge and 0.02 to 20 m from it. Not used for
      * wheels and tracks. Default 0, 0, 0.
      */
     double upper_left_m[3];
-    /** Right end of the upper edge, 0.05 to 20 m from the left end. Default 0, 0, 0. */
+    /** Right end of the opening's upper edge, 0.05 to 20 m from its left end. Default 0, 0, 0. */
     double upper_right_m[3];
     /**
      * Direction out of the opening in the host's world; any length in [1e-6, 1e6]. Not used for wheels and tracks.
@@ -8535,7 +8649,7 @@ typedef struct wk_soil_tool_report {
      * comes from sinkage numbers that hold for a small range only; else 0.
      */
     uint32_t sinkage_is_beyond_range;
-    /** 1 if the edge met frozen ground, which it cannot cut; else 0. */
+    /** 1 if the edge met ground frozen deeper than 5 cm, which it cannot cut; else 0. */
     uint32_t is_stopped_by_frost;
     /** Always 0. */
     uint32_t reserved0;
@@ -8608,7 +8722,7 @@ typedef struct wk_cutting_force {
     double force_n;
     /** Component of the total force against the motion, N. */
     double horizontal_n;
-    /** Component of the total force that pulls the blade down, N; negative where soil lifts it. */
+    /** Component of the total force that pulls the blade down, N; negative where the soil lifts the blade. */
     double vertical_n;
     /** Angle of the plane of failure to the horizontal, degrees. */
     double failure_deg;
@@ -8635,15 +8749,18 @@ typedef struct wk_soil_point {
     double loose_m;
     /** Density of the loose soil, kg/m^3; 0 without any. */
     double loose_kg_m3;
-    /** Revision of the terrain at the last change by soil near this place; 0 where nothing was dug. */
+    /**
+     * Revision of the terrain at the last change by soil in the cell's rectangle of wk_context_get_soil_changes; 0
+     * where nothing was dug.
+     */
     uint64_t revision;
-    /** Kind of soil on the surface. */
+    /** Kind of soil on the surface: that of most of the loose soil, or of the bank where no loose soil lies. */
     wk_soil_kind_id kind;
     /** 1 if the cell has ground; all other fields are 0 otherwise. */
     uint32_t has_ground;
-    /** Colour of the soil that shows, linear Rec. 709 albedo. */
+    /** Colour of the dug, loose or pressed soil that shows, linear Rec. 709 albedo. */
     float albedo[3];
-    /** Share of the cell that this soil covers, 0 to 1; the undug surface shows in the rest. */
+    /** Share of the cell in which that soil shows, 0 to 1; the undug surface shows in the rest. */
     float covered;
 } wk_soil_point;
 
@@ -8663,8 +8780,8 @@ typedef struct wk_soil_change {
 } wk_soil_change;
 
 /**
- * Balance of the soil's mass, in whole micrograms: dug + brought = lying + held + taken holds exactly after every
- * call.
+ * Balance of the soil's mass, in whole micrograms. After every call, dug + brought equals lying + held + taken
+ * exactly.
  */
 typedef struct wk_soil_balance {
     /** sizeof(wk_soil_balance) of your header. */
@@ -8701,20 +8818,18 @@ typedef struct wk_soil_balance {
 }
 
 /**
- * Sets the soil of the terrain's tiles, at first undug; NULL removes the soil with all changes by digging. Setting
- * equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the soil. Part of the
- * saved state. Unchanged after an error.
+ * Sets the soil of the terrain's tiles. The ground is undug at first; NULL removes the soil with all changes by
+ * digging. Setting equal settings again changes nothing. Setting another lattice (wk_context_set_terrain) removes the
+ * soil. Part of the saved state. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_WRONG_ORDER before wk_context_set_terrain, and while steps of an update remain;
  * WK_ERROR_INVALID_ARGUMENT naming the field, also for a terrain with cells of more than 4 m.
  */
-WK_API
-wk_status wk_context_set_soil(wk_context *context,
-                              const wk_soil *soil);
+WK_API wk_status wk_context_set_soil(wk_context *context, const wk_soil *soil);
 
 /**
- * Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which is never given to
- * another tool of the state. Unchanged after an error.
+ * Adds a tool at its first pose; there may be 64 tools at a time. `out_tool` gets its number, which no other tool of
+ * the same soil gets. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field; WK_ERROR_WRONG_ORDER without soil, while steps of an update
  * remain, and for a pose before the last update.
@@ -8727,17 +8842,14 @@ wk_status wk_context_add_soil_tool(wk_context *context,
 
 /**
  * Adds the next pose of a tool: later than the last pose and the last update, at most 600 s after the last pose, and
- * with each point at most 20 m from where it was. The tool moves at constant speed between its poses, and stands still
- * after the last one. Its edge must stay over tiles. Unchanged after an error.
+ * with each point at most 20 m from its place in the last pose. The tool moves at constant speed between its poses,
+ * and stands still after the last one. Its edge must stay over tiles. Unchanged after an error.
  * Thread: exclusive.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER for a pose that is not
  * later than the last pose and the last update, for a tool that has ended, without soil, and while steps of an update
  * remain.
  */
-WK_API
-wk_status wk_context_move_soil_tool(wk_context *context,
-                                    uint32_t tool,
-                                    const wk_soil_pose *pose);
+WK_API wk_status wk_context_move_soil_tool(wk_context *context, uint32_t tool, const wk_soil_pose *pose);
 
 /**
  * Ends a tool at its last pose. The soil that the tool still holds then leaves with it, and is added to
@@ -8762,7 +8874,7 @@ wk_status wk_context_get_soil_tool(const wk_context *context,
  * Gets the force of the soil on the edge of a tool, for the depth of the cut and the soil of the last step: P = w
  * (gamma d^2 Ng + c d Nc + q d Nq + ca d Na) (Reece 1965; McKyes 1985), with width w, unit weight of the soil gamma,
  * depth d, cohesion c, surcharge q, adhesion ca and the factors Ng, Nc, Nq and Na. The answer is in closed form, for
- * the physics of your machine; 0 where the tool does not cut.
+ * the physics of your machine. It is 0 where the tool does not cut.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the field or an unknown tool; WK_ERROR_WRONG_ORDER without soil.
  */
@@ -8773,12 +8885,12 @@ wk_status wk_context_get_soil_resistance(const wk_context *context,
                                          wk_cutting_force *out_force);
 
 /**
- * Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is its mass,
- * in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if there is
- * ground to land on, else 0.
+ * Drops loose soil of a kind, which the host brings, onto a place of the host's world, at once. `mass_kg` is the mass
+ * of the soil, in [0, 1e6] kg. The height of the position does not matter. `out_lands`, which may be NULL, gets 1 if
+ * there is ground to land on, else 0.
  * Thread: exclusive.
- * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter; WK_ERROR_WRONG_ORDER without soil, and while steps of an
- * update remain.
+ * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter, also where loose soil would lie more than 1000 m deep;
+ * WK_ERROR_WRONG_ORDER without soil, and while steps of an update remain.
  */
 WK_API
 wk_status wk_context_bring_soil(wk_context *context,
@@ -8804,10 +8916,11 @@ wk_status wk_context_get_soil_points(const wk_context *context,
 
 /**
  * Gets the rectangles in which soil has changed heights since a revision of the terrain
- * (wk_context_get_terrain_revision), by rows from the south. A revision of 0 gets all. `*out_count` gets their number
- * in any case. If `capacity` is too small, nothing else is written and the call fails; with capacity 0 it succeeds.
- * `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns their heights and kinds.
- * Do not pass these heights to wk_context_update_terrain: the tiles are the undug ground.
+ * (wk_context_get_terrain_revision), ordered by rows from the south. A revision of 0 gets all. `*out_count` always
+ * gets the number of rectangles. If `capacity` is too small, nothing else is written and the call fails; with capacity
+ * 0 it succeeds. `change_size` is sizeof(wk_soil_change) of your header. wk_context_get_soil_cells returns the heights
+ * and kinds of a rectangle's cells. Do not pass these heights to wk_context_update_terrain: the tiles are the undug
+ * ground.
  * Thread: concurrent.
  * Errors: WK_ERROR_INVALID_ARGUMENT naming the parameter.
  */
@@ -8824,8 +8937,8 @@ wk_status wk_context_get_soil_changes(const wk_context *context,
  * north from `first_cell` on, at most 2^20 in all. `points` must have room for all of them. `point_size` is
  * sizeof(wk_soil_point) of your header.
  * Thread: concurrent.
- * Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that leaves the tile, or a capacity that
- * is too small; WK_ERROR_WRONG_ORDER without soil.
+ * Errors: WK_ERROR_INVALID_ARGUMENT for a key that no tile has, a rectangle that is empty, too large or leaves the
+ * tile, or a capacity that is too small; WK_ERROR_WRONG_ORDER without soil.
  */
 WK_API
 wk_status wk_context_get_soil_cells(const wk_context *context,

@@ -53,8 +53,8 @@
 //! `shaders/sky/ray.wgsl`), not a table.
 //!
 //! # What is not here
-//! Other rooms keep the state of their effect in `held.rs`. The sky has no such file: the tables follow from planet,
-//! place and lights, so that there is no state to advance or to save.
+//! The sky has no `held.rs`, in which other rooms keep the state of their effect: the tables follow from planet, place
+//! and lights, so that there is no state to advance or to save.
 
 mod ahead;
 mod cache;
