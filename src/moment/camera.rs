@@ -1,6 +1,6 @@
 //! State at a camera at a time, `SceneMoment`: its scene, the weather elsewhere, and the host's surroundings.
 
-use std::cell::OnceCell;
+use std::{cell::OnceCell, sync::Arc};
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::{
 /// State at a camera at a time, from which every effect draws. The scene is computed once for all calls of a frame.
 pub(crate) struct SceneMoment<'a> {
     /// Place, lights, air and the weather there.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Position of the camera in the host's world, m.
     pub eye: DVec3,
     /// Simulation time, s.
@@ -35,7 +35,7 @@ pub(crate) struct SceneMoment<'a> {
     /// The weather at other places and times.
     pub weather: WeatherOver<'a>,
     /// The weather at the camera, with the rain and drizzle of the rain areas there.
-    pub here: Conditions,
+    pub here: Arc<Conditions>,
     /// Extinction of the precipitation outside all regions.
     pub falling: FallingLayer,
     /// Low layer of fog, mist or dust outside all regions.

@@ -42,6 +42,9 @@ pub(crate) static NO_OUTPUTS: Outputs = Outputs { fog_depth: 0.0, sea_top_m: Non
 impl Outputs {
     /// Returns only the outputs that an effect `needs`, so that it sees no others.
     pub fn only(&self, needs: &[Output]) -> Self {
+        if needs.is_empty() {
+            return NO_OUTPUTS.clone();
+        }
         let has = |output| needs.contains(&output);
         Self {
             fog_depth: if has(Output::FogDepth) { self.fog_depth } else { 0.0 },

@@ -1,5 +1,7 @@
 //! A scene that a view keeps between the calls of a frame, so that it is computed once for all these calls.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
@@ -8,16 +10,20 @@ use super::{
 };
 use crate::{almanac::sun::Utc, error::Result, moment::Scene, planet::Planet, weather::Conditions, wind::Blowing};
 
-/// A scene with the weather at its place, and the inputs from which both follow.
-#[derive(Clone, Copy)]
-pub(crate) struct KeptScene {
-    /// Inputs from which the scene follows.
-    from: SceneInputs,
-    pub scene: Scene,
+/// A scene with the weather at its place, shared with the moments of frames: a copy takes longer than many an effect.
+#[derive(Clone)]
+pub(super) struct SharedScene {
+    pub scene: Arc<Scene>,
     /// The weather at the camera, with the rain and drizzle of the rain areas there.
-    pub here: Conditions,
+    pub here: Arc<Conditions>,
     /// The wind, if the scene needed it.
     pub wind: Option<Blowing>,
+}
+
+/// A scene, and the inputs from which it follows.
+pub(crate) struct KeptScene {
+    from: SceneInputs,
+    shared: SharedScene,
     /// Number of scenes that have been computed in this slot.
     #[cfg(test)]
     pub count: u64,
@@ -66,27 +72,39 @@ impl World {
     ///
     /// # Errors
     /// As [`World::scene_named`]; `kept` stays as it was.
-    pub(super) fn scene_kept(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<KeptScene> {
+    pub(super) fn scene_kept(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<SharedScene> {
         let from = self.scene_inputs(eye);
         if let Some(known) = kept.as_deref().filter(|known| known.from == from) {
-            return Ok(*known);
+            return Ok(known.shared.clone());
         }
         let (scene, wind) = self.scene_and_wind(name, eye, self.time_s)?;
         let here = self.over().at_place(eye, self.time_s, scene.conditions);
-        #[cfg(test)]
-        let count = kept.as_ref().map_or(0, |before| before.count) + 1;
-        let new = KeptScene {
-            from,
-            scene,
-            here,
-            wind,
-            #[cfg(test)]
-            count,
+        let Some(known) = kept else {
+            let shared = SharedScene { scene: Arc::new(scene), here: Arc::new(here), wind };
+            let new = KeptScene {
+                from,
+                shared: shared.clone(),
+                #[cfg(test)]
+                count: 1,
+            };
+            *kept = Some(Box::new(new));
+            return Ok(shared);
         };
-        match kept {
-            Some(before) => **before = new,
-            None => *kept = Some(Box::new(new)),
+        replace(&mut known.shared.scene, scene);
+        replace(&mut known.shared.here, here);
+        (known.from, known.shared.wind) = (from, wind);
+        #[cfg(test)]
+        {
+            known.count += 1;
         }
-        Ok(new)
+        Ok(known.shared.clone())
+    }
+}
+
+/// Replaces a shared value, in its own place unless somebody else still has it.
+fn replace<T>(shared: &mut Arc<T>, value: T) {
+    match Arc::get_mut(shared) {
+        Some(place) => *place = value,
+        None => *shared = Arc::new(value),
     }
 }

@@ -4,7 +4,10 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
-use super::{kept::KeptScene, state::World};
+use super::{
+    kept::{KeptScene, SharedScene},
+    state::World,
+};
 use crate::{error::Result, moment::SceneMoment};
 
 impl World {
@@ -14,7 +17,7 @@ impl World {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] if the position is not a place on or above the planet.
     pub fn moment(&self, name: &str, eye: DVec3, kept: &mut Option<Box<KeptScene>>) -> Result<SceneMoment<'_>> {
-        let KeptScene { scene, here, wind, .. } = self.scene_kept(name, eye, kept)?;
+        let SharedScene { scene, here, wind } = self.scene_kept(name, eye, kept)?;
         let weather = self.over();
         let carried = wind.map(|now| weather.wind.carrying_as(self.time_s, now));
         Ok(SceneMoment {
