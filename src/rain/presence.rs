@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Returns the weather's own precipitation, without that of rain areas. Rain, drizzle and both extinctions are reduced
-/// to the share that has left its cloud at an altitude. The share changes in small steps.
+/// to the share that has begun to fall above an altitude. The share changes in small steps.
 pub(super) fn begun_at(c: &Conditions, altitude_m: f64) -> Falling {
     let share = begun_in_steps(c.begun(altitude_m));
     let f = c.precipitation;

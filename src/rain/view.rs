@@ -50,7 +50,7 @@ pub(crate) struct RainView {
     /// Recently counted classes of drops, each with the precipitation, the factor on fall speeds ([`drops::factor_in`])
     /// and the largest number of drops for which they were counted.
     counted: Vec<(Falling, f64, u32, Classes)>,
-    /// The weather's own rain, reduced to the share that has left its cloud at the camera.
+    /// The weather's own rain, reduced to the share that has begun to fall above the camera.
     own: Falling,
     /// Columns of rain areas around the camera.
     field: AreaField,

@@ -152,7 +152,8 @@ fn check_depth(depth: &wgpu::Texture) -> Result<()> {
         }
     }
     if depth.sample_count() > 1 || depth.depth_or_array_layers() > 1 {
-        return Err(Error::range("depth", "of one sample and one layer", depth.sample_count()));
+        let given = format!("{} samples and {} layers", depth.sample_count(), depth.depth_or_array_layers());
+        return Err(Error::range("depth", "of one sample and one layer", given));
     }
     if !depth.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
         return Err(Error::range("depth.usage", "one with TEXTURE_BINDING", format!("{:?}", depth.usage())));
