@@ -185,8 +185,8 @@ impl PageWriter {
         }
     }
 
-    /// Mean of the dug soil in the square of a texel around a lattice position. A cell at the upper edge of a wall of
-    /// soil shows the terrain's `surface_soil`.
+    /// Mean colour of the dug soil in a square as large as a texel, around a lattice position. A cell at the upper edge
+    /// of a wall of soil shows the terrain's `surface_soil`.
     fn dug_texel(&self, cells: &mut CellReader<'_>, place: [i32; 2], side: i32) -> DugTexel {
         let (mut sum, mut share, mut last) = ([0.0; 3], 0, DugColor::default());
         let samples = samples(side);

@@ -20,9 +20,9 @@ use crate::gpu::Device;
 /// Present and coming air of a change that the tables follow.
 #[derive(Clone, Copy)]
 pub(crate) struct AirChange<'a> {
-    /// Planet under the present weather.
+    /// Planet with the air of the present weather.
     pub now: &'a Planet,
-    /// Planet under the weather to which the present one is changing; equal to `now` if no change is known.
+    /// Planet with the air of the weather to which the present one is changing; equal to `now` if no change is known.
     pub ahead: &'a Planet,
 }
 

@@ -66,7 +66,7 @@ impl LandSeen {
 }
 
 impl World {
-    /// Returns the planet under a weather: its air, and its ground with the snow on it.
+    /// Returns the planet with the air of a weather, and with the snow on its ground.
     pub fn planet_under(&self, c: &Conditions) -> Planet {
         self.land(c).under_sky(planet_under(&self.set.planet, c))
     }
