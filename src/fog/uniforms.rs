@@ -167,7 +167,6 @@ fn term(t: &Term) -> [[f32; 4]; 2] {
 /// [`FogModel`] in the layout of the shaders; tests compare the offsets with naga's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // The members and their docs are those of the WGSL struct.
 pub struct FogUniform {
     /// Unit vector towards the sun, or the moon if it is brighter (east, north, up).
     pub to_sun: [f32; 3],
@@ -280,7 +279,6 @@ pub struct FogBankUniform {
 /// obstacles to the wind.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[allow(missing_docs)] // The members and their docs are those of the WGSL struct, which has no `pad`.
 pub struct LowAirUniform {
     /// Fog of the frame outside all banks.
     pub fog: FogUniform,
