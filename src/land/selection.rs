@@ -28,8 +28,7 @@ const LONGEST_SIDE_PX: f64 = 10.0;
 const FARTHER: f64 = 1.07;
 /// Least ratio of a level's reach to the distance at which its vertices begin to move.
 const LEAST_BAND: f64 = 1.25;
-/// Share of a level's reach at which its vertices begin to move, unless the next finer level ends
-/// farther away than that.
+/// Share of a level's reach at which its vertices begin to move, unless the next finer level ends farther away.
 const LATEST_START: f64 = 0.7;
 /// Largest error of a distance in single precision, as a share of the distance.
 const ROUNDING: f64 = 1e-4;

@@ -30,8 +30,8 @@ pub(crate) struct FrameContext<'a> {
     pub held: HeldEffects<'a>,
     /// Stages that the call asks for.
     pub asked: Stages,
-    /// Planet with the air that the weather at the camera will give it some seconds from now ([`World::planet_ahead`]).
-    /// `None` if no change of the timeline is under way and there are no weather regions.
+    /// Planet with the air that it will have at the camera some seconds from now. `None` as in
+    /// [`World::planet_ahead`].
     pub planet_ahead: Option<Planet>,
     /// Work on tables in this frame, as a share of the work that builds all of them.
     pub table_share: f32,
