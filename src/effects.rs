@@ -42,7 +42,7 @@ use crate::{
     snowpack::{HeldSnow, LoadedSnow, LyingSnowModel},
     soil::{HeldSoil, LoadedSoil},
     stage::{
-        Composition, Constant, DrawContext, DrawnEffect, FrameContext, MergedFrame, NO_OUTPUTS, Outputs, Recording,
+        Composition, Constant, Contribution, DrawContext, DrawnEffect, FrameContext, MergedFrame, Outputs, Recording,
         ordered,
     },
     stars::{self, HeldStars, StarsView},
@@ -401,11 +401,10 @@ impl Effects {
             let effect = &mut effects[place];
             let exchange = effect.composes();
             let taken = (!exchange.needs.is_empty()).then(|| given.only(exchange.needs));
-            // Merged by reference: copying the contributions of all effects would cost a microsecond.
-            let mut outcome = effect.compose(context, taken.as_ref().unwrap_or(&NO_OUTPUTS));
-            let Ok(added) = &mut outcome else { return outcome.map(|_| ()) };
-            given.take_layers(added, exchange.gives);
-            composition.merge(added);
+            let mut added = Contribution::none();
+            effect.compose(context, taken.as_ref().unwrap_or(&Outputs::NONE), &mut added)?;
+            given.take_layers(&added, exchange.gives);
+            composition.merge(&mut added);
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! Bows of a view: the tables that its pictures need.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::{
@@ -9,9 +11,7 @@ use super::{
 use crate::{
     error::Result,
     gpu::recent::LruCache,
-    stage::{
-        BOW_ENTRIES, BowTable, Contribution, DrawContext, DrawnEffect, FrameBlock, FrameContext, Outputs, Stages, flag,
-    },
+    stage::{BOW_ENTRIES, BowTable, Contribution, DrawContext, DrawnEffect, FrameContext, Outputs, Stages, flag},
     weather::Falling,
 };
 
@@ -28,7 +28,7 @@ pub(crate) struct BowView {
     /// Cache of tables, by the shares of the classes.
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// Tables of the last draw whose picture may show a bow: for the low air and for rain areas.
-    shown: Box<[BowTable; 2]>,
+    shown: Arc<[BowTable; 2]>,
 }
 
 impl Default for BowView {
@@ -38,7 +38,7 @@ impl Default for BowView {
             is_lit: false,
             rains: LruCache::new(),
             tables: LruCache::new(),
-            shown: Box::new([[[0.0; 4]; BOW_ENTRIES]; 2]),
+            shown: Arc::new([[[0.0; 4]; BOW_ENTRIES]; 2]),
         }
     }
 }
@@ -75,23 +75,27 @@ impl DrawnEffect for BowView {
         if self.has_drops() && self.is_lit { Stages::MEDIUM } else { Stages(0) }
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         // The constants do not depend on where the picture looks. Otherwise a pipeline would be compiled when the
         // camera turns to a bow, and that frame would be late.
         let is_lit = self.has_drops() && self.is_lit;
-        to.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
+        added.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(context) {
-            for (to, shares) in self.shown.iter_mut().zip(&self.drops) {
+            for (table, shares) in Arc::make_mut(&mut self.shown).iter_mut().zip(&self.drops) {
                 let Some(shares) = shares else {
-                    *to = [[0.0; 4]; BOW_ENTRIES];
+                    *table = [[0.0; 4]; BOW_ENTRIES];
                     continue;
                 };
                 let padded = || mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32));
-                *to = self.tables.get_or_put(shares, padded);
+                *table = self.tables.get_or_put(shares, padded);
             }
-            to.set_frame_block(FrameBlock::Bows(&self.shown));
+            added.set_bows(&self.shown);
         }
-        Ok(to)
+        Ok(())
     }
 }

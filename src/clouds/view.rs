@@ -214,8 +214,11 @@ impl DrawnEffect for CloudsView {
         let (now, model) = (context.now, context.held.of::<HeldClouds>()?.model);
         let query = LayersQuery { scene: &now.scene, eye: now.eye, weather: &now.weather, time_s: now.time_s };
         let still = |slab: &CloudSlab| self.shapes.get_or_put(slab, || Shape::of(slab));
-        let overhead = if query.is_clear() { None } else { query.layers(model, &mut self.maps, still)? };
-        self.overhead = overhead.filter(|o| !o.layers().is_empty());
+        if query.is_clear() {
+            self.overhead = None;
+        } else {
+            self.overhead = query.layers(model, &mut self.maps, still)?.filter(|o| !o.layers().is_empty());
+        }
         if self.overhead.is_none() {
             self.before = None;
         }
@@ -262,31 +265,35 @@ impl DrawnEffect for CloudsView {
         );
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         let (drawn, scene) = (context.share(&CLOUDS, 0), &context.now.scene);
         let mean = self.overhead.as_ref().filter(|_| context.plan.is_gauged).map(|o| o.mean_radiance_and_cover(scene));
         if drawn <= 0.0 {
             self.before = None;
         }
         let is_there = self.is_there(context.frame, context.stages) && self.passes.is_some() && drawn > 0.0;
-        to.between_and_veil("CLOUDS", flag(is_there), flag(is_there));
-        to.between("DECK_CLOSED", 0.0, flag(scene.deck_cover as f32 >= 1.0));
+        added.between_and_veil("CLOUDS", flag(is_there), flag(is_there));
+        added.between("DECK_CLOSED", 0.0, flag(scene.deck_cover as f32 >= 1.0));
         let deck = flag(is_there && self.overhead.as_ref().is_some_and(|o| o.has_deck));
-        to.between("DECK_BEHIND", deck, deck);
+        added.between("DECK_BEHIND", deck, deck);
         let shadows = is_there && self.casts_shadows(context, context.stages);
-        to.constant("CLOUD_SHADOWS", flag(shadows), flag(shadows));
+        added.constant("CLOUD_SHADOWS", flag(shadows), flag(shadows));
         let size = (context.picture().width(), context.picture().height());
         let overhead = self.overhead.as_ref().filter(|_| is_there);
         self.lamps = overhead.and_then(|o| LampsUniform::of(o, context.now, context.target.exposure, size));
         let glow = flag(self.lamps.is_some());
-        to.between_and_veil("CLOUD_GLOW", glow, glow);
+        added.between_and_veil("CLOUD_GLOW", glow, glow);
         let shafts = shadows && self.settings.shafts;
-        to.constant("CLOUD_SHAFTS", flag(shafts), flag(shafts));
+        added.constant("CLOUD_SHAFTS", flag(shafts), flag(shafts));
         let traits = Traits { is_fine: shafts, is_overlaid: is_there && !shafts, ..Traits::default() };
-        to.set_traits(traits, traits);
+        added.set_traits(traits, traits);
         let shadow = shadows.then(|| shadow_strength(scene));
-        to.set_frame_block(FrameBlock::Clouds { drawn, mean, shadow });
+        added.set_frame_block(FrameBlock::Clouds { drawn, mean, shadow });
         let (wanted, side) = (self.wanted(context), self.side(context.frame));
         self.wanted = is_there.then_some(wanted);
         if let Some(passes) = self.passes.as_mut().filter(|_| is_there) {
@@ -295,9 +302,9 @@ impl DrawnEffect for CloudsView {
                 self.kept = holds && self.before.is_some();
             }
             self.behind = given.stars.as_ref().map(|view| view.texture().clone());
-            to.set_texture(Texture::Behind, passes.layers(&wanted));
+            added.set_texture(Texture::Behind, passes.layers(&wanted));
         }
-        Ok(to)
+        Ok(())
     }
 
     fn draw(

@@ -66,7 +66,9 @@ impl LowAir {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn model(&self, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
-        Ok(FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?.led_by(self.detour.clone()))
+        let mut model = FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?;
+        model.lead_by(self.detour.clone());
+        Ok(model)
     }
 
     /// Returns the media along rays from a place, each without the other.
@@ -281,9 +283,15 @@ impl Scene {
 }
 
 impl FogModel {
+    /// Lets the patches flow round obstacles to the wind.
+    pub(crate) fn lead_by(&mut self, detour: Option<Detour>) {
+        self.detour = detour.filter(|_| self.patch_amount > 0.0);
+    }
+
     /// Returns the model with patches that flow round obstacles to the wind.
-    pub(crate) fn led_by(self, detour: Option<Detour>) -> Self {
-        Self { detour: detour.filter(|_| self.patch_amount > 0.0), ..self }
+    pub(crate) fn led_by(mut self, detour: Option<Detour>) -> Self {
+        self.lead_by(detour);
+        self
     }
 
     /// Returns the optical depth straight up from an altitude. It is 0 for the compatibility laws, which have no height

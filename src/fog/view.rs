@@ -61,18 +61,16 @@ impl DrawnEffect for FogView {
         given.fog_depth = here.depth_above(now.scene.place.altitude_m);
         // A fog law of the host applies at all places.
         self.banks.gather(context, law.is_some())?;
-        let model = if self.banks.list().is_empty() {
-            here
-        } else {
-            now.scene.with_fog(now.outer_fog).fog_model(law, now.seed, now.planet_radius_m)?
-        };
-        let model = model.led_by(now.detour.clone());
+        let model = self.model.insert(here);
+        if !self.banks.list().is_empty() {
+            *model = now.scene.with_fog(now.outer_fog).fog_model(law, now.seed, now.planet_radius_m)?;
+        }
+        model.lead_by(now.detour.clone());
         // A GPU keeps one pipeline for all fogs, because exchanging it would cost a hitch when the weather changes.
         // Detours and banks are exceptions: few scenes have them, and they would cost registers in all others.
         let is_there = model.kind != FogKind::Clear || model.falling.extinction > 0.0 || self.banks.any_seen();
-        let least = if self.software { model.variant() } else { FogVariant::all_of(&model) };
+        let least = if self.software { model.variant() } else { FogVariant::all_of(model) };
         self.variant = is_there.then(|| least.with_banks(&self.banks, self.software));
-        self.model = Some(model);
         Ok(())
     }
 
@@ -85,28 +83,32 @@ impl DrawnEffect for FogView {
         put(&candidates::FOG, is_there, &[candidates::FOG_WORK]);
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         let share = context.share(&candidates::FOG, 0);
         let least = self.variant.filter(|_| share > 0.0);
-        to.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
+        added.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));
         let banks = self.variant.is_some_and(|variant| variant.bank_shapes != 0);
         let traits = |veils_all| Traits { veils_all, ..Traits::default() };
-        to.set_traits(traits(self.variant.is_some()), traits(least.is_some()));
-        to.between_and_veil("BY_PLACE", flag(banks), flag(banks));
+        added.set_traits(traits(self.variant.is_some()), traits(least.is_some()));
+        added.between_and_veil("BY_PLACE", flag(banks), flag(banks));
         let [whole, least] = [self.variant, least].map(|variant| variant.unwrap_or(FogVariant::ALL));
         let values = |variant: FogVariant| variant.constants().into_iter().chain(variant.bank_constants());
         for ((name, whole), (_, least)) in values(whole).zip(values(least)) {
-            to.between(name, whole, least);
+            added.between(name, whole, least);
         }
-        to.set_frame_block(FrameBlock::Fog { share });
-        to.set_block(Block::Between, &self.block);
+        added.set_frame_block(FrameBlock::Fog { share });
+        added.set_block(Block::Between, &self.block);
         if let (Some(model), true) = (&self.model, self.variant.is_some()) {
             self.uniform.set(model);
             self.uniform.set_banks(&self.banks);
             // Writes only the banks that exist.
             self.block.write(&bytemuck::bytes_of(&*self.uniform)[..LowAirUniform::size_with(self.banks.list().len())]);
         }
-        Ok(to)
+        Ok(())
     }
 }

@@ -17,12 +17,8 @@ use super::{
 use crate::{
     context::Context,
     error::Result,
-    gpu::{
-        Device, KeptView,
-        blocks::{Blocks, UniformBlock},
-        recent::LruCache,
-    },
-    stage::FrameUniform,
+    gpu::{Device, KeptView, blocks::Blocks, recent::LruCache},
+    stage::FrameUniformBlock,
     surroundings::SurroundingsBlock,
 };
 
@@ -32,7 +28,7 @@ pub(super) struct DrawCache {
     pub composite: Arc<SharedComposite>,
     pub blocks: Blocks,
     /// Uniform block of the frame.
-    pub uniform: UniformBlock,
+    pub uniform: FrameUniformBlock,
     pub surroundings: SurroundingsBlock,
     /// Copy of the host's picture that shaders read. `target` is the picture that is drawn into.
     pub copy: Option<wgpu::Texture>,
@@ -61,7 +57,7 @@ impl DrawCache {
         let blocks = Blocks::new();
         Ok(Self {
             composite: context.shared().get(|| SharedComposite::new(device))?,
-            uniform: blocks.block(device, size_of::<FrameUniform>()),
+            uniform: FrameUniformBlock::new(device, &blocks),
             blocks,
             surroundings: SurroundingsBlock::new(&device.device),
             copy: None,

@@ -46,7 +46,7 @@ impl View {
             ("ENCODED", flag(encoded)),
         ];
         own.into_iter().for_each(|(name, value)| composition.set_constant(name, value, value));
-        let variant = self.variant(&context, &mut composition)?;
+        let variant = self.variant(&context, &mut composition)?.with(composition.whole());
         self.draw_effects(&context, &composition, recording)?;
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
         let target = self.cache.target.of(target.color, Layer::view);

@@ -16,13 +16,13 @@ use crate::{
     error::Result,
     gpu::Layer,
     stage::{
-        ColorSpace, Composition, CostItem, DrawContext, DrawTarget, FrameContext, FrameUniform, MergedFrame,
+        ColorSpace, Composition, CostItem, DrawContext, DrawTarget, FrameContext, FrameValues, MergedFrame,
         PlannedShares, Recording, Sampling, Stages, flag, uniform,
     },
 };
 
 /// Returns the frame's uniform block for a draw. `tone` says whether the whole picture is tone-mapped.
-pub(super) fn frame_block(context: &DrawContext<'_>, tone: bool) -> FrameUniform {
+pub(super) fn frame_block(context: &DrawContext<'_>, tone: bool) -> FrameValues {
     let target = &context.target;
     uniform(context.frame, context.now, target.rays, context.picture(), target.exposure, tone)
 }
@@ -94,7 +94,7 @@ impl View {
     ) -> Result<()> {
         self.hold_copy(context.picture())?;
         self.bind(context, composition)?;
-        self.cache.uniform.write(bytemuck::bytes_of(composition.block()));
+        composition.write_block(&mut self.cache.uniform);
         let merged = MergedFrame { composition, block: &self.cache.uniform, surroundings: &self.cache.surroundings };
         self.effects.draw(context, &merged, recording)?;
         self.take_picture(context.target.color, recording)
@@ -129,7 +129,7 @@ impl View {
 
     /// Returns the variant that the composition needs, and sets the frame's own constants in the composition. If
     /// surfaces or particles are drawn, updates the block of the host's surroundings.
-    pub(super) fn variant(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant> {
+    pub(super) fn variant(&mut self, context: &DrawContext<'_>, composition: &mut Composition) -> Result<Variant<()>> {
         let (frame, color) = (context.frame, context.picture());
         let stages = composition.stages();
         composition.set_between("DEPTH_KINDS", f64::from(context.target.rays.depth_kinds()));
@@ -157,7 +157,7 @@ impl View {
             samples: color.sample_count(),
             sampling: Sampling::of(color, frame.depth),
             images: [frame.depth, frame.mask, frame.surface_classes, frame.normals].map(|image| image.is_some()),
-            constants: *composition.whole(),
+            constants: (),
             pixels: Pixels::All,
         })
     }
@@ -168,7 +168,7 @@ impl View {
         &mut self,
         context: &DrawContext<'_>,
         composition: &Composition,
-        whole: &Variant,
+        variant: &Variant<()>,
         recording: &mut Recording<'_>,
     ) -> Result<()> {
         let (Some((_, group)), Some((_, tables))) = (&self.cache.bound, &composition.tables()) else { return Ok(()) };
@@ -183,12 +183,12 @@ impl View {
         // frames drawn before it.
         let how = (splits, splits || context.frame.is_pure());
         let make = || {
-            let drawn = DrawKey { of: Variant { constants: *constants, ..*whole }, has_grid };
+            let drawn = DrawKey { of: variant.with(constants), has_grid };
             let draws = Draws::new(&self.device, &mut *self.cache.composite.lock()?, &drawn, how)?;
             Ok((drawn, draws))
         };
         let held = (self.cache.kinds.as_ref(), self.cache.even.as_ref());
-        recording.passes += match self.cache.draws.get_or_make(|drawn| drawn.is(whole, constants, has_grid), make) {
+        recording.passes += match self.cache.draws.get_or_make(|drawn| drawn.is(variant, constants, has_grid), make) {
             Ok(draws) => draws.record(recording.encoder, held, &groups, target),
             Err(PipelineNotReady::Coming(draws)) => draws.record(recording.encoder, held, &groups, target),
             Err(PipelineNotReady::Failed(error)) => return Err(error),
@@ -199,9 +199,10 @@ impl View {
         let here = situation(context.frame, &context.now.scene);
         let effects = &mut self.effects;
         if let Some(gauge) = self.planner.due(&here, || effects.unseen(context)) {
-            let [_, (shader, _)] = whole.sampling.shaders();
+            let [_, (shader, _)] = variant.sampling.shaders();
             let composite = self.cache.composite.lock()?;
-            let layouts = composite.layouts(whole.sampling);
+            let layouts = composite.layouts(variant.sampling);
+            let whole = variant.with(composition.whole());
             gauge.record(&self.device, recording.encoder, (shader, whole.constants().all()), &layouts, &groups)?;
             recording.passes += 1;
         }

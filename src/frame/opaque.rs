@@ -64,7 +64,7 @@ impl View {
         let attached = self.device.attached_depth(read);
         let depth = Layer { texture: &attached.texture, index: frame.layers.depth };
         let block = uniform(frame, frame_context.now, target.rays, color.texture, target.exposure, false);
-        self.cache.uniform.write(bytemuck::bytes_of(&block));
+        self.cache.uniform.write(&block, None);
         let step = self.cache.opaque.get_or_insert_with(|| OpaqueStep::new(&self.device.device));
         let layout = step.layout.clone();
         let (bound, color_view) = step.bind(&self.device, &self.cache.uniform, [color, depth], frame.mask_layer());

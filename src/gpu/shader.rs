@@ -168,14 +168,15 @@ pub fn validate(wgsl: &str) -> Result<()> {
 }
 
 /// Asserts that Rust struct `$type` and WGSL struct `$name` of shader `$shader` have the same size, and that each field
-/// of `$type` in the list is at the offset of the WGSL member of the same name.
+/// of `$type` in the list is at the offset of the WGSL member of the same name. `a.b` is field `b` of field `a`.
 #[cfg(test)]
 macro_rules! assert_layout {
-    ($shader:expr, $name:expr, $type:ident, [$($field:ident),* $(,)?]) => {
+    ($shader:expr, $name:expr, $type:ident, [$($($field:ident).+),* $(,)?]) => {
         let text = $crate::gpu::shader::assemble($shader).unwrap();
         let (size, members) = $crate::gpu::shader::struct_layout(&text, $name).unwrap();
         assert_eq!(size as usize, size_of::<$type>());
-        for (field, at) in [$((stringify!($field), std::mem::offset_of!($type, $field))),*] {
+        for (path, at) in [$((stringify!($($field).+), std::mem::offset_of!($type, $($field).+))),*] {
+            let field = path.rsplit('.').next().unwrap().trim();
             assert!(members.contains(&(field.into(), at as u32)), "{field} at {at}: {members:?}");
         }
     };

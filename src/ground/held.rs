@@ -235,6 +235,9 @@ impl HeldGround {
     /// rain there would keep it.
     fn cover_at(&self, world: &World, position: DVec3, reported: SurfaceCover) -> SurfaceCover {
         let cover = self.cover(world, reported);
+        if world.set.regions.is_empty() && world.set.weather_regions.is_empty() {
+            return cover;
+        }
         let weather = world.over().weather_at(position, world.time_s);
         let here = world.over().at_place(position, world.time_s, weather).precipitation;
         if here == world.timeline.at(world.time_s).precipitation {

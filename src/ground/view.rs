@@ -85,25 +85,29 @@ impl DrawnEffect for GroundView {
         if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         let drawn = self.block.as_ref().filter(|_| context.stages.has(Stages::SURFACE));
         let has_rings = self.has_water && drawn.is_some_and(GroundUniform::has_rings);
         for (name, is_there) in
             [("TERRAIN", self.has_terrain), ("SNOW", self.has_snow), ("WATER", self.has_water), ("RINGS", has_rings)]
         {
             let value = flag(drawn.is_some() && is_there);
-            to.constant(name, value, value);
+            added.constant(name, value, value);
         }
         if let Some(block) = drawn {
-            to.require_panorama();
+            added.require_panorama();
             self.uniform.write(bytemuck::bytes_of(block));
         }
-        to.set_block(Block::OnSurfaces, &self.uniform);
+        added.set_block(Block::OnSurfaces, &self.uniform);
         let [water, surface] = &self.views;
-        to.set_texture(Texture::OnGround, water.clone());
-        to.set_texture(Texture::Terrain, surface.clone());
-        Ok(to)
+        added.set_texture(Texture::OnGround, water.clone());
+        added.set_texture(Texture::Terrain, surface.clone());
+        Ok(())
     }
 }
 

@@ -320,23 +320,27 @@ impl DrawnEffect for LightningView {
         }
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
-        to.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
-        let Some(lit) = &self.lit else { return Ok(to) };
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
+        added.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
+        let Some(lit) = &self.lit else { return Ok(()) };
         let traits = Traits { is_fine: true, ..Traits::default() };
-        to.set_traits(traits, traits);
+        added.set_traits(traits, traits);
         let has_line = lit.has_line && context.stages.has(Stages::PARTICLES);
         self.shown = lit.block(&context.now.scene.conditions);
         if has_line {
             // If precipitation has a layer already, the lines are drawn into that layer after the precipitation.
             let over = given.before.is_some();
             let view = given.before.clone().unwrap_or_else(|| self.layer(context.device, context.picture()));
-            to.set_texture(Texture::Before, Some(view.clone()));
+            added.set_texture(Texture::Before, Some(view.clone()));
             self.target = Some((view, over));
         }
-        to.set_frame_block(FrameBlock::Flashes(&self.shown));
-        Ok(to)
+        added.set_frame_block(FrameBlock::Flashes(&self.shown));
+        Ok(())
     }
 
     /// Draws the open channels into the layer in front of the picture.

@@ -455,21 +455,25 @@ impl DrawnEffect for RainView {
         put(&candidates::RAIN, is_there, &candidates::rain_work(context.pixels(), drops));
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         self.set_shares([1, 0].map(|step| context.share(&candidates::RAIN, step)));
         let (hidden, share) =
             if self.presence().is_any() { self.hidden(context.device, context.now) } else { ([0.0; 2], 1.0) };
-        to.set_frame_block(FrameBlock::Rain { hidden, share });
+        added.set_frame_block(FrameBlock::Rain { hidden, share });
         let is_kept = self.kept().is_any();
         if is_kept {
             let layer = self.layer.texture().view(context.device, context.picture().size());
-            to.set_texture(Texture::Before, Some(layer));
+            added.set_texture(Texture::Before, Some(layer));
         }
         if context.stages.has(Stages::SURFACE) || is_kept && context.stages.has(Stages::PARTICLES) {
-            to.set_near(self.shelter_reach(context.device, &context.now.scene));
+            added.set_near(self.shelter_reach(context.device, &context.now.scene));
         }
-        Ok(to)
+        Ok(())
     }
 
     /// Draws the layer in front of the picture: columns of rain areas, and the rain and ice near the camera.

@@ -105,21 +105,25 @@ impl DrawnEffect for SkyView {
         put(&candidates::SKY, stages.has(Stages::BACKGROUND), &[candidates::sky_work(lamps)]);
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut contribution = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| context.share(part, 0));
         let is_marched = self.settings().model == SkyModel::BruteForce;
-        contribution.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
-        contribution.between("AIR", 1.0, flag(air > 0.0));
+        added.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));
+        added.between("AIR", 1.0, flag(air > 0.0));
         let traits = |veils_drawn| Traits { veils_drawn, is_marched, ..Traits::default() };
-        contribution.set_traits(traits(true), traits(air > 0.0));
-        contribution.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
-        contribution.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
-        contribution.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
-        contribution.constant("SUN_THEN_MOON", 1.0, 1.0);
-        contribution.set_frame_block(FrameBlock::Sky { air, sky });
-        contribution.set_tables(self.volume.layout(), self.volume.bind_group());
-        Ok(contribution)
+        added.set_traits(traits(true), traits(air > 0.0));
+        added.between("SKY_LAMPS", 2.0, f64::from(self.volume.lamp_count()));
+        added.constant("CLEAR_SKY", 1.0, flag(sky > 0.0));
+        added.constant("SKY_DISCS", 2.0, f64::from(self.volume.disc_count()));
+        added.constant("SUN_THEN_MOON", 1.0, 1.0);
+        added.set_frame_block(FrameBlock::Sky { air, sky });
+        added.set_tables(self.volume.layout(), self.volume.bind_group());
+        Ok(())
     }
 }
 

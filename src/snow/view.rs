@@ -158,23 +158,27 @@ impl DrawnEffect for SnowView {
         put(&candidates::SNOW, is_there, &candidates::snow_work(context.pixels(), flakes));
     }
 
-    /// Returns the contribution of snow to a draw. It contains the extinction that flakes replace in the fog, the layer
-    /// in front of the picture, and the reach within which shelters matter to flakes.
-    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs) -> Result<Contribution<'_>> {
-        let mut to = Contribution::none();
+    /// Fills in the contribution of snow to a draw: the extinction that flakes replace in the fog, the layer in front
+    /// of the picture, and the reach within which shelters matter to flakes.
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };
         self.over = given.before.is_some();
-        let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(to) };
+        let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(()) };
         let hidden = [flakes.hidden_per_m, flakes.hidden_m()].map(|v| v as f32);
-        to.set_frame_block(FrameBlock::Snow { hidden, share: self.share });
+        added.set_frame_block(FrameBlock::Snow { hidden, share: self.share });
         let is_drawn = self.is_kept() && context.stages.has(Stages::PARTICLES);
         if is_drawn {
-            to.set_texture(Texture::Before, Some(self.layer.view(context.device, context.picture().size())));
+            added.set_texture(Texture::Before, Some(self.layer.view(context.device, context.picture().size())));
         }
         if context.stages.has(Stages::SURFACE) || (is_drawn || self.over) && context.stages.has(Stages::PARTICLES) {
-            to.set_near(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
+            added.set_near(ShelterReach { slowest_m_s: flakes.slowest_m_s(), reach_m: flakes.reach_m() });
         }
-        Ok(to)
+        Ok(())
     }
 
     fn draw(

@@ -1,9 +1,11 @@
-//! The composition: the one full-screen draw of a call. Each effect returns a contribution to it, and the frame merges
-//! these contributions.
+//! The composition: the one full-screen draw of a call. Each effect fills in a contribution to it, and the frame
+//! merges these contributions.
+
+use std::sync::Arc;
 
 use super::{
     stages::Stages,
-    uniform::{FrameBlock, FrameUniform},
+    uniform::{BowTable, FrameBlock, FrameUniformBlock, FrameValues},
 };
 use crate::{
     gpu::blocks::BlockView,
@@ -59,7 +61,10 @@ impl Constants {
 
 impl PartialEq for Constants {
     fn eq(&self, other: &Self) -> bool {
-        self.all() == other.all()
+        let (own, others) = (self.all(), other.all());
+        // A name is mostly the same static string in both lists: comparing addresses is faster than reading text.
+        let is_same = |a: &str, b: &str| std::ptr::eq(a, b) || a == b;
+        own.len() == others.len() && own.iter().zip(others).all(|(a, b)| a.1 == b.1 && is_same(a.0, b.0))
     }
 }
 
@@ -75,7 +80,7 @@ pub(crate) enum Texture {
     /// (`shaders/ground/binding.wgsl`).
     Terrain = 2,
     /// Layers of the sky (`shaders/between/sky_sample.wgsl`). The last array layer lies behind the sky's own light; its
-    /// texels times [`FrameUniform::behind`]`[0]` are radiances, cd/m^2. Two array layers for clouds may precede it:
+    /// texels times [`FrameValues::behind`]`[0]` are radiances, cd/m^2. Two array layers for clouds may precede it:
     /// one with exposed light and transmittance, one with distances.
     Behind = 3,
 }
@@ -175,7 +180,7 @@ struct ScopedConstant {
 /// Largest number of constants of one effect.
 const MOST_OF_ONE: usize = 12;
 
-/// Contribution of one effect to a draw. The effect returns it, and the frame merges the contributions of all effects
+/// Contribution of one effect to a draw. The effect fills it in, and the frame merges the contributions of all effects
 /// ([`Composition::merge`]).
 pub(crate) struct Contribution<'a> {
     constants: [ScopedConstant; MOST_OF_ONE],
@@ -184,6 +189,7 @@ pub(crate) struct Contribution<'a> {
     traits: [Traits; 2],
     /// Fields that the effect writes into the frame's block.
     block: Option<FrameBlock<'a>>,
+    bows: Option<Arc<[BowTable; 2]>>,
     own_block: Option<(Block, BlockView)>,
     textures: [Option<wgpu::TextureView>; 4],
     tables: Option<(wgpu::BindGroupLayout, wgpu::BindGroup)>,
@@ -200,6 +206,7 @@ impl<'a> Contribution<'a> {
             count: 0,
             traits: [Traits::default(); 2],
             block: None,
+            bows: None,
             own_block: None,
             textures: [const { None }; 4],
             tables: None,
@@ -242,6 +249,11 @@ impl<'a> Contribution<'a> {
         self.block = Some(block);
     }
 
+    /// Sets the tables of bows ([`super::FrameUniform::bows`]).
+    pub fn set_bows(&mut self, bows: &Arc<[BowTable; 2]>) {
+        self.bows = Some(bows.clone());
+    }
+
     /// Sets a uniform block of the effect's own.
     pub fn set_block(&mut self, place: Block, block: &BlockView) {
         self.own_block = Some((place, block.clone()));
@@ -282,7 +294,8 @@ impl<'a> Contribution<'a> {
 /// One draw, with everything that the effects have added to it.
 pub(crate) struct Composition {
     stages: Stages,
-    block: FrameUniform,
+    block: FrameValues,
+    bows: Option<Arc<[BowTable; 2]>>,
     whole: Pipeline,
     least: Pipeline,
     blocks: [Option<BlockView>; 2],
@@ -294,10 +307,11 @@ pub(crate) struct Composition {
 
 impl Composition {
     /// Creates a composition to which no effect has added anything.
-    pub fn new(stages: Stages, block: FrameUniform) -> Self {
+    pub fn new(stages: Stages, block: FrameValues) -> Self {
         Self {
             stages,
             block,
+            bows: None,
             whole: Pipeline::NONE,
             least: Pipeline::NONE,
             blocks: [const { None }; 2],
@@ -332,6 +346,9 @@ impl Composition {
         self.least.traits = self.least.traits.or(least);
         if let Some(block) = &contribution.block {
             self.block.merge(block);
+        }
+        if contribution.bows.is_some() {
+            self.bows = contribution.bows.take();
         }
         if let Some((place, block)) = contribution.own_block.take() {
             self.blocks[place as usize] = Some(block);
@@ -390,8 +407,13 @@ impl Composition {
     }
 
     /// Values of the frame's block.
-    pub fn block(&self) -> &FrameUniform {
+    pub fn block(&self) -> &FrameValues {
         &self.block
+    }
+
+    /// Writes the frame's block.
+    pub fn write_block(&self, block: &mut FrameUniformBlock) {
+        block.write(&self.block, self.bows.as_deref());
     }
 
     /// Constants of the pipeline that can draw every part.

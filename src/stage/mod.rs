@@ -26,7 +26,7 @@ pub use diagnostic::Diagnostic;
 pub(crate) use effect::{DrawnEffect, LensPicture, PutPart};
 pub use frame::{ColorSpace, DepthAccess, Frame, FrameFlags, ImageLayers};
 pub(crate) use opaque::{LightLookup, OpaqueDraw, OpaqueTarget};
-pub(crate) use outputs::{Exchange, NO_OUTPUTS, Output, Outputs, ordered};
+pub(crate) use outputs::{Exchange, Output, Outputs, ordered};
 pub(crate) use recording::Recording;
 pub use recording::{CostItem, Costs, RainReport, Report, SnowReport};
 pub use stages::Stages;
@@ -35,5 +35,6 @@ pub(crate) use target::{
     check_written, color_copy, is_copy_of, rounding,
 };
 pub(crate) use uniform::{
-    BOW_ENTRIES, BowTable, FlashBlock, FlashUniform, FrameBlock, FrameUniform, is_float, uniform,
+    BOW_ENTRIES, BowTable, FlashBlock, FlashUniform, FrameBlock, FrameUniform, FrameUniformBlock, FrameValues,
+    is_float, uniform,
 };

@@ -36,14 +36,14 @@ pub(crate) struct Outputs {
     pub before: Option<wgpu::TextureView>,
 }
 
-/// No outputs, for effects that need none.
-pub(crate) static NO_OUTPUTS: Outputs = Outputs { fog_depth: 0.0, sea_top_m: None, stars: None, before: None };
-
 impl Outputs {
+    /// No outputs, for effects that need none.
+    pub const NONE: Self = Self { fog_depth: 0.0, sea_top_m: None, stars: None, before: None };
+
     /// Returns only the outputs that an effect `needs`, so that it sees no others.
     pub fn only(&self, needs: &[Output]) -> Self {
         if needs.is_empty() {
-            return NO_OUTPUTS.clone();
+            return Self::NONE;
         }
         let has = |output| needs.contains(&output);
         Self {
@@ -66,6 +66,9 @@ impl Outputs {
 
     /// Takes the layers of an effect's contribution, if the effect lists them in `gives`.
     pub fn take_layers(&mut self, contribution: &Contribution<'_>, gives: &[Output]) {
+        if gives.is_empty() {
+            return;
+        }
         let has = |output| gives.contains(&output);
         if has(Output::Stars) && contribution.shows_stars() {
             self.stars = contribution.texture(Texture::Behind).cloned();

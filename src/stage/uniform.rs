@@ -1,7 +1,13 @@
 //! Uniform block of the frame, as `shaders/common/frame.wgsl` reads it.
 
+use std::{mem::offset_of, ops::Deref};
+
 use super::frame::{ColorSpace, Frame};
 use crate::{
+    gpu::{
+        Device,
+        blocks::{BlockView, Blocks, UniformBlock},
+    },
     light::Exposure,
     moment::SceneMoment,
     scene::{DepthUniform, MAX_FLASH_LAMPS, ViewRays},
@@ -19,11 +25,11 @@ pub(crate) struct FlashUniform {
     pub pad: f32,
 }
 
-/// Constants of the composition, apart from those in the effects' own blocks. `shaders/common/frame.wgsl` has the
-/// units.
+/// Constants of the composition, apart from those in the effects' own blocks and from the tables of bows.
+/// `shaders/common/frame.wgsl` has the units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct FrameUniform {
+pub(crate) struct FrameValues {
     pub depth: DepthUniform,
     pub color: [[f32; 4]; 3],
     pub night_floor: [f32; 3],
@@ -77,6 +83,14 @@ pub(crate) struct FrameUniform {
     /// Factor for light in the coarse grid, a power of two with which white is about 1.
     pub even_scale: f32,
     pub pad: f32,
+}
+
+/// Uniform block of the frame: what each draw sets, and the tables of bows. No draw creates the block as a whole,
+/// because the tables are most of its size, and few pictures show a bow.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct FrameUniform {
+    pub values: FrameValues,
     /// Differences that bows make to the phase function of drops, 1/sr per channel, tabulated over the angle from the
     /// antisolar point: for drops in the low air, and for drops in the columns of rain areas.
     pub bows: [BowTable; 2],
@@ -99,33 +113,31 @@ pub(crate) struct FlashBlock {
     pub sources: [FlashUniform; MAX_FLASH_LAMPS],
 }
 
-/// Fields of [`FrameUniform`] that one effect writes into a frame's block.
+/// Fields of [`FrameValues`] that one effect writes into a frame's block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FrameBlock<'a> {
     /// Drawn shares of the air in front of things and of the clear sky.
     Sky { air: f32, sky: f32 },
     /// Drawn share of the fog.
     Fog { share: f32 },
-    /// [`FrameUniform::behind`].
+    /// [`FrameValues::behind`].
     Stars { behind: [f32; 2] },
     /// `drawn`: share drawn as a volume. `mean`: mean light with cover, and height above the camera, if the plan
-    /// gauges. `shadow`: [`FrameUniform::cloud_shadow`], if the clouds cast shadows.
+    /// gauges. `shadow`: [`FrameValues::cloud_shadow`], if the clouds cast shadows.
     Clouds { drawn: f32, mean: Option<([f32; 4], f32)>, shadow: Option<[f32; 4]> },
-    /// `hidden`: [`FrameUniform::drops`]. `share`: drawn share of the drops.
+    /// `hidden`: [`FrameValues::drops`]. `share`: drawn share of the drops.
     Rain { hidden: [f32; 2], share: f32 },
-    /// `hidden`: [`FrameUniform::flakes`]. `share`: drawn share of the flakes.
+    /// `hidden`: [`FrameValues::flakes`]. `share`: drawn share of the flakes.
     Snow { hidden: [f32; 2], share: f32 },
     /// Lightning flashes that shine now.
     Flashes(&'a FlashBlock),
-    /// [`FrameUniform::bows`].
-    Bows(&'a [BowTable; 2]),
 }
 
 /// Difference that bows make to the phase function of drops, 1/sr per channel, tabulated over the angle from the
 /// antisolar point.
 pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
-impl FrameUniform {
+impl FrameValues {
     /// Sets the fields of one effect.
     pub fn merge(&mut self, fields: &FrameBlock<'_>) {
         match *fields {
@@ -155,13 +167,43 @@ impl FrameUniform {
                 self.flash_scattering = flashes.scattering;
                 self.flashes = flashes.sources;
             }
-            FrameBlock::Bows(bows) => self.bows = *bows,
         }
     }
 
     /// Sets the fields that depend on those of several effects.
     pub fn finish(&mut self) {
         self.behind_drawn = self.behind[1] * self.drawn[2];
+    }
+}
+
+/// Uniform block of the frame on the GPU, with [`FrameUniform`].
+pub(crate) struct FrameUniformBlock {
+    block: UniformBlock,
+    /// Whether the block holds tables of bows that are not 0.
+    has_bows: bool,
+}
+
+impl FrameUniformBlock {
+    pub fn new(device: &Device, blocks: &Blocks) -> Self {
+        Self { block: blocks.block(device, size_of::<FrameUniform>()), has_bows: false }
+    }
+
+    /// Writes the block for a draw. The tables of bows are 0 without `bows`.
+    pub fn write(&mut self, values: &FrameValues, bows: Option<&[BowTable; 2]>) {
+        self.block.write(bytemuck::bytes_of(values));
+        if bows.is_some() || self.has_bows {
+            let none = [[[0.0; 4]; BOW_ENTRIES]; 2];
+            self.block.write_at(offset_of!(FrameUniform, bows), bytemuck::bytes_of(bows.unwrap_or(&none)));
+            self.has_bows = bows.is_some();
+        }
+    }
+}
+
+impl Deref for FrameUniformBlock {
+    type Target = BlockView;
+
+    fn deref(&self) -> &BlockView {
+        &self.block
     }
 }
 
@@ -191,7 +233,7 @@ pub(crate) fn uniform(
     color: &wgpu::Texture,
     exposure: f64,
     tone: bool,
-) -> FrameUniform {
+) -> FrameValues {
     let (format, scene) = (color.format(), &now.scene);
     let display = tone || frame.color_space != ColorSpace::SceneLinear;
     let plain_display = display && !is_float(format) && !format.is_srgb();
@@ -199,7 +241,7 @@ pub(crate) fn uniform(
     // Only plain formats dither: in an sRGB format the hardware encodes the value after the shader, so the format's
     // steps are not steps of the shader's value.
     let encode = plain_display && (tone || frame.color_space == ColorSpace::DisplaySrgb);
-    FrameUniform {
+    FrameValues {
         depth: rays.uniform(),
         color: scene.color.map(|c| [c[0] as f32, c[1] as f32, c[2] as f32, 0.0]),
         night_floor: scene.night_floor_cd_m2.map(|v| v as f32),
@@ -241,7 +283,6 @@ pub(crate) fn uniform(
         flakes: [0.0; 2],
         even_scale: even_scale(scene.ground.adaptation_cd_m2, if display { exposure } else { 0.0 }),
         pad: 0.0,
-        bows: [[[0.0; 4]; BOW_ENTRIES]; 2],
     }
 }
 
@@ -257,41 +298,41 @@ mod tests {
             "FrameUniform",
             FrameUniform,
             [
-                depth,
-                color,
-                night_floor,
-                exposure,
-                deck,
-                deck_cover,
-                cd_m2_per_unit,
-                color_space,
-                tone,
-                seed,
-                behind_drawn,
-                y_sign,
-                dither_step,
-                pixel_angle,
-                encode,
-                medium_share,
-                direct_share,
-                drops,
-                drawn,
-                compositions,
-                behind,
-                flash_color,
-                flash_count,
-                flash_plane,
-                flash_cover,
-                flash_haze,
-                flash_scattering,
-                flashes,
-                cloud_shadow,
-                picture,
-                clouds_drawn,
-                clouds_over,
-                mean_cloud,
-                flakes,
-                even_scale,
+                values.depth,
+                values.color,
+                values.night_floor,
+                values.exposure,
+                values.deck,
+                values.deck_cover,
+                values.cd_m2_per_unit,
+                values.color_space,
+                values.tone,
+                values.seed,
+                values.behind_drawn,
+                values.y_sign,
+                values.dither_step,
+                values.pixel_angle,
+                values.encode,
+                values.medium_share,
+                values.direct_share,
+                values.drops,
+                values.drawn,
+                values.compositions,
+                values.behind,
+                values.flash_color,
+                values.flash_count,
+                values.flash_plane,
+                values.flash_cover,
+                values.flash_haze,
+                values.flash_scattering,
+                values.flashes,
+                values.cloud_shadow,
+                values.picture,
+                values.clouds_drawn,
+                values.clouds_over,
+                values.mean_cloud,
+                values.flakes,
+                values.even_scale,
                 bows
             ]
         );

@@ -191,19 +191,23 @@ impl DrawnEffect for StarsView {
         put(&STARS, self.is_there(stages), &[stars_work(context.pixels())]);
     }
 
-    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs) -> Result<Contribution<'_>> {
-        let mut contribution = Contribution::none();
+    fn compose<'a>(
+        &'a mut self,
+        context: &DrawContext<'_>,
+        _given: &Outputs,
+        added: &mut Contribution<'a>,
+    ) -> Result<()> {
         let (is_there, share) = (self.is_there(context.stages), context.share(&STARS, 0));
-        contribution.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
+        added.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
         if let Some(night) = self.night.as_ref().filter(|_| is_there) {
             let traits = Traits { is_fine: true, ..Traits::default() };
-            contribution.set_traits(traits, traits);
+            added.set_traits(traits, traits);
             let behind = [(1.0 / night.seen(context, 0.0).scale) as f32, share];
-            contribution.set_frame_block(FrameBlock::Stars { behind });
+            added.set_frame_block(FrameBlock::Stars { behind });
             let layer = self.layer(context.device, context.picture()).clone();
-            contribution.set_texture(Texture::Behind, Some(layer));
+            added.set_texture(Texture::Behind, Some(layer));
         }
-        Ok(contribution)
+        Ok(())
     }
 
     /// Draws the layer behind the sky's own light: the glow, then the points. Does nothing while camera, heavens and

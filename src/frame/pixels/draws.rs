@@ -27,7 +27,7 @@ pub(in crate::frame) struct DrawKey {
 
 impl DrawKey {
     /// Whether this is the key of a variant with these constants.
-    pub fn is(&self, variant: &Variant, constants: &Pipeline, has_grid: bool) -> bool {
+    pub fn is(&self, variant: &Variant<()>, constants: &Pipeline, has_grid: bool) -> bool {
         self.has_grid == has_grid && self.of.is_with(variant, constants)
     }
 }

@@ -3,9 +3,10 @@
 use super::pixel_kind::Pixels;
 use crate::stage::{Constants, Pipeline, Sampling, Stages, flag, veiled};
 
-/// Properties that distinguish one compiled variant from another.
+/// Properties that distinguish one compiled variant from another. `C` is `()` for a variant whose constants lie in a
+/// composition: they are large, and a frame copies them only for a variant that it has not drawn before.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::frame) struct Variant {
+pub(in crate::frame) struct Variant<C = Pipeline> {
     pub stages: Stages,
     pub format: wgpu::TextureFormat,
     pub samples: u32,
@@ -13,9 +14,17 @@ pub(in crate::frame) struct Variant {
     /// Whether the host gives depth, mask, surface classes, normals.
     pub images: [bool; 4],
     /// Constants set by the effects and the frame.
-    pub constants: Pipeline,
+    pub constants: C,
     /// Kind of pixels that this variant draws.
     pub pixels: Pixels,
+}
+
+impl Variant<()> {
+    /// Returns the variant with its constants.
+    pub fn with(&self, constants: &Pipeline) -> Variant {
+        let Self { stages, format, samples, sampling, images, constants: (), pixels } = *self;
+        Variant { stages, format, samples, sampling, images, constants: *constants, pixels }
+    }
 }
 
 impl Variant {
@@ -45,8 +54,8 @@ impl Variant {
         (shader, entry)
     }
 
-    /// Whether the variant equals `other` with `constants` in place of its own. No constants are copied.
-    pub fn is_with(&self, other: &Self, constants: &Pipeline) -> bool {
+    /// Whether the variant equals `other` with `constants`. No constants are copied.
+    pub fn is_with(&self, other: &Variant<()>, constants: &Pipeline) -> bool {
         let Self { stages, format, samples, sampling, images, constants: own, pixels } = self;
         (*stages, *format, *samples, *sampling, *images, *pixels)
             == (other.stages, other.format, other.samples, other.sampling, other.images, other.pixels)
