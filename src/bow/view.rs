@@ -29,6 +29,9 @@ pub(crate) struct BowView {
     tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// Tables of the last draw whose picture may show a bow: for the low air and for rain areas.
     shown: Arc<[BowTable; 2]>,
+    /// Shares of the classes of drops for which `shown` was made. The cube map composes while the draw around it still
+    /// holds the tables, so only new ones are written: others would be copied in every frame.
+    shown_for: [Option<[f64; CLASSES]>; 2],
 }
 
 impl Default for BowView {
@@ -39,6 +42,7 @@ impl Default for BowView {
             rains: LruCache::new(),
             tables: LruCache::new(),
             shown: Arc::new([[[0.0; 4]; BOW_ENTRIES]; 2]),
+            shown_for: [None; 2],
         }
     }
 }
@@ -49,6 +53,19 @@ const RAINS: usize = 8;
 impl BowView {
     fn has_drops(&self) -> bool {
         self.drops.iter().any(Option::is_some)
+    }
+
+    /// Writes the tables of the frame's drops.
+    fn show_drops(&mut self) {
+        for (table, shares) in Arc::make_mut(&mut self.shown).iter_mut().zip(&self.drops) {
+            let Some(shares) = shares else {
+                *table = [[0.0; 4]; BOW_ENTRIES];
+                continue;
+            };
+            let padded = || mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32));
+            *table = self.tables.get_or_put(shares, padded);
+        }
+        self.shown_for = self.drops;
     }
 }
 
@@ -86,13 +103,8 @@ impl DrawnEffect for BowView {
         let is_lit = self.has_drops() && self.is_lit;
         added.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(context) {
-            for (table, shares) in Arc::make_mut(&mut self.shown).iter_mut().zip(&self.drops) {
-                let Some(shares) = shares else {
-                    *table = [[0.0; 4]; BOW_ENTRIES];
-                    continue;
-                };
-                let padded = || mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32));
-                *table = self.tables.get_or_put(shares, padded);
+            if self.shown_for != self.drops {
+                self.show_drops();
             }
             added.set_bows(&self.shown);
         }
