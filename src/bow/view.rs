@@ -55,8 +55,11 @@ impl BowView {
         self.drops.iter().any(Option::is_some)
     }
 
-    /// Writes the tables of the frame's drops.
-    fn show_drops(&mut self) {
+    /// Returns the tables of the frame's drops, and writes them first if the drops have changed.
+    fn tables(&mut self) -> &Arc<[BowTable; 2]> {
+        if self.shown_for == self.drops {
+            return &self.shown;
+        }
         for (table, shares) in Arc::make_mut(&mut self.shown).iter_mut().zip(&self.drops) {
             let Some(shares) = shares else {
                 *table = [[0.0; 4]; BOW_ENTRIES];
@@ -66,6 +69,7 @@ impl BowView {
             *table = self.tables.get_or_put(shares, padded);
         }
         self.shown_for = self.drops;
+        &self.shown
     }
 }
 
@@ -103,11 +107,27 @@ impl DrawnEffect for BowView {
         let is_lit = self.has_drops() && self.is_lit;
         added.between_and_veil("BOW", flag(self.has_drops()), flag(is_lit));
         if is_lit && shows(context) {
-            if self.shown_for != self.drops {
-                self.show_drops();
-            }
-            added.set_bows(&self.shown);
+            added.set_bows(self.tables());
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draw_that_holds_the_tables_keeps_them_and_costs_a_copy_only_when_the_drops_change() {
+        let one = |class: usize| Some(std::array::from_fn(|i| f64::from(u8::from(i == class))));
+        let mut view = BowView { drops: [one(0), None], ..BowView::default() };
+        let held = view.tables().clone();
+        let was = *held;
+        assert!(was[0] != [[0.0; 4]; BOW_ENTRIES] && was[1] == [[0.0; 4]; BOW_ENTRIES]);
+        assert!(Arc::ptr_eq(&held, view.tables()), "the same drops");
+        view.drops = [one(CLASSES - 1), one(0)];
+        let next = view.tables().clone();
+        assert!(!Arc::ptr_eq(&held, &next) && *held == was, "other drops");
+        assert!(next[1] == was[0] && next[0] != was[0]);
     }
 }
