@@ -25,8 +25,6 @@ pub(crate) struct BowView {
     /// Cache of each class's extinction, by rain and factor of fall speed ([`in_rain`]). Most frames need the same
     /// entries.
     rains: LruCache<(Falling, f64), [f64; CLASSES], RAINS>,
-    /// Cache of tables, by the shares of the classes.
-    tables: LruCache<[f64; CLASSES], BowTable, 2>,
     /// Tables of the last draw whose picture may show a bow: for the low air and for rain areas.
     shown: Arc<[BowTable; 2]>,
     /// Shares of the classes of drops for which `shown` was made. The cube map composes while the draw around it still
@@ -40,7 +38,6 @@ impl Default for BowView {
             drops: [None; 2],
             is_lit: false,
             rains: LruCache::new(),
-            tables: LruCache::new(),
             shown: Arc::new([[[0.0; 4]; BOW_ENTRIES]; 2]),
             shown_for: [None; 2],
         }
@@ -60,15 +57,16 @@ impl BowView {
         if self.shown_for == self.drops {
             return &self.shown;
         }
-        for (table, shares) in Arc::make_mut(&mut self.shown).iter_mut().zip(&self.drops) {
-            let Some(shares) = shares else {
-                *table = [[0.0; 4]; BOW_ENTRIES];
+        let shown = Arc::make_mut(&mut self.shown);
+        for ((table, shares), was) in shown.iter_mut().zip(&self.drops).zip(&mut self.shown_for) {
+            if was == shares {
                 continue;
-            };
-            let padded = || mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32));
-            *table = self.tables.get_or_put(shares, padded);
+            }
+            *table = shares.as_ref().map_or([[0.0; 4]; BOW_ENTRIES], |shares| {
+                mixed(shares).map(|[r, g, b]| [r, g, b, 0.0].map(|v| v as f32))
+            });
+            *was = *shares;
         }
-        self.shown_for = self.drops;
         &self.shown
     }
 }
@@ -96,12 +94,7 @@ impl DrawnEffect for BowView {
         if self.has_drops() && self.is_lit { Stages::MEDIUM } else { Stages(0) }
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         // The constants do not depend on where the picture looks. Otherwise a pipeline would be compiled when the
         // camera turns to a bow, and that frame would be late.
         let is_lit = self.has_drops() && self.is_lit;

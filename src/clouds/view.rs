@@ -265,12 +265,7 @@ impl DrawnEffect for CloudsView {
         );
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs, added: &mut Contribution) -> Result<()> {
         let (drawn, scene) = (context.share(&CLOUDS, 0), &context.now.scene);
         let mean = self.overhead.as_ref().filter(|_| context.plan.is_gauged).map(|o| o.mean_radiance_and_cover(scene));
         if drawn <= 0.0 {

@@ -46,7 +46,7 @@ impl LowAir {
     }
 
     /// Returns the low air with patches that flow round obstacles to the wind.
-    pub fn led_by(self, detour: Option<Detour>) -> Self {
+    pub fn with_detour(self, detour: Option<Detour>) -> Self {
         Self { detour, ..self }
     }
 
@@ -67,7 +67,7 @@ impl LowAir {
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn model(&self, light: &FogLight, view: &Viewpoint) -> Result<FogModel> {
         let mut model = FogModel::of_weather(self.layer.as_ref(), &self.falling, light, view)?;
-        model.lead_by(self.detour.clone());
+        model.set_detour(self.detour.clone());
         Ok(model)
     }
 
@@ -76,9 +76,10 @@ impl LowAir {
     /// # Errors
     /// [`crate::Status::InvalidArgument`] naming the parameter.
     pub fn media(&self, view: &Viewpoint) -> Result<LowMedia> {
-        let layer = FogModel::of_weather(self.layer.as_ref(), &FallingLayer::NONE, &NO_LIGHT, view)?;
+        let mut layer = FogModel::of_weather(self.layer.as_ref(), &FallingLayer::NONE, &NO_LIGHT, view)?;
+        layer.set_detour(self.detour.clone());
         let falling = FogModel::of_weather(None, &self.falling, &NO_LIGHT, view)?;
-        Ok(LowMedia { layer: layer.led_by(self.detour.clone()), falling })
+        Ok(LowMedia { layer, falling })
     }
 }
 
@@ -283,15 +284,9 @@ impl Scene {
 }
 
 impl FogModel {
-    /// Lets the patches flow round obstacles to the wind.
-    pub(crate) fn lead_by(&mut self, detour: Option<Detour>) {
+    /// Sets the detour on which the patches flow round obstacles to the wind.
+    pub(crate) fn set_detour(&mut self, detour: Option<Detour>) {
         self.detour = detour.filter(|_| self.patch_amount > 0.0);
-    }
-
-    /// Returns the model with patches that flow round obstacles to the wind.
-    pub(crate) fn led_by(mut self, detour: Option<Detour>) -> Self {
-        self.lead_by(detour);
-        self
     }
 
     /// Returns the optical depth straight up from an altitude. It is 0 for the compatibility laws, which have no height

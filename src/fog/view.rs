@@ -65,7 +65,7 @@ impl DrawnEffect for FogView {
         if !self.banks.list().is_empty() {
             *model = now.scene.with_fog(now.outer_fog).fog_model(law, now.seed, now.planet_radius_m)?;
         }
-        model.lead_by(now.detour.clone());
+        model.set_detour(now.detour.clone());
         // A GPU keeps one pipeline for all fogs, because exchanging it would cost a hitch when the weather changes.
         // Detours and banks are exceptions: few scenes have them, and they would cost registers in all others.
         let is_there = model.kind != FogKind::Clear || model.falling.extinction > 0.0 || self.banks.any_seen();
@@ -83,12 +83,7 @@ impl DrawnEffect for FogView {
         put(&candidates::FOG, is_there, &[candidates::FOG_WORK]);
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         let share = context.share(&candidates::FOG, 0);
         let least = self.variant.filter(|_| share > 0.0);
         added.between_and_veil("FOG", flag(self.variant.is_some()), flag(least.is_some()));

@@ -101,7 +101,7 @@ impl Context {
         let ray = Ray::new(&medium, scene.place.altitude_m, offset.z / distance);
         let mut through = medium.transmittance(&ray.columns(&medium, 0.0, distance));
         let detour = self.world.detour(start, &scene.conditions, time_s);
-        let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m).led_by(detour);
+        let low = LowAir::new(&scene.conditions, self.world.seed, scene.drift_m).with_detour(detour);
         if !low.is_clear() {
             let view = Viewpoint {
                 altitude_m: scene.place.altitude_m,

@@ -89,7 +89,7 @@ impl Context {
             let air = Medium::of(&world.planet_under(c));
             let ray = Ray::new(&air, scene.place.altitude_m, unit.z);
             let detour = world.detour(start, c, time_s);
-            let low = LowAir::new(c, world.seed, drift_m).led_by(detour).media(&view)?;
+            let low = LowAir::new(c, world.seed, drift_m).with_detour(detour).media(&view)?;
             Ok(WayMedia { air, ray, low })
         };
         let weathers = std::iter::once(&outside).chain(way.regions().map(|region| &region.conditions));

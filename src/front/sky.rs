@@ -55,7 +55,9 @@ impl Context {
         let regions = if law.is_some() { &[][..] } else { &world.set.weather_regions[..] };
         let outer = world.outer_fog(&scene.conditions, time_s)?;
         let fog = SkyBanks::new(regions, &world.frame, (&scene, position), time_s, outer, |scene| {
-            Ok(fog_of(scene)?.led_by(detour))
+            let mut fog = fog_of(scene)?;
+            fog.set_detour(detour);
+            Ok(fog)
         })?;
         let night = NightBehind::new(&scene, self.world.utc_at(time_s), self.stars(), fog_depth)?;
         let clouds = self.cloud_rays((&scene, position), time_s)?;

@@ -85,12 +85,7 @@ impl DrawnEffect for GroundView {
         if self.block.is_some() { Stages::SURFACE } else { Stages(0) }
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         let drawn = self.block.as_ref().filter(|_| context.stages.has(Stages::SURFACE));
         let has_rings = self.has_water && drawn.is_some_and(GroundUniform::has_rings);
         for (name, is_there) in

@@ -22,8 +22,8 @@ use crate::{
     moment::{FlashLight, SceneMoment},
     scene::{FlashLamp, MAX_FLASH_LAMPS},
     stage::{
-        Contribution, DrawContext, DrawnEffect, Exchange, FlashBlock, FlashUniform, FrameBlock, FrameContext,
-        MergedFrame, Output, Outputs, Recording, Stages, Texture, Traits, flag,
+        Contribution, DrawContext, DrawnEffect, Exchange, FlashBlock, FlashUniform, FrameContext, MergedFrame, Output,
+        Outputs, Recording, Stages, Texture, Traits, flag,
     },
     weather::Conditions,
 };
@@ -99,8 +99,6 @@ pub(crate) struct LightningView {
     layer: Option<(wgpu::Texture, wgpu::TextureView)>,
     /// Layer to draw into, and whether it has content already.
     target: Option<(wgpu::TextureView, bool)>,
-    /// Light of the last draw.
-    shown: FlashBlock,
 }
 
 /// Returns the interval over which a frame averages light: since the previous frame, or a sixtieth of a second if there
@@ -320,18 +318,13 @@ impl DrawnEffect for LightningView {
         }
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs, added: &mut Contribution) -> Result<()> {
         added.constant("FLASH", flag(self.storms), flag(self.lit.is_some()));
         let Some(lit) = &self.lit else { return Ok(()) };
         let traits = Traits { is_fine: true, ..Traits::default() };
         added.set_traits(traits, traits);
         let has_line = lit.has_line && context.stages.has(Stages::PARTICLES);
-        self.shown = lit.block(&context.now.scene.conditions);
+        added.set_flashes(lit.block(&context.now.scene.conditions));
         if has_line {
             // If precipitation has a layer already, the lines are drawn into that layer after the precipitation.
             let over = given.before.is_some();
@@ -339,7 +332,6 @@ impl DrawnEffect for LightningView {
             added.set_texture(Texture::Before, Some(view.clone()));
             self.target = Some((view, over));
         }
-        added.set_frame_block(FrameBlock::Flashes(&self.shown));
         Ok(())
     }
 

@@ -455,12 +455,7 @@ impl DrawnEffect for RainView {
         put(&candidates::RAIN, is_there, &candidates::rain_work(context.pixels(), drops));
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         self.set_shares([1, 0].map(|step| context.share(&candidates::RAIN, step)));
         let (hidden, share) =
             if self.presence().is_any() { self.hidden(context.device, context.now) } else { ([0.0; 2], 1.0) };

@@ -105,12 +105,7 @@ impl DrawnEffect for SkyView {
         put(&candidates::SKY, stages.has(Stages::BACKGROUND), &[candidates::sky_work(lamps)]);
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         let [air, sky] = [&candidates::AIR, &candidates::SKY].map(|part| context.share(part, 0));
         let is_marched = self.settings().model == SkyModel::BruteForce;
         added.between_and_veil("SKY_MARCH", flag(is_marched), flag(is_marched));

@@ -160,12 +160,7 @@ impl DrawnEffect for SnowView {
 
     /// Fills in the contribution of snow to a draw: the extinction that flakes replace in the fog, the layer in front
     /// of the picture, and the reach within which shelters matter to flakes.
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, given: &Outputs, added: &mut Contribution) -> Result<()> {
         self.share = if self.is_planned() { context.share(&candidates::SNOW, 0) } else { 1.0 };
         self.over = given.before.is_some();
         let Some(flakes) = self.flakes().copied().filter(|_| self.is_there) else { return Ok(()) };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{
     stages::Stages,
-    uniform::{BowTable, FrameBlock, FrameUniformBlock, FrameValues},
+    uniform::{BowTable, FlashBlock, FrameBlock, FrameUniformBlock, FrameValues},
 };
 use crate::{
     gpu::blocks::BlockView,
@@ -182,13 +182,14 @@ const MOST_OF_ONE: usize = 12;
 
 /// Contribution of one effect to a draw. The effect fills it in, and the frame merges the contributions of all effects
 /// ([`Composition::merge`]).
-pub(crate) struct Contribution<'a> {
+pub(crate) struct Contribution {
     constants: [ScopedConstant; MOST_OF_ONE],
     count: usize,
     /// Traits of the pipeline with every part, and of the pipeline without the parts whose drawn share is 0 now.
     traits: [Traits; 2],
     /// Fields that the effect writes into the frame's block.
-    block: Option<FrameBlock<'a>>,
+    block: Option<FrameBlock>,
+    flashes: Option<FlashBlock>,
     bows: Option<Arc<[BowTable; 2]>>,
     own_block: Option<(Block, BlockView)>,
     textures: [Option<wgpu::TextureView>; 4],
@@ -197,7 +198,7 @@ pub(crate) struct Contribution<'a> {
     near: Option<ShelterReach>,
 }
 
-impl<'a> Contribution<'a> {
+impl Contribution {
     /// A contribution that adds nothing.
     pub fn none() -> Self {
         let none = ScopedConstant { scope: Scope::Composition, name: "", whole: 0.0, least: 0.0 };
@@ -206,6 +207,7 @@ impl<'a> Contribution<'a> {
             count: 0,
             traits: [Traits::default(); 2],
             block: None,
+            flashes: None,
             bows: None,
             own_block: None,
             textures: [const { None }; 4],
@@ -245,8 +247,13 @@ impl<'a> Contribution<'a> {
     }
 
     /// Sets the fields that the effect writes into the frame's block.
-    pub fn set_frame_block(&mut self, block: FrameBlock<'a>) {
+    pub fn set_frame_block(&mut self, block: FrameBlock) {
         self.block = Some(block);
+    }
+
+    /// Sets the light of lightning flashes.
+    pub fn set_flashes(&mut self, flashes: FlashBlock) {
+        self.flashes = Some(flashes);
     }
 
     /// Sets the tables of bows ([`super::FrameUniform::bows`]).
@@ -323,7 +330,7 @@ impl Composition {
     }
 
     /// Merges the contribution of one effect, and moves the textures, the uniform block and the tables out of it.
-    pub fn merge(&mut self, contribution: &mut Contribution<'_>) {
+    pub fn merge(&mut self, contribution: &mut Contribution) {
         for c in &contribution.constants[..contribution.count] {
             let (whole, least) = ((c.name, c.whole), (c.name, c.least));
             match c.scope {
@@ -346,6 +353,9 @@ impl Composition {
         self.least.traits = self.least.traits.or(least);
         if let Some(block) = &contribution.block {
             self.block.merge(block);
+        }
+        if let Some(flashes) = &contribution.flashes {
+            self.block.set_flashes(flashes);
         }
         if contribution.bows.is_some() {
             self.bows = contribution.bows.take();

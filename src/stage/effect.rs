@@ -29,8 +29,8 @@ pub(crate) type PutPart<'a> = dyn FnMut(&Part, bool, &[StepWork]) + 'a;
 
 /// One effect of a view. A call of the frame asks [`DrawnEffect::check`] first, and then calls the other functions in
 /// the order given here. It may ask [`DrawnEffect::has_opaque`] and [`DrawnEffect::has_lens`] at any time after
-/// [`DrawnEffect::gather`]. Each function reads its context and gives what the effect adds. An effect sees other
-/// effects only through the outputs that it names.
+/// [`DrawnEffect::gather`]. Each function reads its context, and returns or fills in what the effect adds. An
+/// effect sees other effects only through the outputs that it names.
 pub(crate) trait DrawnEffect {
     /// Names the outputs that [`DrawnEffect::gather`] takes from other effects, and those that it gives to them.
     fn gathers(&self) -> Exchange {
@@ -92,12 +92,7 @@ pub(crate) trait DrawnEffect {
 
     /// Fills in what the effect adds to the composition: constants, blocks, textures. `added` is empty before the call.
     /// It is an argument, not a return value, because copying the contributions of all effects takes a microsecond.
-    fn compose<'a>(
-        &'a mut self,
-        _context: &DrawContext<'_>,
-        _given: &Outputs,
-        _added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, _context: &DrawContext<'_>, _given: &Outputs, _added: &mut Contribution) -> Result<()> {
         Ok(())
     }
 

@@ -65,7 +65,7 @@ impl Outputs {
     }
 
     /// Takes the layers of an effect's contribution, if the effect lists them in `gives`.
-    pub fn take_layers(&mut self, contribution: &Contribution<'_>, gives: &[Output]) {
+    pub fn take_layers(&mut self, contribution: &Contribution, gives: &[Output]) {
         if gives.is_empty() {
             return;
         }

@@ -115,7 +115,7 @@ pub(crate) struct FlashBlock {
 
 /// Fields of [`FrameValues`] that one effect writes into a frame's block.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum FrameBlock<'a> {
+pub(crate) enum FrameBlock {
     /// Drawn shares of the air in front of things and of the clear sky.
     Sky { air: f32, sky: f32 },
     /// Drawn share of the fog.
@@ -129,8 +129,6 @@ pub(crate) enum FrameBlock<'a> {
     Rain { hidden: [f32; 2], share: f32 },
     /// `hidden`: [`FrameValues::flakes`]. `share`: drawn share of the flakes.
     Snow { hidden: [f32; 2], share: f32 },
-    /// Lightning flashes that shine now.
-    Flashes(&'a FlashBlock),
 }
 
 /// Difference that bows make to the phase function of drops, 1/sr per channel, tabulated over the angle from the
@@ -139,7 +137,7 @@ pub(crate) type BowTable = [[f32; 4]; BOW_ENTRIES];
 
 impl FrameValues {
     /// Sets the fields of one effect.
-    pub fn merge(&mut self, fields: &FrameBlock<'_>) {
+    pub fn merge(&mut self, fields: &FrameBlock) {
         match *fields {
             FrameBlock::Sky { air, sky } => (self.drawn[0], self.drawn[2]) = (air, sky),
             FrameBlock::Fog { share } => self.drawn[1] = share,
@@ -158,16 +156,18 @@ impl FrameValues {
                 }
                 self.flakes = hidden;
             }
-            FrameBlock::Flashes(flashes) => {
-                self.flash_color = flashes.color;
-                self.flash_count = flashes.count;
-                self.flash_plane = flashes.plane;
-                self.flash_cover = flashes.cover;
-                self.flash_haze = flashes.haze;
-                self.flash_scattering = flashes.scattering;
-                self.flashes = flashes.sources;
-            }
         }
+    }
+
+    /// Sets the light of lightning flashes.
+    pub fn set_flashes(&mut self, flashes: &FlashBlock) {
+        self.flash_color = flashes.color;
+        self.flash_count = flashes.count;
+        self.flash_plane = flashes.plane;
+        self.flash_cover = flashes.cover;
+        self.flash_haze = flashes.haze;
+        self.flash_scattering = flashes.scattering;
+        self.flashes = flashes.sources;
     }
 
     /// Sets the fields that depend on those of several effects.
@@ -176,10 +176,10 @@ impl FrameValues {
     }
 }
 
-/// Uniform block of the frame on the GPU, with [`FrameUniform`].
+/// Uniform block of the frame on the GPU; it holds a [`FrameUniform`].
 pub(crate) struct FrameUniformBlock {
     block: UniformBlock,
-    /// Whether the block holds tables of bows that are not 0.
+    /// Whether the block's tables of bows may differ from 0.
     has_bows: bool,
 }
 
@@ -188,7 +188,7 @@ impl FrameUniformBlock {
         Self { block: blocks.block(device, size_of::<FrameUniform>()), has_bows: false }
     }
 
-    /// Writes the block for a draw. The tables of bows are 0 without `bows`.
+    /// Writes the block for a draw. Without `bows`, its tables of bows are 0.
     pub fn write(&mut self, values: &FrameValues, bows: Option<&[BowTable; 2]>) {
         self.block.write(bytemuck::bytes_of(values));
         if bows.is_some() || self.has_bows {

@@ -191,12 +191,7 @@ impl DrawnEffect for StarsView {
         put(&STARS, self.is_there(stages), &[stars_work(context.pixels())]);
     }
 
-    fn compose<'a>(
-        &'a mut self,
-        context: &DrawContext<'_>,
-        _given: &Outputs,
-        added: &mut Contribution<'a>,
-    ) -> Result<()> {
+    fn compose(&mut self, context: &DrawContext<'_>, _given: &Outputs, added: &mut Contribution) -> Result<()> {
         let (is_there, share) = (self.is_there(context.stages), context.share(&STARS, 0));
         added.constant("STARS", flag(is_there), flag(is_there && share > 0.0));
         if let Some(night) = self.night.as_ref().filter(|_| is_there) {

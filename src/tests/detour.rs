@@ -30,7 +30,9 @@ fn models(size_m: f64, width_m: f64) -> [FogModel; 2] {
         FogLight { to_sun: DVec3::Z, sun_irradiance: [1.0; 3], sky_irradiance: [0.2; 3], ground_albedo: [0.1; 3] };
     let free = FogModel::new(&Law::Layer(layer), &light, &Viewpoint::flat(2.0)).expect("a fog");
     let map = DetourMap::new(&lee(width_m), &|_| 0.0, &|_| DVec2::ZERO, size_m).map(Arc::new).expect("wind");
-    [free.clone(), free.led_by(Some(map.about(DVec3::new(0.0, 0.0, 2.0))))]
+    let mut led = free.clone();
+    led.set_detour(Some(map.about(DVec3::new(0.0, 0.0, 2.0))));
+    [free, led]
 }
 
 /// Mean of the pattern over many points of a ray, each shifted by its own lag.

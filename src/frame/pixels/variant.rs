@@ -3,8 +3,8 @@
 use super::pixel_kind::Pixels;
 use crate::stage::{Constants, Pipeline, Sampling, Stages, flag, veiled};
 
-/// Properties that distinguish one compiled variant from another. `C` is `()` for a variant whose constants lie in a
-/// composition: they are large, and a frame copies them only for a variant that it has not drawn before.
+/// Properties that distinguish one compiled variant from another. `C` is the type of the constants: `()` while they lie
+/// in a composition, because they are large and a frame copies them only for a variant that it has not drawn before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::frame) struct Variant<C = Pipeline> {
     pub stages: Stages,
