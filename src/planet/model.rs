@@ -75,9 +75,10 @@ pub struct Planet {
     /// The three wavelengths that are computed, nm, each in `[200, 4000]`. The numbers of all other triples are in the
     /// order of these wavelengths. Welkin's own colours require red, green, blue; radiances are right in any order.
     pub wavelengths_nm: [f64; 3],
-    /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`. Radiances
-    /// are then in W m^-2 sr^-1 nm^-1; [`super::spectral`] converts them to luminous colours. With an irradiance of 1
-    /// they are radiances per unit irradiance.
+    /// Spectral irradiance of the sun at the top of the air on a surface facing it, W m^-2 nm^-1, `[0, 1e6]`. Its ratio
+    /// to the Earth's sun scales the light of sun and moon in pictures and queries. Radiances of [`crate::sky`] are in
+    /// W m^-2 sr^-1 nm^-1; [`super::spectral`] converts them to luminous colours. With an irradiance of 1 they are
+    /// radiances per unit irradiance.
     pub solar_irradiance: [f64; 3],
     /// Angular radius of the sun's disc, degrees, `[0, 10]`; 0 is a point.
     pub sun_angular_radius_deg: f64,
@@ -197,6 +198,11 @@ impl Planet {
                 half_width_m: 15_000.0,
             },
         }
+    }
+
+    /// Returns the ratio of the sun's irradiance at each wavelength to the Earth's sun at 1 au.
+    pub(crate) fn sun_ratios(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.solar_irradiance[i] / spectra::solar_irradiance(self.wavelengths_nm[i]))
     }
 
     /// Returns the planet's own haze, which is in its air besides the weather's haze. `None` if the weather alone gives

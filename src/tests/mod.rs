@@ -9,6 +9,7 @@ mod land;
 mod longest;
 mod moment;
 mod opaque;
+mod planets;
 mod prepared;
 mod sea;
 mod seascapes;

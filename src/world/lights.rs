@@ -123,14 +123,15 @@ impl World {
         let (apparent, flattening) = see(to_sun);
         let clouds = c.cloud_light_at(to_sun.z, albedo, altitude_m);
         let strength = 1.0 / (almanac.distance_au * almanac.distance_au);
+        let spectrum = self.set.planet.sun_ratios().map(|ratio| ratio * strength);
         let sun = Light {
             direction: to_sun,
             apparent,
             bright_limb: DVec3::Z,
             angular_radius: (self.set.planet.sun_angular_radius_deg / almanac.distance_au).to_radians(),
             lit: 1.0,
-            spectrum: [strength; 3],
-            illuminance_lux: color_of(&self.set.color, [strength; 3]),
+            spectrum,
+            illuminance_lux: color_of(&self.set.color, spectrum),
             flattening,
             direct_share: clouds.direct,
             matters: true,
@@ -160,7 +161,8 @@ impl World {
             almanac.illuminance_lux = moon::moon_illuminance_lux(almanac.phase_angle, almanac.distance_m);
         }
         let (apparent, flattening) = see(almanac.direction);
-        let spectrum = MOON_TINT.map(|t| t * almanac.illuminance_lux / SUN_LUX);
+        let ratios = self.set.planet.sun_ratios();
+        let spectrum = [0, 1, 2].map(|i| MOON_TINT[i] * almanac.illuminance_lux / SUN_LUX * ratios[i]);
         let dark = sun.direction.z < libm::sin(MOON_MATTERS_BELOW_DEG.to_radians());
         let above = apparent.z > -0.02;
         let clouds = c.cloud_light_at(almanac.direction.z, albedo, altitude_m);
