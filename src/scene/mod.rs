@@ -15,4 +15,4 @@ pub use depth::{ClipSpace, DepthKind, DepthMapping, DepthUniform, ViewRays};
 pub(crate) use light::{FlashLamp, LightUniform, MAX_FLASH_LAMPS};
 pub use light::{HostLight, MAX_LIGHTS};
 pub(crate) use turn::{angle_between, turn_x, turn_y, turn_z};
-pub use world::{Axes, LocalFrame, Place, WorldFrame, WorldKind};
+pub use world::{Axes, Figure, LocalFrame, Place, WorldFrame, WorldKind};

@@ -22,7 +22,67 @@ const ROUNDING_M: f64 = 1e-3;
 /// Farthest position from the world's origin, m.
 const FARTHEST_M: f64 = 1e12;
 
-/// A place on the Earth.
+/// Figure of a planet's mean surface: an ellipsoid of revolution about the polar axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figure {
+    /// Equatorial radius, m.
+    equatorial_m: f64,
+    /// First eccentricity squared.
+    eccentricity2: f64,
+}
+
+impl Default for Figure {
+    fn default() -> Self {
+        Self::WGS84
+    }
+}
+
+impl Figure {
+    /// Figure of the Earth, WGS 84.
+    pub const WGS84: Self = Self { equatorial_m: WGS84_A, eccentricity2: WGS84_E2 };
+
+    /// Returns the figure of a planet whose ground has this radius, m: WGS 84 if the radius is between the polar and
+    /// the equatorial radius of the Earth, otherwise a sphere.
+    pub fn of_radius(radius_m: f64) -> Self {
+        let polar_m = WGS84_A * (1.0 - WGS84_E2).sqrt();
+        if (polar_m..=WGS84_A).contains(&radius_m) {
+            return Self::WGS84;
+        }
+        Self { equatorial_m: radius_m, eccentricity2: 0.0 }
+    }
+
+    /// Returns planet-centred coordinates of a place, m, with its altitude above the figure. The z axis points to the
+    /// north pole, the x axis to longitude 0.
+    pub fn centred(&self, place: &Place) -> DVec3 {
+        let (sp, cp) = libm::sincos(place.latitude_deg.to_radians());
+        let (sl, cl) = libm::sincos(place.longitude_deg.to_radians());
+        let n = self.equatorial_m / (1.0 - self.eccentricity2 * sp * sp).sqrt();
+        let r = (n + place.altitude_m) * cp;
+        DVec3::new(r * cl, r * sl, (n * (1.0 - self.eccentricity2) + place.altitude_m) * sp)
+    }
+
+    /// Computes the place of planet-centred coordinates, with its altitude above the figure. Eight steps of the
+    /// iteration tan B = (z + e^2 N(B) sin B) / rho give the latitude B, where rho is the distance from the axis and N
+    /// the radius of curvature in the prime vertical. On the Earth the result inverts [`Self::centred`] within 1e-6 m,
+    /// at 1000 km to 1e9 m from the centre.
+    pub fn place(&self, p: DVec3) -> Place {
+        let (a, e2) = (self.equatorial_m, self.eccentricity2);
+        let rho = libm::hypot(p.x, p.y);
+        let longitude = libm::atan2(p.y, p.x);
+        let mut latitude = libm::atan2(p.z, rho * (1.0 - e2));
+        for _ in 0..8 {
+            let s = libm::sin(latitude);
+            let n = a / (1.0 - e2 * s * s).sqrt();
+            latitude = libm::atan2(p.z + e2 * n * s, rho);
+        }
+        let (s, c) = libm::sincos(latitude);
+        let n = a / (1.0 - e2 * s * s).sqrt();
+        let altitude_m = rho * c + p.z * s - a * a / n;
+        Place { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m }
+    }
+}
+
+/// A place on a planet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Geodetic latitude, degrees north, [-90, 90].
@@ -47,33 +107,16 @@ impl Place {
     /// Returns Earth-centred coordinates on WGS 84, m, with mean sea level at the ellipsoid
     /// ([`WorldFrame::geoid_height_m`] 0).
     pub fn to_ecef(&self) -> DVec3 {
-        let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
-        let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
-        let n = WGS84_A / (1.0 - WGS84_E2 * sp * sp).sqrt();
-        let r = (n + self.altitude_m) * cp;
-        DVec3::new(r * cl, r * sl, (n * (1.0 - WGS84_E2) + self.altitude_m) * sp)
+        Figure::WGS84.centred(self)
     }
 
-    /// Computes the place of Earth-centred coordinates, with its altitude above the ellipsoid. Eight steps of the
-    /// iteration tan B = (z + e^2 N(B) sin B) / rho give the latitude B, where rho is the distance from the axis and N
-    /// the radius of curvature in the prime vertical. The result inverts [`Self::to_ecef`] within 1e-6 m, at 1000 km to
-    /// 1e9 m from the Earth's centre.
+    /// Computes the place of Earth-centred coordinates on WGS 84, with its altitude above the ellipsoid
+    /// ([`Figure::place`]).
     pub fn from_ecef(p: DVec3) -> Self {
-        let rho = libm::hypot(p.x, p.y);
-        let longitude = libm::atan2(p.y, p.x);
-        let mut latitude = libm::atan2(p.z, rho * (1.0 - WGS84_E2));
-        for _ in 0..8 {
-            let s = libm::sin(latitude);
-            let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
-            latitude = libm::atan2(p.z + WGS84_E2 * n * s, rho);
-        }
-        let (s, c) = libm::sincos(latitude);
-        let n = WGS84_A / (1.0 - WGS84_E2 * s * s).sqrt();
-        let altitude = rho * c + p.z * s - WGS84_A * WGS84_A / n;
-        Self { latitude_deg: latitude.to_degrees(), longitude_deg: longitude.to_degrees(), altitude_m: altitude }
+        Figure::WGS84.place(p)
     }
 
-    /// Returns the rotation from Earth-centred axes to (east, north, up) at this place.
+    /// Returns the rotation from planet-centred axes to (east, north, up) at this place.
     pub(crate) fn ecef_to_enu(&self) -> DMat3 {
         let (sp, cp) = libm::sincos(self.latitude_deg.to_radians());
         let (sl, cl) = libm::sincos(self.longitude_deg.to_radians());
@@ -103,9 +146,10 @@ pub enum WorldKind {
     Flat,
     /// A tangent plane: axes east, north and up at the origin's place, with the curved planet below.
     Tangent,
-    /// Earth-centred, Earth-fixed (WGS 84). The axes are not used. The origin is used for the sunlight on simulated
-    /// ground, and as the zero point of the map on which clouds, patches of fog, waves and lightning have their places.
-    /// Altitudes count from mean sea level, which lies [`WorldFrame::geoid_height_m`] above the ellipsoid.
+    /// Earth-centred, Earth-fixed (WGS 84), or centred on another planet ([`WorldFrame::figure`]). The axes are not
+    /// used. The origin is used for the sunlight on simulated ground, and as the zero point of the map on which clouds,
+    /// patches of fog, waves and lightning have their places. Altitudes count from mean sea level, which lies
+    /// [`WorldFrame::geoid_height_m`] above the ellipsoid.
     Ecef,
 }
 
@@ -125,12 +169,22 @@ pub struct WorldFrame {
     /// Frankfurt, -30 m at New York. It varies by some metres over 100 km, but this one value holds for all of the
     /// host's world. Used only by Earth-centred worlds, whose coordinates refer to the ellipsoid. Default 0.
     pub geoid_height_m: f64,
+    /// Figure of the planet's mean surface in tangent and planet-centred worlds. Default [`Figure::WGS84`]. A context
+    /// sets it to that of its planet ([`Figure::of_radius`]).
+    pub figure: Figure,
 }
 
 impl Default for WorldFrame {
     fn default() -> Self {
         let origin = Place { latitude_deg: 50.0, longitude_deg: 10.0, altitude_m: 0.0 };
-        Self { kind: WorldKind::Flat, axes: Axes::ZUp, origin, grid_bearing_deg: 0.0, geoid_height_m: 0.0 }
+        Self {
+            kind: WorldKind::Flat,
+            axes: Axes::ZUp,
+            origin,
+            grid_bearing_deg: 0.0,
+            geoid_height_m: 0.0,
+            figure: Figure::WGS84,
+        }
     }
 }
 
@@ -186,12 +240,12 @@ impl WorldFrame {
             WorldKind::Tangent => {
                 let to_origin = self.axes_to_enu();
                 let origin_rows = self.origin.ecef_to_enu();
-                let ecef = self.origin.to_ecef() + origin_rows.transpose() * (to_origin * position);
-                let place = Place::from_ecef(ecef);
+                let centred = self.figure.centred(&self.origin) + origin_rows.transpose() * (to_origin * position);
+                let place = self.figure.place(centred);
                 LocalFrame { place, world_to_enu: place.ecef_to_enu() * origin_rows.transpose() * to_origin }
             }
             WorldKind::Ecef => {
-                let mut place = Place::from_ecef(position);
+                let mut place = self.figure.place(position);
                 place.altitude_m -= self.geoid_height_m;
                 LocalFrame { place, world_to_enu: place.ecef_to_enu() }
             }
@@ -202,9 +256,12 @@ impl WorldFrame {
     /// world must be tangent or Earth-centred.
     pub(crate) fn position_of(&self, place: &Place) -> DVec3 {
         match self.kind {
-            WorldKind::Ecef => Place { altitude_m: place.altitude_m + self.geoid_height_m, ..*place }.to_ecef(),
+            WorldKind::Ecef => {
+                self.figure.centred(&Place { altitude_m: place.altitude_m + self.geoid_height_m, ..*place })
+            }
             _ => {
-                let from_origin = self.origin.ecef_to_enu() * (place.to_ecef() - self.origin.to_ecef());
+                let away = self.figure.centred(place) - self.figure.centred(&self.origin);
+                let from_origin = self.origin.ecef_to_enu() * away;
                 self.axes_to_enu().transpose() * from_origin
             }
         }
@@ -274,6 +331,27 @@ mod tests {
             let e = WorldFrame { geoid_height_m: bad, ..WorldFrame::default() }.validate().unwrap_err().to_string();
             assert!(e.starts_with("geoid_height_m must be in [-120, 120] m, got "), "{e}");
         }
+    }
+
+    #[test]
+    fn worlds_of_another_planet_are_spheres_of_its_radius() {
+        assert_eq!([6.36e6, 6_371_000.0].map(Figure::of_radius), [Figure::WGS84; 2]);
+        let radius_m = 3_389_500.0;
+        let origin = Place { latitude_deg: -4.6, longitude_deg: 137.4, altitude_m: -4500.0 };
+        let tangent =
+            WorldFrame { kind: WorldKind::Tangent, figure: Figure::of_radius(radius_m), origin, ..Default::default() };
+        let centred = WorldFrame { kind: WorldKind::Ecef, ..tangent };
+        for (latitude_deg, altitude_m) in [(-90.0, 0.0), (-4.6, -4500.0), (18.0, 21_900.0), (60.0, 4e5)] {
+            let place = Place { latitude_deg, longitude_deg: 30.0, altitude_m };
+            for world in [tangent, centred] {
+                let found = world.place_at("position", world.position_of(&place)).unwrap().place;
+                assert!((found.altitude_m - altitude_m).abs() < 1e-6, "{found:?}");
+                assert!((found.latitude_deg - latitude_deg).abs() < 1e-9, "{found:?}");
+            }
+            assert!((centred.position_of(&place).length() - radius_m - altitude_m).abs() < 1e-6, "{place:?}");
+        }
+        let drop = tangent.frame_at(DVec3::new(0.0, 50e3, 0.0)).place.altitude_m - origin.altitude_m;
+        assert!((drop - 50e3f64.powi(2) / (2.0 * (radius_m - 4500.0))).abs() < 0.1, "{drop}");
     }
 
     #[test]

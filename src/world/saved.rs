@@ -14,7 +14,7 @@ use crate::{
     error::{Error, Result, Status, beginning, check_range, shown},
     moment::Region,
     regions::HeldRegion,
-    scene::WorldKind,
+    scene::{Figure, WorldKind},
     weather::{Timeline, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrift, LayerDrifts},
 };
@@ -277,6 +277,7 @@ impl World {
         swap(&mut self.drifted, &mut other.drifted);
         swap(&mut self.layers_drifted, &mut other.layers_drifted);
         swap(&mut self.set, &mut other.set);
+        self.frame.figure = Figure::of_radius(self.set.planet.bottom_radius_m);
         // Tiles belong to the host, whatever is loaded.
         swap(&mut self.set.tiles, &mut other.set.tiles);
         swap(&mut self.exposure, &mut other.beside.exposure);

@@ -24,7 +24,7 @@ use crate::{
     light::{Exposure, ToneCurve},
     moment::WeatherOver,
     planet::Planet,
-    scene::{HostLight, WorldFrame},
+    scene::{Figure, HostLight, WorldFrame},
     surroundings::{LyingSnow, OccluderMaps, WindTexture},
     weather::{CloudMap, Conditions, GroundLayer, Timeline, lifting::lift_snow, timeline::MAX_TIME_S},
     wind::{Drift, LayerDrifts, Wind, WindOver, WindVolume},
@@ -90,6 +90,7 @@ impl World {
         let WorldDesc { frame, planet, seed, exposure, tone, utc_at_zero } = made;
         frame.validate()?;
         planet.check()?;
+        let frame = WorldFrame { figure: Figure::of_radius(planet.bottom_radius_m), ..frame };
         exposure.validate()?;
         sun_position(utc_at_zero, &frame.origin)?;
         Ok(Self {
@@ -243,6 +244,7 @@ impl World {
     pub fn set_planet(&mut self, planet: Planet) -> Result<()> {
         planet.check()?;
         self.set.color = color_columns(&planet);
+        self.frame.figure = Figure::of_radius(planet.bottom_radius_m);
         self.set.planet = planet;
         Ok(())
     }

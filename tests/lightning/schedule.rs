@@ -209,7 +209,7 @@ fn worlds_of_all_kinds_have_flashes_where_their_host_wants_them() {
         (WorldKind::Tangent, Axes::YUp),
         (WorldKind::Ecef, Axes::ZUp),
     ] {
-        let world = WorldFrame { kind, axes, origin, grid_bearing_deg: 20.0, geoid_height_m: 0.0 };
+        let world = WorldFrame { kind, axes, origin, grid_bearing_deg: 20.0, ..WorldFrame::default() };
         let mut context = context(world);
         let position = match kind {
             WorldKind::Ecef => origin.to_ecef(),
