@@ -6,9 +6,9 @@
 //!
 //! There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
 //! east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
-//! coordinates, or those of another planet (wk_context_set_planet). Axes of flat and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the
-//! usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
-//! degrees clockwise from true north.
+//! coordinates, or those of another planet (wk_context_set_planet). Axes of flat and tangent worlds are x east, y
+//! north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are unit vectors
+//! (east, north, up) at the queried place; azimuths are degrees clockwise from true north.
 //!
 //! Altitudes are above mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m of
 //! wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
