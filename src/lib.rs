@@ -83,7 +83,6 @@ pub mod error;
 mod falling;
 pub mod flow;
 pub mod fog;
-mod fourier;
 pub mod frame;
 mod front;
 pub mod glass;

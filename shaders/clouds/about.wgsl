@@ -12,19 +12,12 @@ const SUN_WAY = array<f32, 5>(0.05, 0.15, 0.3, 0.8, 2.0);
 // Largest slope of the map that rays assume when they skip clear air, per distance from cloud to cloud. Steeper places
 // are too small to matter.
 const MAP_SKIP: f32 = 6.0;
-// Largest slope of the ragged noise that rays assume when they skip clear air, per distance from cloud to cloud, and its
-// largest value, both in units of its deviation.
-const RAGGED_SKIP: f32 = 40.0;
-const RAGGED_MOST: f32 = 2.5;
-// Step of height, in thicknesses, by which rays go on where towers spread into anvils.
-const SECTION_STEP: f32 = 0.02;
 // Largest slope of the solid noise that rays assume when they skip clear air, per side of its cube.
 const SOLID_SKIP: f32 = 12.0;
 
 // A cloud at a place.
 struct CloudHere {
-    // Amount by which the map's number falls short of cloud at the place, without the rounded base, the ragged noise and
-    // fraying.
+    // Amount by which the map's number falls short of cloud at the place, without the rounded base and fraying.
     gap: f32,
     // Excess over the threshold, with fraying.
     excess: f32,
@@ -32,10 +25,8 @@ struct CloudHere {
     extinction: f32,
     // Excess over threshold and dome, with fraying: above 0 in cloud.
     inside: f32,
-    // `gap` with the ragged noise and fraying.
+    // `gap` with fraying.
     frayed_gap: f32,
-    // Amount of the ragged noise at the base, as an excess.
-    ragged: f32,
     // Excess needed for cloud at the layer's top over the place.
     dome: f32,
     // Distance within which the place's threshold stays the same, m.
@@ -72,20 +63,15 @@ fn cloud_here(whole: CloudLayer, at: CloudPlace) -> CloudHere {
     let layer = local.layer;
     let over = cloud_over(layer, at);
     let frays = cloud_frays(layer, at);
-    let raggedness = cloud_raggedness(layer, at.height);
-    let uneven = over.x + over.y * raggedness;
-    let excess = uneven - cloud_dome(layer, over.x, at.height);
-    let dome = cloud_dome_over(layer, over.x);
-    // The rounded base is left out because it only removes cloud.
-    let anvil = select(1e9, layer.lean.z, cloud_spreading(layer, at.height) > 0.0);
-    let gap = min(dome * cloud_rise(layer, at.height), anvil) - over.x;
-    let frayed = cloud_frayed(layer, excess, frays);
-    let frayed_gap = gap - over.y * raggedness - min(frays, cloud_most_frayed(layer));
-    let inside = excess + frayed;
+    let excess = over - cloud_dome(layer, over, at.height);
+    let dome = cloud_dome_over(layer, over);
+    // The rounded base is left out because it only removes cloud. An anvil may lie above the place.
+    let gap = min(dome * at.height * at.height, layer.lean.z) - over;
+    let inside = excess + frays;
     let clear = select(0.0, local.steady, CLOUD_PLACED && layer.shape.x > CLOUD_CLEAR_FROM);
-    var here = CloudHere(gap, uneven + frayed, cloud_extinction(layer, inside), inside, frayed_gap, over.y, dome, local.steady, local.slope, clear, 1.0);
-    if CLOUD_COARSE && cloud_blur.spread.x > 0.0 {
-        let spread = sqrt(cloud_blur.spread.x + cloud_blur.spread.y * raggedness * raggedness);
+    var here = CloudHere(gap, over + frays, cloud_extinction(layer, inside), inside, gap - frays, dome, local.steady, local.slope, clear, 1.0);
+    let spread = cloud_blur.spread;
+    if CLOUD_COARSE && spread > 0.0 {
         let wanting = CLOUD_RARE * spread;
         let part = cloud_share(inside, spread);
         let is_cloud = inside > -wanting;
@@ -109,31 +95,22 @@ fn cloud_inside(here: CloudHere) -> f32 {
 fn cloud_skip(layer: CloudLayer, here: CloudHere, height: f32, direction: vec3f) -> f32 {
     let leaning = 2.0 * layer.lean.w * layer.size.y * abs(direction.z);
     let level = length(direction.xy) + leaning;
-    let dome = here.dome * (layer.form.x + 2.0 * (1.0 - layer.form.x) * height) * layer.size.y * max(-direction.z, 0.0);
+    let dome = 2.0 * here.dome * height * layer.size.y * max(-direction.z, 0.0);
     let steep = MAP_SKIP * layer.size.z * level + dome;
-    // The ragged noise changes along the level, and with height.
-    let ragged = RAGGED_SKIP * layer.form.w * layer.size.z * level + 3.0 * abs(here.ragged) * layer.size.y * abs(direction.z);
-    let same = cloud_same_section(layer, height) / (layer.size.y * max(abs(direction.z), 1e-6));
-    let skip = min(cloud_skip_by(layer, here, steep, ragged), same);
+    let skip = cloud_skip_by(layer, here, steep);
     if !CLOUD_PLACED {
         return skip;
     }
     // The threshold stays the same within `steady` and may change beyond.
     let near = max(min(skip, here.steady / max(level, 1e-3)), here.clear / max(level, 1e-3));
-    return min(max(near, cloud_skip_by(layer, here, steep + here.slope * level, ragged)), same);
-}
-
-// Returns how far up or down from a height the horizontal section of clouds stays the same but for the dome, in
-// thicknesses; a small value where towers spread into anvils.
-fn cloud_same_section(layer: CloudLayer, height: f32) -> f32 {
-    return select(max(max(SPREADS.x - height, height - OVERSHOOTS.y), SECTION_STEP), 1e9, layer.lean.z > 0.0);
+    return max(near, cloud_skip_by(layer, here, steep + here.slope * level));
 }
 
 // Distance along a ray from a place outside clouds within which there is no cloud, m, if the gap falls by at most
-// `steep` per metre, apart from the change by the ragged noise, at most `ragged` per metre, and by the solid noise.
-fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32, ragged: f32) -> f32 {
-    let by_map = (here.gap - cloud_most_frayed(layer) - RAGGED_MOST * layer.form.w) / (steep + 1e-6);
-    let by_noise = here.frayed_gap / (steep + ragged + SOLID_SKIP * layer.shape.z * layer.medium.w);
+// `steep` per metre, apart from the change by the noise.
+fn cloud_skip_by(layer: CloudLayer, here: CloudHere, steep: f32) -> f32 {
+    let by_map = (here.gap - MOST_FRAYED * layer.shape.z) / (steep + 1e-6);
+    let by_noise = here.frayed_gap / (steep + SOLID_SKIP * layer.shape.z * layer.medium.w);
     return max(by_map, by_noise);
 }
 
@@ -190,8 +167,7 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
         let p = CloudPlace(at.level + toward.xy * t, at.height + rise * t);
         let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
         let over = cloud_over(there, p);
-        let inside = cloud_excess(there, over, p.height) - cloud_dome(there, over.x, p.height);
-        let excess = inside + cloud_frayed(there, inside, cloud_frays(there, p));
+        let excess = over - cloud_dome(there, over, p.height) + cloud_frays(there, p);
         depth += clamp(excess * layer.shape.w, 0.0, 1.0) * (end - gone);
         gone = end;
     }
@@ -200,8 +176,7 @@ fn cloud_way(layer: CloudLayer, at: CloudPlace, toward: vec3f, most: f32) -> f32
         let t = 0.5 * (gone + end);
         let p = CloudPlace(at.level + toward.xy * t, at.height + rise * t);
         let there = cloud_local(layer, cloud_unleaned(layer, p)).layer;
-        let excess = cloud_excess(there, cloud_over(there, p), p.height);
-        depth += cloud_stretch(there, excess, at.height + rise * gone, rise, end - gone);
+        depth += cloud_stretch(there, cloud_over(there, p), at.height + rise * gone, rise, end - gone);
         gone = end;
     }
     return depth;
@@ -234,5 +209,5 @@ fn cloud_sunlit(layer: CloudLayer, at: CloudPlace, here: CloudHere) -> f32 {
     let cells = up * length(clouds.to_sun.xy) / max(abs(clouds.to_sun.z), 0.05) * layer.size.z;
     // The factor 0.5 allows for the share of cloud, which falls with height.
     let blocked = 1.0 - exp(-0.5 * here.share * cells / CLOUD_CELL);
-    return 1.0 - min(sqrt(cloud_blur.spread.x + cloud_blur.spread.y), 1.0) * blocked;
+    return 1.0 - min(cloud_blur.spread, 1.0) * blocked;
 }

@@ -27,8 +27,8 @@ struct CloudLayer {
     // Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
     // excess.
     stretch: vec4f,
-    // Distance that the top, or the anvil, lies downwind of the base, m (east, north); least excess that has an anvil
-    // above it; length of the vector (east, north) for fibres, m.
+    // Distance that the top lies downwind of the base, m (east, north); least excess that has an anvil above it; length
+    // of the vector (east, north), m.
     lean: vec4f,
     // Host's map of the layer (placed.wgsl): position of the camera (east, north), in cells from the middle of the
     // first cell; 1/side of a cell, 1/m; row of the map's first texels.
@@ -39,9 +39,6 @@ struct CloudLayer {
     // Threshold, dome and extinction, 1/m, where the layer is filled over rain areas; number of areas, 0 for other
     // layers.
     filled: vec4f,
-    // Degree to which a cloud narrows upwards; degree to which the solid noise adds cloud far into clear air; degree to
-    // which tops are ragged; standard deviation of the ragged noise at the base, as an excess.
-    form: vec4f,
 }
 
 // A cell of cloud over a rain area: an ellipse.

@@ -22,9 +22,6 @@ pub(super) const LOWEST: f64 = 0.03;
 /// of their gamma distribution. The limit is the spread of the deepest clouds to which the law of `SlabPart::through`
 /// was fitted.
 const MOST_SPREAD: f64 = 2.6;
-/// Tangent of the zenith angle times the ratio of the clouds' height to their spacing, at which a beam meets half of the
-/// clouds' sides that it would meet if the clouds stood apart at random. Clouds stand in fields, with clear sky between.
-const FIELD: f64 = 12.0;
 /// Covers between which clouds change from broken to closed (`CLOSES` of `clouds::field`).
 const CLOSES: [f64; 2] = [0.99, 1.0];
 
@@ -131,11 +128,11 @@ impl SlabPart<'_> {
         }
         let (heaps, cells, fibre) = (s.heaps(), s.cellular, s.fibre);
         let tall = (2.0 * s.convection - 1.0).max(0.0);
-        let upright = 0.85 - 0.4 * cells * cells - 0.15 * heaps - 0.13 * tall + 0.42 * fibre * fibre;
+        let upright = 0.85 - 0.4 * cells * cells - 0.15 * heaps - 0.13 * tall + 0.5 * fibre * fibre;
         let slant = (0.55 - 0.1 * heaps + 1.5 * cells * (1.0 - cells)) * (1.0 - fibre);
         let tangent = (1.0 - mu * mu).max(0.0).sqrt() / mu;
-        let sides = self.share * s.thickness_m / s.scale_m.max(1e-3) * tangent;
-        let more = slant * sides / (1.0 + sides / FIELD) - (1.0 - upright) * (1.0 - self.cover * self.cover);
+        let over_spacing = self.share * s.thickness_m / s.scale_m.max(1e-3);
+        let more = slant * over_spacing * tangent - (1.0 - upright) * (1.0 - self.cover * self.cover);
         let power = (1.0 + (1.0 - s.closed()) * more).max(0.05);
         -libm::expm1(power * libm::log1p(-self.cover))
     }

@@ -12,24 +12,18 @@ use welkin::{
 };
 
 /// Seeds from which thresholds are found, and the number of viewpoints for each.
-const SEEDS: std::ops::Range<u64> = 100..124;
-const PLACES: usize = 144;
+const SEEDS: std::ops::Range<u64> = 100..106;
+const PLACES: usize = 48;
 
 /// Prints `src/clouds/field/thresholds.in`.
 pub fn print_thresholds() -> Result<()> {
     let seeds = SEEDS.map(|seed| Ok((Map::new(seed), Solid::new(seed)?))).collect::<Result<Vec<_>>>()?;
-    let seeds = &seeds;
-    let kinds = CloudKind::ALL.iter().filter(|kind| **kind != CloudKind::Unknown);
-    std::thread::scope(|scope| {
-        let find = |kind: CloudKind| scope.spawn(move || cover::find_thresholds(kind, seeds, PLACES));
-        let rows: Vec<_> = kinds.map(|kind| (kind, find(*kind))).collect();
-        println!("[");
-        for (kind, row) in rows {
-            println!("    (CloudKind::{kind:?}, {:.3?}),", row.join().expect("no search panics")?);
-        }
-        println!("]");
-        Ok(())
-    })
+    println!("[");
+    for kind in CloudKind::ALL.iter().filter(|kind| **kind != CloudKind::Unknown) {
+        println!("    (CloudKind::{kind:?}, {:.3?}),", cover::find_thresholds(*kind, &seeds, PLACES)?);
+    }
+    println!("]");
+    Ok(())
 }
 
 /// Number of rays compared per sky, and of photons per ray: in a quick run, and in a full one.

@@ -12,10 +12,10 @@ use super::noise::CloudNoise;
 use crate::{
     clouds::{
         field::{
-            extinction::{Field, PlaceExcess},
+            extinction::{Field, MOST_FRAYED},
             layer::{ICE, OverheadLayer},
             layers::CloudLayers,
-            shape::{Shape, WIDTH_CELLS, about, filled_below},
+            shape::{Shape, WIDTH_CELLS, about, dome, filled_below},
             thresholds::CLEAR,
         },
         light::{
@@ -48,11 +48,6 @@ const SUN_WAY: [f64; 5] = [0.05, 0.15, 0.3, 0.8, 2.0];
 const SUN_FRAYED: usize = 3;
 /// Slope that rays take as the map's largest when they skip clear air, per [`Shape::scale_m`].
 const MAP_SKIP: f64 = 6.0;
-/// Slope that rays take as the ragged noise's largest when they skip clear air, per [`Shape::scale_m`] and unit of
-/// [`Shape::ragged`].
-const RAGGED_SKIP: f64 = 40.0;
-/// Value that rays take as the ragged noise's largest when they skip clear air, in units of [`Shape::ragged`].
-const RAGGED_MOST: f64 = 2.5;
 /// Slope that rays take as the solid noise's largest when they skip clear air, per [`Shape::solid_m`].
 const SOLID_SKIP: f64 = 12.0;
 
@@ -283,17 +278,15 @@ impl<'a> CloudRays<'a> {
             let position_m = self.at(d, t);
             let height = (position_m.z - s.base_m) / s.thickness_m;
             let (field, steady) = layer.field.here(position_m);
-            let (over, frays) = (field.over(position_m), field.frays(position_m));
-            let inside = over.inside(&field.shape, height);
-            let frayed = field.shape.frayed(inside, frays);
+            let over = field.over(position_m);
+            let frays = field.frays(position_m);
             let fades = ((first + FARTHEST_M - t) / FADES_M).clamp(0.0, 1.0);
-            let extinction = field.dense(inside + frayed) * layer.scale * fades;
+            let extinction = field.dense(over - dome(&field.shape, over, height) + frays) * layer.scale * fades;
             if extinction <= 0.0 {
-                gone += step.max(skip((&field.shape, steady), (&over, frays), height, d));
+                gone += step.max(skip((&field.shape, steady), [over, frays], height, d));
                 continue;
             }
-            let excess = over.at(&field.shape, height) + frayed;
-            let place = AtPlace { layer, field, position_m, height, excess };
+            let place = AtPlace { layer, field, position_m, height, excess: over + frays };
             let left = (-extinction * step).exp();
             let share = seen.transmittance * (1.0 - left);
             seen.light += self.scattered(&place, -d, seen.transmittance) * share;
@@ -337,33 +330,28 @@ impl<'a> CloudRays<'a> {
 
 /// Returns the distance along a ray from a place outside clouds within which there is no cloud, m: `cloud_skip` of the
 /// shader. The threshold stays the same within `steady_m`, and beyond it changes by at most `slope_per_m` per metre.
-/// `over` is the excess at the place, `frays` the amount that the solid noise would add to it within cloud.
+/// `over` is the excess at the place before dome and fraying, `frays` the amount that the solid noise adds to it.
 pub(crate) fn skip(
     (s, [steady_m, slope_per_m]): (&Shape, [f64; 2]),
-    (over, frays): (&PlaceExcess, f64),
+    [over, frays]: [f64; 2],
     height: f64,
     d: DVec3,
 ) -> f64 {
-    let domed = s.dome_over(over.even);
-    let is_spread = s.spreading(height) > 0.0;
-    let gap = (domed * s.rise(height)).min(if is_spread { s.anvil } else { f64::INFINITY }) - over.even;
-    let leaning = 2.0 * s.fibre_lean_m() / s.thickness_m * d.z.abs();
+    let domed = s.dome_over(over);
+    let gap = (domed * height * height).min(s.anvil) - over;
+    let leaning = 2.0 * s.lean_m.length() / s.thickness_m * d.z.abs();
     let level = d.truncate().length() + leaning;
-    let round = domed * (s.taper + 2.0 * (1.0 - s.taper) * height) / s.thickness_m * (-d.z).max(0.0);
-    // The ragged noise changes along the level, and with height.
-    let ragged = RAGGED_SKIP * s.ragged / s.scale_m * level + 3.0 * over.ragged.abs() / s.thickness_m * d.z.abs();
+    let round = 2.0 * domed * height / s.thickness_m * (-d.z).max(0.0);
     let within = |slope_per_m: f64| {
         let steep = (MAP_SKIP / s.scale_m + slope_per_m) * level + round;
-        let by_map = (gap - s.most_frayed() - RAGGED_MOST * s.ragged) / (steep + 1e-6);
-        let added = frays.min(s.most_frayed()) + over.ragged * s.raggedness(height);
-        let by_noise = (gap - added) / (steep + ragged + SOLID_SKIP * s.rough / s.solid_m);
+        let by_map = (gap - MOST_FRAYED * s.rough) / (steep + 1e-6);
+        let by_noise = (gap - frays) / (steep + SOLID_SKIP * s.rough / s.solid_m);
         by_map.max(by_noise)
     };
     // The threshold stays the same within `steady_m` and may change beyond.
     let steady = steady_m / level.max(1e-3);
     let near = if s.threshold > CLEAR_FROM { steady } else { within(0.0).min(steady) };
-    let same_m = s.same_section(height) * s.thickness_m / d.z.abs().max(1e-6);
-    near.max(within(slope_per_m)).min(same_m)
+    near.max(within(slope_per_m))
 }
 
 impl AtPlace<'_> {
@@ -386,12 +374,10 @@ impl AtPlace<'_> {
             let (there, _) = self.layer.field.here(at);
             let over = there.over(at);
             if i < SUN_FRAYED {
-                let inside = over.inside(&there.shape, height);
-                let excess = inside + there.shape.frayed(inside, there.frays(at));
+                let excess = over - dome(&there.shape, over, height) + there.frays(at);
                 depth += (excess / s.soft).clamp(0.0, 1.0) * (end - gone);
             } else {
-                let excess = over.at(&there.shape, height);
-                depth += stretch(&there.shape, excess, [self.height + rise * gone, rise], end - gone);
+                depth += stretch(&there.shape, over, [self.height + rise * gone, rise], end - gone);
             }
             gone = end;
         }

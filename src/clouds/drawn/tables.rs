@@ -25,7 +25,7 @@ use crate::{
 /// Format of the tables of light and of hosts' cover maps.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of the map's sheets.
-const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+const SHEET: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
 /// Counters of the work on these tables: number of updates, and their time.
 const COUNTED: [DeviceWork; 2] = [DeviceWork::CloudTables, DeviceWork::CloudTableTime];
@@ -69,14 +69,14 @@ fn write_halves(
 }
 
 /// Creates the texture of the map. It has two layers, one for each sheet that
-/// [`crate::clouds::field::extinction::Field`] reads. A texel has the even, the cellular and the ragged noise
-/// of its sheet, all that one look-up needs.
+/// [`crate::clouds::field::extinction::Field`] reads. A texel has the gradient noise and the cellular noise of its
+/// sheet, all that one look-up needs.
 fn sheets(device: &Device, map: &Map) -> wgpu::TextureView {
     let levels = map.levels();
     let size = |level: usize| [(MAP_SIZE >> level) as u32, (MAP_SIZE >> level) as u32, 2];
     let made = texture(device, "cloud map", wgpu::TextureDimension::D2, size(0), (SHEET, levels.len() as u32));
     for (level, texels) in levels.iter().enumerate() {
-        let sheet = |i: usize| texels.iter().flat_map(move |texel| [texel[i], texel[i + 2], texel[i + 4], 0.0]);
+        let sheet = |i: usize| texels.iter().flat_map(move |texel| [texel[i], texel[i + 2]]);
         write_halves(device, (&made, level as u32), (0, 0), size(level), sheet(0).chain(sheet(1)));
     }
     bind::as_layers(&made)
@@ -237,7 +237,7 @@ impl CloudTables {
 
     /// Returns the bytes of GPU memory in use.
     pub fn bytes(&self) -> u64 {
-        let (map, light) = (16 * MAP_SIZE * MAP_SIZE * 4 / 3, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
+        let (map, light) = (8 * MAP_SIZE * MAP_SIZE * 4 / 3, 8 * 6 * LEAKS * DEPTHS * DEPTHS);
         let placed = self.placed.texture().size();
         (map + light) as u64 + (SOLID_SIZE as u64).pow(3) + 8 * u64::from(placed.width) * u64::from(placed.height)
     }

@@ -22,9 +22,9 @@ use crate::{
     clouds::{
         field::{
             droplets::nearest_diameter,
-            extinction::Field,
+            extinction::{Field, MOST_FRAYED},
             map::Map,
-            shape::Shape,
+            shape::{Shape, dome},
             solid::Solid,
             thresholds::{threshold, typical},
         },
@@ -171,11 +171,11 @@ impl Photon<'_> {
         let s = &self.field.shape;
         let height = (position.z - s.base_m) / s.thickness_m;
         let over = self.field.over(position);
-        let inside = over.inside(s, height);
-        let frays = if inside < -s.most_frayed() { f64::INFINITY } else { self.field.frays(position) };
-        let dense = if frays.is_finite() { self.field.dense(inside + s.frayed(inside, frays)) } else { 0.0 };
+        let excess = over - dome(s, over, height);
+        let frays = if excess < -MOST_FRAYED * s.rough { f64::INFINITY } else { self.field.frays(position) };
+        let dense = if frays.is_finite() { self.field.dense(excess + frays) } else { 0.0 };
         let clear =
-            if dense > 0.0 { 0.0 } else { SKIPPED * skip((s, UNMAPPED), (&over, frays), height, direction).max(0.0) };
+            if dense > 0.0 { 0.0 } else { SKIPPED * skip((s, UNMAPPED), [over, frays], height, direction).max(0.0) };
         [dense, clear]
     }
 

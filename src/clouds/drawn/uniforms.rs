@@ -52,8 +52,8 @@ pub(crate) struct LayerUniform {
     /// Matrix to the pattern before its stretch along the wind: xx, xy and yy; growth of the domes of cumulus with the
     /// excess.
     pub stretch: [f32; 4],
-    /// Distance that the top, or the anvil, lies downwind of the base (east, north), m; least excess that has an anvil
-    /// above it; length of the first two for fibres, m.
+    /// Distance that the top lies downwind of the base (east, north), m; least excess that has an anvil above it;
+    /// length of the first two, m.
     pub lean: [f32; 4],
     /// Host's map: position of the camera (east, north), in cells from the middle of the first cell; 1/side of a cell,
     /// 1/m; row of the map's first texels.
@@ -64,8 +64,6 @@ pub(crate) struct LayerUniform {
     /// Threshold, dome and extinction, 1/m, where the layer is filled over rain areas; number of areas, 0 for other
     /// layers.
     pub filled: [f32; 4],
-    /// [`Shape::taper`], [`Shape::frays_out`], [`Shape::ragged_above`], [`Shape::ragged`].
-    pub form: [f32; 4],
 }
 
 /// A cell of cloud over a rain area.
@@ -196,8 +194,7 @@ impl LayerUniform {
             below: padded(light.below, width),
             medium: [medium.0 as f32, scaled as f32, share as f32, 1.0 / s.solid_m as f32],
             stretch: [s.stretch.x_axis.x, s.stretch.x_axis.y, s.stretch.y_axis.y, s.held].map(|v| v as f32),
-            form: [s.taper, s.frays_out, s.ragged_above, s.ragged].map(|v| v as f32),
-            lean: [s.lean_m.x, s.lean_m.y, s.anvil, s.fibre_lean_m()].map(|v| v as f32),
+            lean: [s.lean_m.x, s.lean_m.y, s.anvil, s.lean_m.length()].map(|v| v as f32),
             ..Self::zeroed()
         }
     }

@@ -1,14 +1,12 @@
 //! Extinction of a layer at a place, in f64. `shaders/clouds/field.wgsl` has the same formulas in f32; the folder's
 //! `mod.rs` explains the model.
 
-use std::f64::consts::FRAC_1_SQRT_2;
-
 use glam::{DMat2, DVec2, DVec3};
 
 use super::{
-    map::{MAP_CELLS, Map, SECOND_LEVEL, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD},
+    map::{MAP_CELLS, Map, SECOND_OFFSET, SECOND_PERIOD, SECOND_TURN_RAD},
     placed::LocalCover,
-    shape::{ANVIL_LEVEL, Shape, dome, smooth},
+    shape::{Shape, dome, smooth},
     solid::Solid,
 };
 
@@ -18,45 +16,7 @@ const SOLID_MEAN: f64 = 0.47;
 const SOLID_GAIN: f64 = 2.2;
 
 /// Amount, in units of `rough`, up to which the solid noise raises the excess, except in rare peaks.
-const MOST_FRAYED: f64 = 0.8;
-/// Shortfall of the excess at and beyond which the solid noise adds no cloud.
-const FRAYS_ADDED: f64 = 0.4;
-
-/// Excess at a place before its height counts.
-#[derive(Clone, Copy, Debug)]
-pub struct PlaceExcess {
-    /// Excess of the map's number over the threshold.
-    pub even: f64,
-    /// Ragged noise at the base, as an excess.
-    pub ragged: f64,
-}
-
-impl PlaceExcess {
-    /// Returns the excess at a height, 0 at the base to 1 at the top, before dome and fraying.
-    pub(crate) fn at(&self, shape: &Shape, height: f64) -> f64 {
-        self.even + self.ragged * shape.raggedness(height)
-    }
-
-    /// Returns the excess at a height over the one that cloud needs there, before fraying.
-    pub(crate) fn inside(&self, shape: &Shape, height: f64) -> f64 {
-        self.at(shape, height) - dome(shape, self.even, height)
-    }
-}
-
-impl Shape {
-    /// Returns the largest amount by which the solid noise raises the excess where there is no cloud without it.
-    pub(crate) fn most_frayed(&self) -> f64 {
-        let most = MOST_FRAYED * self.rough;
-        if self.frays_out > 0.0 { most } else { most.min(FRAYS_ADDED) }
-    }
-
-    /// Returns the amount that the solid noise adds to an excess `inside` over the one that cloud needs, if it is
-    /// `frays` within cloud. Outlines are not frayed far into clear air, where they would be specks.
-    pub(crate) fn frayed(&self, inside: f64, frays: f64) -> f64 {
-        let share = (1.0 + inside / FRAYS_ADDED).clamp(0.0, 1.0);
-        if frays > 0.0 { frays * (share + (1.0 - share) * self.frays_out) } else { frays }
-    }
-}
+pub(crate) const MOST_FRAYED: f64 = 0.8;
 
 /// Clouds of a layer.
 pub struct Field<'a> {
@@ -71,19 +31,17 @@ pub struct Field<'a> {
 }
 
 impl Field<'_> {
-    /// Returns the map's number at a place, m east and north of the world's origin, and the ragged noise there. Cloud
-    /// grows where the number is above the threshold. Both have deviation 1, and less at a mip level above 0.
-    pub fn strength(&self, place_m: DVec2, level: f64) -> [f64; 2] {
+    /// Returns the map's number at a place, m east and north of the world's origin. Cloud grows where it is above the
+    /// threshold.
+    pub fn strength(&self, place_m: DVec2) -> f64 {
         let s = &self.shape;
         let cell = s.stretch * (place_m - s.drift_m) / s.scale_m;
-        let first = self.map.at(cell / MAP_CELLS, level);
+        let first = self.map.at(cell / MAP_CELLS);
         let turned = DMat2::from_angle(SECOND_TURN_RAD) * (cell - s.evolution);
-        let second = turned / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET;
-        let second = self.map.at(second, (level - SECOND_LEVEL).max(0.0));
+        let second = self.map.at(turned / (MAP_CELLS * SECOND_PERIOD) + SECOND_OFFSET);
         let c = s.cellular;
         let scale = 1.0 / (2.0 * (c * c + (1.0 - c) * (1.0 - c))).sqrt();
-        let number = ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale;
-        [number, (first[4] + second[5]) * FRAC_1_SQRT_2]
+        ((first[0] + second[1]) * (1.0 - c) + (first[2] + second[3]) * c) * scale
     }
 
     /// Returns the field with the local cover of a position. Also returns the distance within which this cover holds,
@@ -99,18 +57,16 @@ impl Field<'_> {
     pub(crate) fn upright(&self, position_m: DVec3) -> DVec2 {
         let s = &self.shape;
         let height = (position_m.z - s.base_m) / s.thickness_m;
-        position_m.truncate() - s.lean_m * s.lean_share(height)
+        position_m.truncate() - s.lean_m * (height * height)
     }
 
-    /// Returns the excess at a position before its height counts.
-    pub(crate) fn over(&self, position_m: DVec3) -> PlaceExcess {
+    /// Returns the excess of the map's number over the threshold at a position, before dome and fraying.
+    pub(crate) fn over(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
-        let height = (position_m.z - s.base_m) / s.thickness_m;
-        let [number, ragged] = self.strength(self.upright(position_m), ANVIL_LEVEL * s.spreading(height));
-        PlaceExcess { even: number - s.threshold, ragged: s.ragged * ragged }
+        self.strength(self.upright(position_m)) - s.threshold
     }
 
-    /// Returns the amount that the solid noise adds to the excess at a place within cloud.
+    /// Returns the amount that the solid noise adds to the excess at a place.
     pub(crate) fn frays(&self, position_m: DVec3) -> f64 {
         let s = &self.shape;
         let level = s.stretch * (self.upright(position_m) - s.drift_m);
@@ -130,10 +86,11 @@ impl Field<'_> {
             return 0.0;
         }
         let (here, _) = self.here(position_m);
-        let inside = here.over(position_m).inside(&here.shape, height);
-        if inside < -here.shape.most_frayed() {
+        let over = here.over(position_m);
+        let excess = over - dome(&here.shape, over, height);
+        if excess < -MOST_FRAYED * here.shape.rough {
             return 0.0;
         }
-        here.dense(inside + here.shape.frayed(inside, here.frays(position_m)))
+        here.dense(excess + here.frays(position_m))
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{
-    shape::{NO_ANVIL, Shape, anvil_share, filled_below},
+    shape::{NO_ANVIL, Shape, filled_below},
     thresholds::threshold,
 };
 use crate::{
@@ -32,17 +32,7 @@ const SOLID_CELLS_OF_FIBRES: f64 = 0.8;
 /// this distance.
 const HEADS_AS_CLOUDS_M: f64 = 1000.0;
 /// Excess over the threshold above which a place of a cumulonimbus has an anvil above it.
-const ANVIL_BEYOND: f64 = -0.6;
-/// Deviation of the ragged noise in sheets, in sheets of cells, and in heaps whose heads are as large as their clouds.
-const RAGGED: [f64; 3] = [0.4, 0.5, 0.75];
-/// Additional deviation of the ragged noise half-way between sheets without cells and sheets of cells.
-const RAGGED_BETWEEN: f64 = 0.25;
-/// Share of the ragged noise that fibres lack.
-const FIBRES_EVEN: f64 = 0.8;
-/// Taper of a cumulonimbus ([`Shape::taper`]).
-const TAPER: f64 = 0.85;
-/// Distance by which an anvil lies downwind of its tower, in distances from cloud to cloud.
-const ANVIL_SHIFT: f64 = 0.3;
+const ANVIL_BEYOND: f64 = -0.2;
 /// Distance that the top of fibres lies downwind of their base, in thicknesses: crystals fall for some kilometres into
 /// slower air (Heymsfield 1975).
 const LEAN: f64 = 3.0;
@@ -89,9 +79,6 @@ impl Shape {
         let piled = ((heaps - 0.3) / 0.7).max(0.0);
         // Above `HEADS_AS_CLOUDS_M`, heads of heaps grow only as the distance from cloud to cloud to the power 0.4.
         let finer = (slab.scale_m / HEADS_AS_CLOUDS_M).max(1.0).powf(-0.6 * piled);
-        let anvil = (ANVIL_BEYOND + 60.0 * (1.0 - slab.convection)).min(NO_ANVIL);
-        let c = slab.cellular;
-        let ragged = mix(RAGGED[0], RAGGED[1], c) + RAGGED_BETWEEN * 4.0 * c * (1.0 - c);
         let shape = Self {
             base_m: slab.base_m,
             thickness_m: slab.thickness_m,
@@ -100,18 +87,13 @@ impl Shape {
             threshold,
             dome,
             rough: mix(mix(mix(0.35, 0.5, slab.cellular), 0.9 * finer * mix(1.0, 0.7, tall), heaps), 1.2, slab.fibre),
-            frays_out: slab.fibre,
-            ragged: mix(ragged, RAGGED[2] * finer.sqrt(), heaps) * (1.0 - FIBRES_EVEN * slab.fibre),
-            ragged_above: mix(1.0, tall, heaps),
-            taper: TAPER * (1.5 * tall).min(1.0),
             soft: mix(mix(mix(0.3, 0.12, heaps), 0.8, slab.cellular), 1.2, slab.fibre),
             cellular: slab.cellular,
             solid_m: mix(SOLID_CELLS, SOLID_CELLS_OF_FIBRES, slab.fibre) * finer * slab.scale_m,
             held: 1.4 * piled.max(slab.cellular) / (dome * dome),
-            anvil,
+            anvil: (ANVIL_BEYOND + 20.0 * (1.0 - slab.convection)).min(NO_ANVIL),
             stretch: stretch(slab),
-            lean_m: stretch_toward(slab)
-                * mix(LEAN * slab.fibre * slab.thickness_m, ANVIL_SHIFT * slab.scale_m, anvil_share(anvil)),
+            lean_m: stretch_toward(slab) * (LEAN * slab.fibre * slab.thickness_m),
             drift_m: DVec2::ZERO,
             evolution: DVec2::ZERO,
         };
@@ -190,9 +172,7 @@ mod tests {
             let slab = crate::weather::CloudSlab { wind_m_s: [0.0, 30.0], ..typical(kind, 0.5).unwrap() };
             let field = field(&slab, &grown, threshold(&slab));
             let place = |i: usize| DVec2::new((i % 63) as f64 * 0.7135, (i / 63) as f64 * 0.6131) * slab.scale_m;
-            let one = |i: usize| {
-                (field.strength(place(i), 0.0)[0] - field.strength(place(i) + along * slab.scale_m, 0.0)[0]).abs()
-            };
+            let one = |i: usize| (field.strength(place(i)) - field.strength(place(i) + along * slab.scale_m)).abs();
             (0..2000).map(one).sum::<f64>() / 2000.0
         };
         let ratio = |kind| off(kind, DVec2::X * 0.2) / off(kind, DVec2::Y * 0.2);

@@ -4,24 +4,19 @@
 //!
 //! # Model
 //! A horizontal map says how strongly cloud grows at each place, as a number z with a normal distribution about 0. The
-//! map is the sum of two sheets of noise, each made normal by its ranks ([`map`]). The periods of the sheets have no
-//! common multiple, so that no repetition shows. There is cloud where z exceeds a threshold that follows from the cover
-//! ([`cover`]). The excess e = z - threshold says how high the cloud grows there. A ragged noise r of the same map,
-//! with the shorter waves, makes outlines ragged; it falls with height, because tops would become teeth. Solid noise
-//! frays the cloud's edges. The two sheets glide against each other, so that clouds form and dissolve without end, as a
-//! function of time alone.
+//! map is the sum of two sheets of noise, each made normal by its ranks. The periods of the sheets have no common
+//! multiple, so that no repetition shows. There is cloud where z exceeds a threshold that follows from the cover
+//! ([`cover`]). The excess e = z - threshold says how high the cloud grows there. Solid noise frays the cloud's edges.
+//! The two sheets glide against each other, so that clouds form and dissolve without end, as a function of time alone.
 //!
 //! At a place with excess e and height h, from 0 at the base to 1 at the top, the extinction is k c. k is the layer's
-//! extinction inside clouds, 1/m, and c = (e + r a(h) - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here
-//! a(h) is the share of the ragged noise that is left at height h, dome(h) the excess that cloud needs there, rough and
-//! soft are fields of [`Shape`], and noise is the solid noise, scaled to about 0 to 1. In cumulus and in cellular
-//! sheets the dome also grows with e, so that no top is cut flat. Clouds with outlines get no specks of the solid noise
-//! in the clear air around them.
+//! extinction inside clouds, 1/m, and c = (e - dome(h) + rough (noise - 1/2)) / soft, clamped to 0 and 1. Here dome(h)
+//! is the excess that cloud needs at height h, rough and soft are fields of [`Shape`], and noise is the solid noise,
+//! scaled to about 0 to 1. In cumulus and in cellular sheets the dome also grows with e, so that no top is cut flat.
 //!
 //! Ice cloud is stretched along the wind that carries it, and leans with height: the head of a fibre lies downwind of
-//! the crystals that have fallen from it. The towers of cumulonimbus spread into an anvil below the layer's top: at the
-//! anvil's heights the excess is that of a blurred map downwind, and less of it makes cloud (`anvil_needs` in
-//! `shape.rs`). Above, the tops of some towers shoot through it.
+//! the crystals that have fallen from it. Cumulonimbus has an anvil, a sheet below the layer's top around its towers
+//! (`anvil_needs` in `shape.rs`).
 
 pub(crate) mod cells;
 pub mod cover;

@@ -3,8 +3,6 @@
 
 use glam::{DMat2, DVec2};
 
-use crate::numerics::smoothstep;
-
 /// Parameters of the clouds of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
@@ -22,16 +20,6 @@ pub struct Shape {
     pub dome: f64,
     /// Amplitude of the solid noise, which frays the edges, as an excess.
     pub rough: f64,
-    /// Degree to which the solid noise adds cloud in clear air however far the excess is below 0 there, 0 to 1: 0 for
-    /// clouds with outlines, 1 for fibres.
-    pub frays_out: f64,
-    /// Standard deviation of the ragged noise at the base, as an excess.
-    pub ragged: f64,
-    /// Degree to which tops are ragged, 0 to 1: with 0 the ragged noise falls as the cube of the distance from the top,
-    /// with 1 in proportion to it.
-    pub ragged_above: f64,
-    /// Degree to which a cloud narrows upwards as a cone does, 0 to 1. With 0 it is a dome with upright sides.
-    pub taper: f64,
     /// Width of the edge: the excess over which extinction rises from 0 to all of it.
     pub soft: f64,
     /// Share of the map's cellular pattern, 0 to 1.
@@ -45,7 +33,7 @@ pub struct Shape {
     pub anvil: f64,
     /// Matrix from a place (east, north) to the place in the pattern, which is not stretched along the wind.
     pub stretch: DMat2,
-    /// How far the layer's top, or its anvil, lies downwind of its base (east, north), m.
+    /// How far the layer's top lies downwind of its base (east, north), m.
     pub lean_m: DVec2,
     /// How far the wind has carried the layer (east, north), m.
     pub drift_m: DVec2,
@@ -60,14 +48,6 @@ pub const NO_ANVIL: f64 = 1e3;
 const ANVIL: [f64; 2] = [0.84, 0.95];
 /// Heights over which an anvil fades out, below the range of [`ANVIL`] and above it.
 const ANVIL_FACES: [f64; 2] = [0.2, 0.05];
-/// Heights between which a tower spreads into its anvil.
-const SPREADS: [f64; 2] = [0.66, 0.86];
-/// Heights between which the anvil gives way to the tops of the towers that shoot through it.
-const OVERSHOOTS: [f64; 2] = [0.93, 0.97];
-/// Step of height, in thicknesses, by which rays go on where towers spread into anvils.
-const SECTION_STEP: f64 = 0.02;
-/// Mip level of the map from which an anvil follows: it shows no heads of its tower.
-pub(crate) const ANVIL_LEVEL: f64 = 4.0;
 /// Share by which an anvil's edges fray less than those of its towers.
 const ANVIL_SMOOTHER: f64 = 0.65;
 
@@ -78,15 +58,10 @@ fn anvil_needs(shape: &Shape, height: f64) -> f64 {
     shape.anvil + 3.0 * (below * below + above * above)
 }
 
-/// Returns the degree to which a layer with this [`Shape::anvil`] has anvils, 0 to 1.
-pub(super) fn anvil_share(anvil: f64) -> f64 {
-    (-anvil / 0.2).clamp(0.0, 1.0)
-}
-
 /// Returns the share of the fraying that is left at a height: 1, or less in an anvil.
 pub(super) fn smooth(shape: &Shape, height: f64) -> f64 {
     let within = ((height - ANVIL[0]) / 0.14 + 1.0).clamp(0.0, 1.0);
-    1.0 - ANVIL_SMOOTHER * within * anvil_share(shape.anvil)
+    1.0 - ANVIL_SMOOTHER * within * (-shape.anvil / 0.2).clamp(0.0, 1.0)
 }
 
 impl Shape {
@@ -94,45 +69,6 @@ impl Shape {
     pub(crate) fn dome_over(&self, excess: f64) -> f64 {
         let e = excess.max(0.0);
         self.dome * (1.0 + self.held * e * e).sqrt()
-    }
-
-    /// Returns the excess needed for cloud at a height as a share of the excess needed at the top.
-    pub(crate) fn rise(&self, height: f64) -> f64 {
-        height * (self.taper + (1.0 - self.taper) * height)
-    }
-
-    /// Returns the degree to which the clouds of a height are anvils, 0 to 1: towers spread below an anvil, and the tops
-    /// of some shoot through it.
-    pub(crate) fn spreading(&self, height: f64) -> f64 {
-        let [spread, overshoot] = [SPREADS, OVERSHOOTS].map(|[from, until]| smoothstep(from, until, height));
-        anvil_share(self.anvil) * spread * (1.0 - overshoot)
-    }
-
-    /// Returns the share of [`Shape::lean_m`] by which a height lies downwind of the base: fibres lean as a parabola,
-    /// anvils stand downwind of upright towers.
-    pub(crate) fn lean_share(&self, height: f64) -> f64 {
-        let fibres = height * height;
-        fibres + (self.spreading(height) - fibres * anvil_share(self.anvil))
-    }
-
-    /// Returns the distance that the tops of fibres lie downwind of their base, m.
-    pub(crate) fn fibre_lean_m(&self) -> f64 {
-        self.lean_m.length() * (1.0 - anvil_share(self.anvil))
-    }
-
-    /// Returns how far up or down from a height the horizontal section of clouds stays the same but for the dome, in
-    /// thicknesses; a small value where towers spread into anvils.
-    pub(crate) fn same_section(&self, height: f64) -> f64 {
-        if self.anvil > 0.0 {
-            return f64::INFINITY;
-        }
-        (SPREADS[0] - height).max(height - OVERSHOOTS[1]).max(SECTION_STEP)
-    }
-
-    /// Returns the share of the ragged noise that is left at a height: 1 at the base, 0 at the top.
-    pub(crate) fn raggedness(&self, height: f64) -> f64 {
-        let low = (1.0 - height).clamp(0.0, 1.0);
-        low * (low * low + self.ragged_above * (1.0 - low * low))
     }
 }
 
@@ -147,14 +83,12 @@ pub fn dome(shape: &Shape, excess: f64, height: f64) -> f64 {
     let share = (EDGE_M / shape.thickness_m).min(EDGE_SHARE);
     let edge = (1.0 - height / share).max(0.0);
     let edge = edge * edge * share / EDGE_SHARE;
-    (shape.dome_over(excess) * shape.rise(height) + 0.25 * edge).min(anvil_needs(shape, height))
+    (shape.dome_over(excess) * height * height + 0.25 * edge).min(anvil_needs(shape, height))
 }
 
 /// Slope of the map: change of its number over one distance from cloud to cloud. A place's distance from its cloud's
 /// edge, in this unit, is taken as its excess divided by the slope.
-const MAP_SLOPE: f64 = 2.0;
-/// Increase of that slope per unit of [`Shape::ragged`].
-const RAGGED_SLOPE: f64 = 2.0;
+const MAP_SLOPE: f64 = 4.0;
 
 /// Amount of cloud above, below and beside a place, as metres of cloud at full extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,14 +105,9 @@ pub struct CloudAround {
 /// height of the ratio of the extinction to full extinction.
 pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
     let d = shape.dome_over(excess).max(1e-3);
-    let a = shape.taper;
-    // Height at which the cloud of an excess ends: the solution of `rise` for e / d.
-    let reach = |e: f64| {
-        let risen = e.max(0.0) / d;
-        (2.0 * risen / (a + (a * a + 4.0 * (1.0 - a) * risen).sqrt()).max(1e-9)).min(1.0)
-    };
+    let reach = |e: f64| (e.max(0.0) / d).sqrt().min(1.0);
     let (full, end) = (reach(excess - shape.soft), reach(excess));
-    let ramp = |x: f64| (excess - d * x * (0.5 * a + (1.0 - a) * x / 3.0)) * x / shape.soft;
+    let ramp = |x: f64| (excess - d * x * x / 3.0) * x / shape.soft;
     // The part of an anvil above the dome.
     let from = end.clamp(ANVIL[0], ANVIL[1]);
     let anvil = ((excess - shape.anvil) / shape.soft).clamp(0.0, 1.0) * (height.clamp(from, ANVIL[1]) - from);
@@ -189,13 +118,12 @@ pub(crate) fn filled_below(shape: &Shape, excess: f64, height: f64) -> f64 {
 /// less the threshold, before the dome is subtracted.
 pub fn about(shape: &Shape, excess: f64, height: f64) -> CloudAround {
     let below = filled_below(shape, excess, height);
-    // An anvil reaches further than its tower, and has clear air below it.
+    // An anvil reaches further than its tower.
     let beyond = if height > ANVIL[0] - 0.5 * ANVIL_FACES[0] { shape.anvil.min(0.0) } else { 0.0 };
-    let hangs = below.min((height - ANVIL[0] + ANVIL_FACES[0]).max(0.0));
     CloudAround {
         above_m: (filled_below(shape, excess, 1.0) - below) * shape.thickness_m,
-        below_m: (below + (hangs - below) * shape.spreading(height)) * shape.thickness_m,
-        edge_m: (excess - beyond).max(0.0) / (MAP_SLOPE + RAGGED_SLOPE * shape.ragged) * shape.scale_m,
+        below_m: below * shape.thickness_m,
+        edge_m: (excess - beyond).max(0.0) / MAP_SLOPE * shape.scale_m,
     }
 }
 
