@@ -1,4 +1,4 @@
-//! The sun of a planet, in the light that queries answer with.
+//! The sun of a planet, in the light that queries answer with, and the figure of its world.
 
 use std::sync::Arc;
 
@@ -9,6 +9,7 @@ use crate::{
     gpu::{Device, DeviceOptions, Shared},
     light::luminance,
     planet::{Absorption, Planet, Rayleigh},
+    scene::Figure,
     weather::Weather,
     world::GivenDirection,
 };
@@ -65,4 +66,21 @@ fn a_planets_own_sun_lights_it() {
         assert!((arriving / above - 1.0).abs() < 0.01, "{arriving} of {above}");
     }
     assert!(luminance(&light.arriving.sky_lux) < 1e-3 * luminance(&arriving), "{:?}", light.arriving.sky_lux);
+}
+
+#[test]
+fn a_world_lies_on_the_figure_of_its_planet_whoever_sets_it() {
+    let small = Planet { bottom_radius_m: 3_389_500.0, top_radius_m: 3_489_500.0, ..Planet::earth() };
+    let made = context(small).world().figure;
+    assert_eq!(made, Figure::of_radius(small.bottom_radius_m));
+    let mut changed = context(Planet::earth());
+    assert_eq!(changed.world().figure, Figure::WGS84);
+    let of_the_earth = changed.save().unwrap();
+    changed.set_planet(&small).unwrap();
+    assert_eq!(changed.world().figure, made);
+    let of_the_small = changed.save().unwrap();
+    changed.load(&of_the_earth).unwrap();
+    assert_eq!(changed.world().figure, Figure::WGS84);
+    changed.load(&of_the_small).unwrap();
+    assert_eq!(changed.world().figure, made);
 }
