@@ -2340,9 +2340,9 @@ WK_API wk_status wk_metar_init(wk_metar *out, uint32_t struct_size);
  *
  * There are three kinds of world. FLAT: the ground is a plane, and altitude is the up coordinate. TANGENT:
  * east-north-up at the origin's place, with the curved planet below. ECEF: Earth-centred, Earth-fixed (WGS 84)
- * coordinates, or those of another planet (wk_context_set_planet). Axes of flat and tangent worlds are x east, y north, z up (Z_UP) or x east, y up, z south (Y_UP, the
- * usual OpenGL world). Directions in answers are unit vectors (east, north, up) at the queried place; azimuths are
- * degrees clockwise from true north.
+ * coordinates, or those of another planet (wk_context_set_planet). Axes of flat and tangent worlds are x east, y
+ * north, z up (Z_UP) or x east, y up, z south (Y_UP, the usual OpenGL world). Directions in answers are unit vectors
+ * (east, north, up) at the queried place; azimuths are degrees clockwise from true north.
  *
  * Altitudes are above mean sea level everywhere in this header. In an ECEF world mean sea level lies geoid_height_m of
  * wk_context_desc above the ellipsoid; with the default of 0, heights above the ellipsoid serve as altitudes.
@@ -2504,12 +2504,12 @@ wk_status wk_context_create(wk_device *device,
 
 /**
  * Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
- * call; NULL means the Earth. Tangent and ECEF worlds lie on WGS 84 where the planet's radius is between the Earth's
- * polar and equatorial radius, otherwise on a sphere of the planet's radius. Set a planet of another radius before
- * terrain, simulated ground and regions of the sea: they keep the directions of the planet on which they were set.
- * Light and queries use the new planet at once, without blending. The sky's tables follow
- * as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
- * top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
+ * call; NULL means the Earth. Tangent and ECEF worlds lie on WGS 84 if the planet's radius is between the Earth's
+ * polar and equatorial radius, otherwise on a sphere of that radius. Set a planet of another radius before terrain,
+ * simulated ground and regions of the sea: they keep the directions of the planet on which they were set. Light and
+ * queries use the new planet at once, without blending. The sky's tables follow as after a change of weather: a draft
+ * fades in over sixteen frames, and later frames refine it. If the radius, the top of the air or the wavelengths
+ * differ, the next frame shows a draft of the new planet at once (docs/planets.md).
  * Thread: exclusive.
  * Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. After an
  * error the planet stays as it was.

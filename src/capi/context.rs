@@ -267,12 +267,12 @@ pub unsafe extern "C" fn wk_context_create(
 }
 
 /// Replaces the planet: its air, ground and sun. `planet_toml` is a planet file's text (TOML, UTF-8), read during the
-/// call; NULL means the Earth. Tangent and ECEF worlds lie on WGS 84 where the planet's radius is between the Earth's
-/// polar and equatorial radius, otherwise on a sphere of the planet's radius. Set a planet of another radius before
-/// terrain, simulated ground and regions of the sea: they keep the directions of the planet on which they were set.
-/// Light and queries use the new planet at once, without blending. The sky's tables follow
-/// as after a change of weather: a draft fades in over sixteen frames, and later frames refine it. If the radius, the
-/// top of the air or the wavelengths differ, the next frame shows a draft of the new planet at once (docs/planets.md).
+/// call; NULL means the Earth. Tangent and ECEF worlds lie on WGS 84 if the planet's radius is between the Earth's
+/// polar and equatorial radius, otherwise on a sphere of that radius. Set a planet of another radius before terrain,
+/// simulated ground and regions of the sea: they keep the directions of the planet on which they were set. Light and
+/// queries use the new planet at once, without blending. The sky's tables follow as after a change of weather: a draft
+/// fades in over sixteen frames, and later frames refine it. If the radius, the top of the air or the wavelengths
+/// differ, the next frame shows a draft of the new planet at once (docs/planets.md).
 /// Thread: exclusive.
 /// Errors: WK_ERROR_PARSE for the text, with line and column; WK_ERROR_INVALID_ARGUMENT naming the field. After an
 /// error the planet stays as it was.

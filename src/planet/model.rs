@@ -200,7 +200,7 @@ impl Planet {
         }
     }
 
-    /// Returns the ratio of the sun's irradiance at each wavelength to the Earth's sun at 1 au.
+    /// Returns the ratio of the sun's irradiance to that of the Earth's sun at 1 au, at each wavelength.
     pub(crate) fn sun_ratios(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.solar_irradiance[i] / spectra::solar_irradiance(self.wavelengths_nm[i]))
     }
